@@ -126,8 +126,8 @@ pub use rne_macro::{
     BatchInverseDynamicsDerivatives, BatchMassMatrix, CentreOfMass, CentroidalMomentum, ClosedLoops, ContactDynamics,
     CoriolisMatrix, Energy, FloatingBase, FloatingClosedLoops, FloatingEnergy, FloatingInverseDynamicsDerivatives,
     FloatingKinematics, FloatingRegressor, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics,
-    InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, JointWrenches, Kinematics, MassMatrix,
-    MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
+    InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, JacobianDerivatives, JointWrenches,
+    Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
 };
 #[doc(inline)]
 pub use rne_model as model;
@@ -140,11 +140,11 @@ pub use rne_runtime::{
     FloatingEnergy, FloatingIntegratorStep, FloatingIntegratorStepDerivatives, FloatingInverseDynamicsDerivatives,
     FloatingKinematics, FloatingRegressor, FloatingState, FloatingStepDerivatives, FloatingTorqueDerivatives,
     FloatingTorques, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics, IntegratorStep,
-    IntegratorStepDerivatives, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, JointOrderError,
-    JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass,
-    NextState, NextStateDerivatives, ObserverState, Operations, Payload, PayloadDynamics, Pose, Quaternion, Regressor,
-    Scalar, StepDerivatives, TipWrenches, TorqueDerivatives, TorqueGradient, VectorUnit, Wrench,
-    dynamically_consistent_inverse, joint_order, operational_space_inertia,
+    IntegratorStepDerivatives, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient,
+    JacobianDerivatives, JointOrderError, JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumAndRate,
+    MomentumObserver, MovingBase, NegativeMass, NextState, NextStateDerivatives, ObserverState, Operations, Payload,
+    PayloadDynamics, Pose, Quaternion, Regressor, Scalar, StepDerivatives, TipWrenches, TorqueDerivatives,
+    TorqueGradient, VectorUnit, Wrench, dynamically_consistent_inverse, joint_order, operational_space_inertia,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]

@@ -7,8 +7,8 @@ use rne::testing::{self, GoldenState, RobotFile};
 use rne::{
     Actuation, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives, BatchMassMatrix,
     CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics,
-    InverseDynamicsDerivatives, InverseDynamicsGradient, JointWrenches, Kinematics, MassMatrix, MomentumObserver,
-    MovingBase, Payload, Pose, Regressor, Scalar, Wrench,
+    InverseDynamicsDerivatives, InverseDynamicsGradient, JacobianDerivatives, JointWrenches, Kinematics, MassMatrix,
+    MomentumObserver, MovingBase, Payload, Pose, Regressor, Scalar, Wrench,
 };
 
 #[derive(
@@ -28,6 +28,7 @@ use rne::{
     Actuation,
     InverseDynamicsGradient,
     ForwardDynamicsDerivatives,
+    JacobianDerivatives,
     BatchMassMatrix,
     BatchForwardDynamics,
     BatchInverseDynamicsDerivatives,

@@ -133,12 +133,15 @@ fn compare(u: &mut Unstructured<'_>) -> Result<()> {
     let expected = runtime(&arm, function, &state).expect("arrays of the right length");
     assert_eq!(interpreted.len(), expected.len(), "{function} of\n{text}");
     let is_equal = match function {
-        Function::ForwardDynamics | Function::ForwardDynamicsWithWrenches | Function::FloatingForwardDynamics => {
+        Function::ForwardDynamics
+        | Function::ForwardDynamicsWithWrenches
+        | Function::FloatingForwardDynamics
+        | Function::InverseMassMatrixTimesTorques => {
             accelerate(&arm, function, &state, &interpreted).expect("arrays of the right length")
         }
         Function::InverseMassMatrix => inverts(&arm, &state, &interpreted).expect("arrays of the right length"),
         // the others are products with it, and of accelerations that are as far from those of the runtime
-        Function::ForwardDynamicsDerivatives => {
+        Function::ForwardDynamicsDerivatives | Function::ForwardDynamicsDerivativesWithWrenches => {
             inverts(&arm, &state, &interpreted[2 * robot.dof() * robot.dof()..]).expect("arrays of the right length")
         }
         _ => {
@@ -182,6 +185,7 @@ fn accelerate(
         Function::ForwardDynamicsWithWrenches => {
             (arm.mass_matrix(q)?, arm.inverse_dynamics_with_wrenches(q, qd, &zeros, &[*wrench])?)
         }
+        Function::InverseMassMatrixTimesTorques => (arm.mass_matrix(q)?, zeros),
         _ => (arm.mass_matrix(q)?, arm.bias_torques(q, qd)?),
     };
     // nothing drives a base
@@ -269,6 +273,21 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
         Function::ForwardDynamicsDerivatives => {
             let derivatives = arm.forward_dynamics_derivatives(q, qd, tau)?;
             [derivatives.dq, derivatives.dqd, derivatives.dtau].concat().concat()
+        }
+        Function::JacobianRate => arm.jacobian_rate(q, qd)?.concat(),
+        Function::JacobianDerivatives => arm.jacobian_derivatives(q)?.concat().concat(),
+        Function::InverseMassMatrixTimesTorques => arm.inverse_mass_matrix_times_torques(q, tau)?,
+        Function::InverseDynamicsDerivativesWithWrenches => {
+            let by = arm.inverse_dynamics_derivatives_with_wrenches(q, qd, qdd, &[*wrench])?;
+            [by.dq.concat(), by.dqd.concat()].concat()
+        }
+        Function::ForwardDynamicsDerivativesWithWrenches => {
+            let by = arm.forward_dynamics_derivatives_with_wrenches(q, qd, tau, &[*wrench])?;
+            [by.dq, by.dqd, by.dtau].concat().concat()
+        }
+        Function::ForwardDynamicsDerivativesWithPayload => {
+            let by = arm.forward_dynamics_derivatives_with_payload(q, qd, tau, &Payload::from_array(*payload))?;
+            [by.dq, by.dqd, by.dtau].concat().concat()
         }
         Function::JointWrenches => {
             let wrenches = arm.joint_wrenches(q, qd, qdd)?;

@@ -404,6 +404,12 @@ quantities! {
     // Of the torques weighted by multipliers.
     Multiplier:                 "lam",       Joint,     0, false, "λ", "", "multiplier of the torque of joint i";
     WeightedTorque:             "lt",        Alone,     8, true,  "", "", "sum of the torques times the multipliers";
+
+    // Of the rate of the Jacobian.
+    JacobianLinearRate:         "jvd",       Vector,    8, true,  "", "",
+        "rate of the velocity of the tip per rate of joint i, world axes";
+    JacobianAngularRate:        "jwd",       Vector,    8, true,  "", "",
+        "rate of the angular velocity of the tip per rate of joint i, world axes";
 }
 
 impl Quantity {

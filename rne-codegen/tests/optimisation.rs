@@ -50,3 +50,36 @@ fn derivatives_of_accelerations_have_the_inverse_mass_matrix() {
         assert!(derivatives[..2 * dof * dof].iter().any(|element| !element.is_zero()), "{}", robot.name);
     }
 }
+
+#[test]
+fn the_mass_matrix_times_the_accelerations_of_torques_is_the_torques() {
+    for robot in robots() {
+        let [accelerations, mass] = [Function::InverseMassMatrixTimesTorques, Function::MassMatrix]
+            .map(|function| ExactFunction::new(&robot, function));
+        for point in 1..=3 {
+            let found = accelerations.at(point);
+            let torque = |at: usize| accelerations.argument(point, Name::scalar(Quantity::AppliedTorque, at + 1));
+            let expected: Vec<_> = (0..robot.dof()).map(torque).collect();
+            assert_eq!(product(&mass.at(point), |at| found[at], robot.dof()), expected, "{}", robot.name);
+        }
+    }
+}
+
+/// No wrench changes the inverse of the mass matrix, and a payload does.
+#[test]
+fn derivatives_by_torques_are_the_inverse_of_the_mass_matrix_with_the_load() {
+    for robot in robots() {
+        let dof = robot.dof();
+        let at = |function| ExactFunction::new(&robot, function).at(1);
+        let by_torques = |function| at(function).split_off(2 * dof * dof);
+        let wrenches = by_torques(Function::ForwardDynamicsDerivativesWithWrenches);
+        assert_eq!(wrenches, at(Function::InverseMassMatrix), "{}", robot.name);
+        let payload = by_torques(Function::ForwardDynamicsDerivativesWithPayload);
+        let mass = at(Function::MassMatrixWithPayload);
+        for column in 0..dof {
+            let found = product(&mass, |row| payload[row * dof + column], dof);
+            let unit: Vec<_> = (0..dof).map(|row| Residue::integer(u64::from(row == column))).collect();
+            assert_eq!(found, unit, "{}", robot.name);
+        }
+    }
+}

@@ -20,6 +20,8 @@ pub type PointRows<T> = Matrix<T>;
 pub type Spatial<T> = [T; 6];
 /// Three linear rows, then three angular ones, with a number per joint.
 pub type SpatialRows<T> = Matrix<T>;
+/// A matrix for each of six rows, of the form of [`SpatialRows`].
+pub type SpatialMatrices<T> = Vec<Matrix<T>>;
 /// A pose per joint.
 pub type Poses<T> = Vec<Pose<T>>;
 /// A wrench per joint.

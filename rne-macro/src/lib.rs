@@ -224,9 +224,8 @@ pub fn derive_moving_base(input: TokenStream) -> TokenStream {
     expand::capability(Capability::MovingBase, input.into()).into()
 }
 
-/// Implements the trait `PayloadDynamics` for a struct: gravity, bias, mass matrix, accelerations, derivatives and
-/// momenta
-/// of the arm with a payload at its tip.
+/// Implements the trait `PayloadDynamics` for a struct: gravity, bias, mass matrix, accelerations, momenta, and
+/// derivatives of torques and accelerations, of the arm with a payload at its tip.
 ///
 /// The payload (mass, centre of mass, inertia) is an argument.
 ///
@@ -350,6 +349,17 @@ pub fn derive_inverse_dynamics_gradient(input: TokenStream) -> TokenStream {
 #[proc_macro_derive(ForwardDynamicsDerivatives, attributes(robot))]
 pub fn derive_forward_dynamics_derivatives(input: TokenStream) -> TokenStream {
     expand::capability(Capability::ForwardDynamicsDerivatives, input.into()).into()
+}
+
+/// Implements the trait `JacobianDerivatives` for a struct: the rate of the Jacobian, and its derivatives by the
+/// positions.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets constants with the operations, `JACOBIAN_RATE_OPERATIONS` and `JACOBIAN_DERIVATIVES_OPERATIONS`; `DOF`, names
+/// and limits come with `InverseDynamics`.
+#[proc_macro_derive(JacobianDerivatives, attributes(robot))]
+pub fn derive_jacobian_derivatives(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::JacobianDerivatives, input.into()).into()
 }
 
 /// Implements the trait `ClosedLoops` for a struct: a robot whose file has `loops` with a cut joint.

@@ -8,12 +8,14 @@
 use rne_model::Motor;
 
 use crate::mechanism::Mechanism;
+#[cfg(feature = "std")]
+use crate::optimisation::dyn_rows_by;
 use crate::per_joint::PerJoint;
 #[cfg(feature = "std")]
 use crate::smooth_sign::SmoothSign;
 use crate::{Actuation, Arm, Constant, Scalar};
 #[cfg(feature = "std")]
-use crate::{DynArm, WrongLength};
+use crate::{Dual, DynArm, WrongLength};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn actuator_torques<T: Scalar>(self, qd: &[T], qdd: &[T]) -> J::Of<T> {
@@ -57,5 +59,19 @@ impl<S: Constant> DynArm<S> {
         let smooth = |values: &[T]| -> Vec<_> { values.iter().map(|&value| SmoothSign { value, width }).collect() };
         let torques = self.actuator_torques(&smooth(qd), &smooth(qdd))?;
         Ok(torques.into_iter().map(|torque| torque.value).collect())
+    }
+
+    /// As [`Actuation::actuator_torques_smooth_derivatives`].
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn actuator_torques_smooth_derivatives<T: Scalar>(
+        &self,
+        qd: &[T],
+        width: T,
+    ) -> Result<Vec<Vec<T>>, WrongLength> {
+        self.has_length("qd", qd)?;
+        let (still, width) = (vec![Dual::constant(T::zero()); qd.len()], Dual::constant(width));
+        dyn_rows_by(qd, |qd| self.actuator_torques_smooth(qd, &still, width))
     }
 }

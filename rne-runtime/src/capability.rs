@@ -13,9 +13,10 @@ pub use floating_base::{
     FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor, FloatingTorques,
 };
 
-use crate::ldlt::inverse_of;
+use crate::ldlt::{factor, inverse_of, solve};
+use crate::optimisation::{rows_by, still};
 use crate::smooth_sign::SmoothSign;
-use crate::{BaseMotion, Payload, Pose, Scalar, Wrench};
+use crate::{AccelerationDerivatives, BaseMotion, Dual, Payload, Pose, Scalar, Wrench};
 
 /// Torques from motion: recursive Newton-Euler inverse dynamics, τ(q, q̇, q̈).
 ///
@@ -95,6 +96,19 @@ pub trait MassMatrix<const DOF: usize> {
     #[must_use]
     fn inverse_mass_matrix<T: Scalar>(&self, q: &[T; DOF]) -> [[T; DOF]; DOF] {
         inverse_of(self.mass_matrix(q), &[T::zero(); DOF])
+    }
+
+    /// M(q)⁻¹ τ: the accelerations (rad/s², prismatic: m/s²) that the torques `tau` (N m, prismatic: N) add, in fewer
+    /// operations than [`inverse_mass_matrix`](Self::inverse_mass_matrix) has. `tau` may be any vector: of impulses
+    /// (N m s), for example, which change the velocities.
+    ///
+    /// A singular mass matrix (a joint that moves nothing) gives numbers that are not finite, and never panics.
+    #[must_use]
+    fn inverse_mass_matrix_times_torques<T: Scalar>(&self, q: &[T; DOF], tau: &[T; DOF]) -> [T; DOF] {
+        let (mut m, mut inverse, mut x) = (self.mass_matrix(q), [T::zero(); DOF], *tau);
+        factor(&mut m, &mut inverse);
+        solve(&m, &inverse, &mut x);
+        x
     }
 }
 
@@ -375,6 +389,40 @@ pub trait TipWrenches<const DOF: usize, const TIPS: usize> {
         tau: &[T; DOF],
         wrenches: &[Wrench<T>; TIPS],
     ) -> [T; DOF];
+
+    /// ∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics_with_wrenches`, where the wrenches do not change in axes of their tips. See
+    /// [`inverse_dynamics_derivatives`](InverseDynamicsDerivatives::inverse_dynamics_derivatives).
+    #[must_use]
+    fn inverse_dynamics_derivatives_with_wrenches<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        qdd: &[T; DOF],
+        wrenches: &[Wrench<T>; TIPS],
+    ) -> TorqueDerivatives<DOF, T> {
+        let (still_q, still_qd, qdd, wrenches) = (still(q), still(qd), still(qdd), wrenches.map(Wrench::still));
+        TorqueDerivatives {
+            dq: rows_by(q, |q| self.inverse_dynamics_with_wrenches(q, &still_qd, &qdd, &wrenches)),
+            dqd: rows_by(qd, |qd| self.inverse_dynamics_with_wrenches(&still_q, qd, &qdd, &wrenches)),
+        }
+    }
+
+    /// The derivatives of `forward_dynamics_with_wrenches` by q, q̇ and τ, where the wrenches do not change in axes of
+    /// their tips. See
+    /// [`forward_dynamics_derivatives`](crate::ForwardDynamicsDerivatives::forward_dynamics_derivatives).
+    #[must_use]
+    fn forward_dynamics_derivatives_with_wrenches<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        tau: &[T; DOF],
+        wrenches: &[Wrench<T>; TIPS],
+    ) -> AccelerationDerivatives<DOF, T> {
+        let (still_q, still_qd, still_tau, wrenches) = (still(q), still(qd), still(tau), wrenches.map(Wrench::still));
+        let by_tau = rows_by(tau, |tau| self.forward_dynamics_with_wrenches(&still_q, &still_qd, tau, &wrenches));
+        let accelerations = |q: &_, qd: &_| self.forward_dynamics_with_wrenches(q, qd, &still_tau, &wrenches);
+        AccelerationDerivatives::of(q, qd, accelerations, by_tau)
+    }
 }
 
 /// The arm with a payload that is known when the program runs: every function is that of the arm whose last link has
@@ -425,6 +473,22 @@ pub trait PayloadDynamics<const DOF: usize> {
         tau: &[T; DOF],
         payload: &Payload<T>,
     ) -> MomentumAndRate<DOF, T>;
+
+    /// The derivatives of `forward_dynamics_with_payload` by q, q̇ and τ. See
+    /// [`forward_dynamics_derivatives`](crate::ForwardDynamicsDerivatives::forward_dynamics_derivatives).
+    #[must_use]
+    fn forward_dynamics_derivatives_with_payload<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        tau: &[T; DOF],
+        payload: &Payload<T>,
+    ) -> AccelerationDerivatives<DOF, T> {
+        let inverse = inverse_of(self.mass_matrix_with_payload(q, payload), &[T::zero(); DOF]);
+        let (tau, payload) = (still(tau), payload.still());
+        let accelerations = |q: &_, qd: &_| self.forward_dynamics_with_payload(q, qd, &tau, &payload);
+        AccelerationDerivatives::of(q, qd, accelerations, inverse)
+    }
 }
 
 /// Torques on a vehicle, a ship or another robot.
@@ -460,5 +524,18 @@ pub trait Actuation<const DOF: usize> {
     fn actuator_torques_smooth<T: Scalar>(&self, qd: &[T; DOF], qdd: &[T; DOF], width: T) -> [T; DOF] {
         let smooth = |value| SmoothSign { value, width };
         self.actuator_torques(&qd.map(smooth), &qdd.map(smooth)).map(|torque| torque.value)
+    }
+
+    /// The derivatives of [`actuator_torques_smooth`](Self::actuator_torques_smooth) by q̇, by rows, N m s/rad or N s/m:
+    /// what friction adds to the derivatives of the torques by velocities. The matrix is diagonal where no joint
+    /// follows others. The derivative by accelerations, G² Jm, is constant.
+    ///
+    /// At the joint of a motor it is G² B + |G| (½ (Tc⁺ - Tc⁻) + (Tc⁺ + Tc⁻) s) ds/dq̇, with ds/dq̇ = width² / (q̇² +
+    /// width²)^(3/2). `width` > 0: `actuator_torques` itself has no derivative at rest, and a `width` of zero gives
+    /// numbers there that are not finite.
+    #[must_use]
+    fn actuator_torques_smooth_derivatives<T: Scalar>(&self, qd: &[T; DOF], width: T) -> [[T; DOF]; DOF] {
+        let still_qdd = [Dual::constant(T::zero()); DOF];
+        rows_by(qd, |qd| self.actuator_torques_smooth(qd, &still_qdd, Dual::constant(width)))
     }
 }

@@ -41,7 +41,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
             self.per_joint.of(|i| Dual { value: x[i], derivative: unit.as_ref()[i] })
         };
         let base = self.fixed_base();
-        let payload = payload.map(|payload| Payload::from_array(payload.to_array().map(Dual::constant)));
+        let payload = payload.map(Payload::still);
         let tip = payload.as_ref().map_or(AtTip::Nothing, AtTip::Payload);
         let torques = |q: &J::Of<Dual<T>>, qd: &J::Of<Dual<T>>| {
             let qdd = constant(qdd);
@@ -133,7 +133,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         (tips, wrenches): (&[FixedFrame<S>; TIPS], &[Wrench<T>; TIPS]),
     ) -> FloatingTorqueDerivatives<DOF, NV, T> {
         const { assert!(NV == DOF + BASE, "the matrices have a row for each joint and six for the base") };
-        let wrenches = wrenches.map(dual);
+        let wrenches = wrenches.map(Wrench::still);
         let at_tips = self.at_tips(tips, &wrenches);
         let OfFloatingBase { joints, omega } =
             self.mechanism().floating_derivatives(JointMotions::new(q, qd, qdd), base, &at_tips);
@@ -146,11 +146,6 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         let domega = core::array::from_fn(|row| [0, 1, 2].map(|axis| element(&omega[axis], row)));
         FloatingTorqueDerivatives { dq, dqd, domega }
     }
-}
-
-/// A wrench that does not change.
-fn dual<T: Scalar>(wrench: Wrench<T>) -> Wrench<Dual<T>> {
-    Wrench { force: wrench.force.map(Dual::constant), moment: wrench.moment.map(Dual::constant) }
 }
 
 #[cfg(feature = "std")]
@@ -169,7 +164,7 @@ impl<S: Constant> DynArm<S> {
         wrenches: &[Wrench<T>],
     ) -> Result<DynFloatingTorqueDerivatives<T>, WrongLength> {
         let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
-        let wrenches: Vec<_> = wrenches.iter().copied().map(dual).collect();
+        let wrenches: Vec<_> = wrenches.iter().copied().map(Wrench::still).collect();
         let at_tips = self.at_tips(&wrenches)?;
         let OfFloatingBase { joints, omega } =
             self.mechanism().floating_derivatives(JointMotions::new(&q, &qd, &qdd), base, &at_tips);

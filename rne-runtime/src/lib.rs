@@ -46,6 +46,7 @@ mod floating_kinematics;
 #[cfg(feature = "arm")]
 mod forward_dynamics;
 mod integrator;
+mod jacobian_derivatives;
 #[cfg(feature = "arm")]
 mod joint;
 mod joint_order;
@@ -139,6 +140,7 @@ pub use floating_integrator::{
     FloatingIntegratorStep, FloatingIntegratorStepDerivatives, FloatingState, FloatingStepDerivatives,
 };
 pub use integrator::{IntegratorStep, IntegratorStepDerivatives, NextState, NextStateDerivatives, StepDerivatives};
+pub use jacobian_derivatives::JacobianDerivatives;
 pub use joint_order::{JointOrderError, joint_order};
 #[doc(hidden)]
 pub use names::unknown_frame;

@@ -11,7 +11,10 @@ use crate::mechanism::Mechanism;
 use crate::per_joint::{PerJoint, Square};
 use crate::{Arm, BaseMotion, Constant, MassMatrix, Scalar};
 #[cfg(feature = "std")]
-use crate::{DynArm, WrongLength, ldlt::inverse_of};
+use crate::{
+    DynArm, WrongLength,
+    ldlt::{factor, inverse_of, solve},
+};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn mass_matrix<T: Scalar>(self, q: &[T], tip: AtTip<'_, T>) -> Square<J, T> {
@@ -65,5 +68,17 @@ impl<S: Constant> DynArm<S> {
     /// When an argument does not have one element per joint.
     pub fn inverse_mass_matrix<T: Scalar>(&self, q: &[T]) -> Result<Vec<Vec<T>>, WrongLength> {
         Ok(inverse_of(self.mass_matrix(q)?, &vec![T::zero(); q.len()]))
+    }
+
+    /// As [`MassMatrix::inverse_mass_matrix_times_torques`].
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn inverse_mass_matrix_times_torques<T: Scalar>(&self, q: &[T], tau: &[T]) -> Result<Vec<T>, WrongLength> {
+        self.has_length("tau", tau)?;
+        let (mut m, mut inverse, mut x) = (self.mass_matrix(q)?, vec![T::zero(); tau.len()], tau.to_vec());
+        factor(&mut m, &mut inverse);
+        solve(&m, &inverse, &mut x);
+        Ok(x)
     }
 }

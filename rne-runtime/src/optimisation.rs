@@ -1,14 +1,17 @@
 //! Derivatives for optimisers, and those of an [`Arm`] by dual numbers through the seven steps: exact up to rounding,
 //! one direction at a time. Generated code has them in reverse mode and by composite bodies, from other formulas.
 
-#[cfg(feature = "arm")]
 use core::array::from_fn;
 
-use crate::Scalar;
-#[cfg(feature = "arm")]
-use crate::{Arm, Constant, Dual, ForwardDynamics, InverseDynamics, MassMatrix};
 #[cfg(all(feature = "arm", feature = "std"))]
-use crate::{DynArm, WrongLength};
+use crate::ldlt::inverse_of;
+#[cfg(feature = "arm")]
+use crate::{Arm, Constant, ForwardDynamics, InverseDynamics, MassMatrix};
+use crate::{Dual, Scalar};
+#[cfg(all(feature = "arm", feature = "std"))]
+use crate::{DynArm, DynTorqueDerivatives, Payload, Wrench, WrongLength};
+#[cfg(doc)]
+use crate::{PayloadDynamics, TipWrenches};
 
 /// The derivatives of λᵀτ for one state: of the torques, each times its multiplier and added up.
 ///
@@ -73,6 +76,37 @@ pub trait ForwardDynamicsDerivatives<const DOF: usize> {
     ) -> AccelerationDerivatives<DOF, T>;
 }
 
+impl<const DOF: usize, T: Scalar> AccelerationDerivatives<DOF, T> {
+    /// Derivatives of accelerations by q and q̇, beside the inverse of the mass matrix.
+    pub(crate) fn of(
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        accelerations: impl Fn(&[Dual<T>; DOF], &[Dual<T>; DOF]) -> [Dual<T>; DOF],
+        dtau: [[T; DOF]; DOF],
+    ) -> Self {
+        let (still_q, still_qd) = (still(q), still(qd));
+        Self {
+            dq: rows_by(q, |q| accelerations(q, &still_qd)),
+            dqd: rows_by(qd, |qd| accelerations(&still_q, qd)),
+            dtau,
+        }
+    }
+}
+
+/// Numbers that nothing changes.
+pub(crate) fn still<T: Scalar, const N: usize>(x: &[T; N]) -> [Dual<T>; N] {
+    x.map(Dual::constant)
+}
+
+/// The derivatives of the elements of y(x), by rows, with a column for each element of x.
+pub(crate) fn rows_by<T: Scalar, const N: usize, const ROWS: usize>(
+    x: &[T; N],
+    y: impl Fn(&[Dual<T>; N]) -> [Dual<T>; ROWS],
+) -> [[T; N]; ROWS] {
+    let columns: [_; N] = from_fn(|j| y(&from_fn(|i| along(x, i, j))));
+    from_fn(|row| from_fn(|column| columns[column][row].derivative))
+}
+
 /// λ times the derivative of the torques.
 #[cfg(feature = "arm")]
 fn weighted<T: Scalar>(torques: &[Dual<T>], multipliers: &[T]) -> T {
@@ -80,8 +114,7 @@ fn weighted<T: Scalar>(torques: &[Dual<T>], multipliers: &[T]) -> T {
 }
 
 /// Element i of a list, with element j on its way.
-#[cfg(feature = "arm")]
-fn along<T: Scalar>(x: &[T], i: usize, j: usize) -> Dual<T> {
+pub(crate) fn along<T: Scalar>(x: &[T], i: usize, j: usize) -> Dual<T> {
     Dual { value: x[i], derivative: if i == j { T::one() } else { T::zero() } }
 }
 
@@ -115,11 +148,8 @@ impl<const DOF: usize, S: Constant> ForwardDynamicsDerivatives<DOF> for Arm<DOF,
         qd: &[T; DOF],
         tau: &[T; DOF],
     ) -> AccelerationDerivatives<DOF, T> {
-        let [still_q, still_qd, still_tau] = [q, qd, tau].map(|x| x.map(Dual::constant));
-        let by_q = from_fn(|j| self.forward_dynamics(&from_fn(|i| along(q, i, j)), &still_qd, &still_tau));
-        let by_qd = from_fn(|j| self.forward_dynamics(&still_q, &from_fn(|i| along(qd, i, j)), &still_tau));
-        let rows = |columns: [[Dual<T>; DOF]; DOF]| from_fn(|i| from_fn(|j| columns[j][i].derivative));
-        AccelerationDerivatives { dq: rows(by_q), dqd: rows(by_qd), dtau: self.inverse_mass_matrix(q) }
+        let tau = still(tau);
+        AccelerationDerivatives::of(q, qd, |q, qd| self.forward_dynamics(q, qd, &tau), self.inverse_mass_matrix(q))
     }
 }
 
@@ -183,24 +213,98 @@ impl<S: Constant> DynArm<S> {
         qd: &[T],
         tau: &[T],
     ) -> Result<DynAccelerationDerivatives<T>, WrongLength> {
-        for (name, list) in [("q", q), ("qd", qd), ("tau", tau)] {
+        let (tau, dtau) = (moving(tau, None), self.inverse_mass_matrix(q)?);
+        DynAccelerationDerivatives::of(q, qd, |q, qd| self.forward_dynamics(q, qd, &tau), dtau)
+    }
+
+    /// As [`PayloadDynamics::forward_dynamics_derivatives_with_payload`].
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn forward_dynamics_derivatives_with_payload<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        tau: &[T],
+        payload: &Payload<T>,
+    ) -> Result<DynAccelerationDerivatives<T>, WrongLength> {
+        let dtau = inverse_of(self.mass_matrix_with_payload(q, payload)?, &vec![T::zero(); q.len()]);
+        let (tau, payload) = (moving(tau, None), payload.still());
+        let accelerations = |q: &[_], qd: &[_]| self.forward_dynamics_with_payload(q, qd, &tau, &payload);
+        DynAccelerationDerivatives::of(q, qd, accelerations, dtau)
+    }
+
+    /// As [`TipWrenches::inverse_dynamics_derivatives_with_wrenches`], with one of `wrenches` for each of the
+    /// [tips](Self::tips).
+    ///
+    /// # Errors
+    /// When a joint argument does not have one element per joint, or `wrenches` not one element per tip.
+    pub fn inverse_dynamics_derivatives_with_wrenches<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+        wrenches: &[Wrench<T>],
+    ) -> Result<DynTorqueDerivatives<T>, WrongLength> {
+        for (name, list) in [("q", q), ("qd", qd), ("qdd", qdd)] {
             self.has_length(name, list)?;
         }
-        let by = |place: usize| {
-            let column = |j: usize| {
-                let [q, qd] = [(0, q), (1, qd)].map(|(at, x)| moving(x, (at == place).then_some(j)));
-                self.forward_dynamics(&q, &qd, &moving(tau, None))
-            };
-            let columns: Vec<_> = (0..self.dof()).map(column).collect::<Result<_, WrongLength>>()?;
-            let row = |i: usize| columns.iter().map(|column: &Vec<Dual<T>>| column[i].derivative).collect();
-            Ok::<_, WrongLength>((0..self.dof()).map(row).collect())
-        };
-        Ok(DynAccelerationDerivatives { dq: by(0)?, dqd: by(1)?, dtau: self.inverse_mass_matrix(q)? })
+        let wrenches: Vec<_> = wrenches.iter().copied().map(Wrench::still).collect();
+        let (still_q, still_qd, qdd) = (moving(q, None), moving(qd, None), moving(qdd, None));
+        Ok(DynTorqueDerivatives {
+            dq: dyn_rows_by(q, |q| self.inverse_dynamics_with_wrenches(q, &still_qd, &qdd, &wrenches))?,
+            dqd: dyn_rows_by(qd, |qd| self.inverse_dynamics_with_wrenches(&still_q, qd, &qdd, &wrenches))?,
+        })
     }
+
+    /// As [`TipWrenches::forward_dynamics_derivatives_with_wrenches`], with one of `wrenches` for each of the
+    /// [tips](Self::tips).
+    ///
+    /// # Errors
+    /// When a joint argument does not have one element per joint, or `wrenches` not one element per tip.
+    pub fn forward_dynamics_derivatives_with_wrenches<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        tau: &[T],
+        wrenches: &[Wrench<T>],
+    ) -> Result<DynAccelerationDerivatives<T>, WrongLength> {
+        let wrenches: Vec<_> = wrenches.iter().copied().map(Wrench::still).collect();
+        let (tau, dtau) = (moving(tau, None), self.inverse_mass_matrix(q)?);
+        let accelerations = |q: &[_], qd: &[_]| self.forward_dynamics_with_wrenches(q, qd, &tau, &wrenches);
+        DynAccelerationDerivatives::of(q, qd, accelerations, dtau)
+    }
+}
+
+#[cfg(all(feature = "arm", feature = "std"))]
+impl<T: Scalar> DynAccelerationDerivatives<T> {
+    /// Derivatives of accelerations by q and q̇, beside the inverse of the mass matrix.
+    fn of(
+        q: &[T],
+        qd: &[T],
+        accelerations: impl Fn(&[Dual<T>], &[Dual<T>]) -> Result<Vec<Dual<T>>, WrongLength>,
+        dtau: Vec<Vec<T>>,
+    ) -> Result<Self, WrongLength> {
+        let (still_q, still_qd) = (moving(q, None), moving(qd, None));
+        accelerations(&still_q, &still_qd)?;
+        let dq = dyn_rows_by(q, |q| accelerations(q, &still_qd))?;
+        Ok(Self { dq, dqd: dyn_rows_by(qd, |qd| accelerations(&still_q, qd))?, dtau })
+    }
+}
+
+/// As [`rows_by`].
+#[cfg(all(feature = "arm", feature = "std"))]
+pub(crate) fn dyn_rows_by<T: Scalar>(
+    x: &[T],
+    y: impl Fn(&[Dual<T>]) -> Result<Vec<Dual<T>>, WrongLength>,
+) -> Result<Vec<Vec<T>>, WrongLength> {
+    let columns = (0..x.len()).map(|j| y(&moving(x, Some(j)))).collect::<Result<Vec<_>, _>>()?;
+    let row = |row: usize| columns.iter().map(|column| column[row].derivative).collect();
+    Ok((0..columns.first().map_or(0, Vec::len)).map(row).collect())
 }
 
 /// Numbers of which one is on its way.
 #[cfg(all(feature = "arm", feature = "std"))]
-fn moving<T: Scalar>(x: &[T], j: Option<usize>) -> Vec<Dual<T>> {
+pub(crate) fn moving<T: Scalar>(x: &[T], j: Option<usize>) -> Vec<Dual<T>> {
     (0..x.len()).map(|i| along(x, i, j.unwrap_or(x.len()))).collect()
 }

@@ -5,7 +5,7 @@ use core::fmt;
 
 use rne_model::Inertia;
 
-use crate::Scalar;
+use crate::{Dual, Scalar};
 
 /// A body that is rigidly fixed to the tip frame (`tool` included), in the axes of that frame: what a robot file would
 /// say of it if `tool` were its link frame.
@@ -55,6 +55,11 @@ impl<T: Scalar> Payload<T> {
         let zero = T::zero();
         let inertia = Inertia { xx: zero, yy: zero, zz: zero, xy: zero, xz: zero, yz: zero };
         Self { mass: zero, com: [zero; 3], inertia }
+    }
+
+    /// The same payload where nothing changes it.
+    pub(crate) fn still(&self) -> Payload<Dual<T>> {
+        Payload::from_array(self.to_array().map(Dual::constant))
     }
 
     /// The ten numbers in the order in which generated code and C take them: mass; centre of mass x, y, z; inertia xx,

@@ -4,7 +4,7 @@ use rne_model::FixedFrame;
 
 use crate::at_tip::{AtTip, Tip};
 use crate::link_state::JointMotions;
-use crate::{Arm, Constant, Scalar, Wrench};
+use crate::{AccelerationDerivatives, Arm, Constant, Scalar, TipWrenches, TorqueDerivatives, Wrench};
 #[cfg(feature = "std")]
 use crate::{DynArm, WrongLength};
 
@@ -40,6 +40,32 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         self.mechanism().forward_dynamics(q, qd, tau, AtTip::Wrenches(&self.at_tips(tips, wrenches)))
     }
 
+    /// As [`TipWrenches::inverse_dynamics_derivatives_with_wrenches`], at these tips.
+    #[must_use]
+    pub fn inverse_dynamics_derivatives_with_wrenches<T: Scalar, const TIPS: usize>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        qdd: &[T; DOF],
+        tips: &[FixedFrame<S>; TIPS],
+        wrenches: &[Wrench<T>; TIPS],
+    ) -> TorqueDerivatives<DOF, T> {
+        AtTheseTips { arm: self, tips }.inverse_dynamics_derivatives_with_wrenches(q, qd, qdd, wrenches)
+    }
+
+    /// As [`TipWrenches::forward_dynamics_derivatives_with_wrenches`], at these tips.
+    #[must_use]
+    pub fn forward_dynamics_derivatives_with_wrenches<T: Scalar, const TIPS: usize>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        tau: &[T; DOF],
+        tips: &[FixedFrame<S>; TIPS],
+        wrenches: &[Wrench<T>; TIPS],
+    ) -> AccelerationDerivatives<DOF, T> {
+        AtTheseTips { arm: self, tips }.forward_dynamics_derivatives_with_wrenches(q, qd, tau, wrenches)
+    }
+
     pub(crate) fn at_tips<T: Scalar, const TIPS: usize>(
         &self,
         tips: &[FixedFrame<S>; TIPS],
@@ -50,6 +76,34 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
             let tip = FixedFrame { on: tips[index].on.filter(|on| *on < DOF), ..tips[index] };
             Tip::new(table, &tip).with(&wrenches[index])
         })
+    }
+}
+
+/// An arm with its tips, for what the trait makes of its functions.
+struct AtTheseTips<'a, const DOF: usize, const TIPS: usize, S> {
+    arm: &'a Arm<DOF, S>,
+    tips: &'a [FixedFrame<S>; TIPS],
+}
+
+impl<const DOF: usize, const TIPS: usize, S: Constant> TipWrenches<DOF, TIPS> for AtTheseTips<'_, DOF, TIPS, S> {
+    fn inverse_dynamics_with_wrenches<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        qdd: &[T; DOF],
+        wrenches: &[Wrench<T>; TIPS],
+    ) -> [T; DOF] {
+        self.arm.inverse_dynamics_with_wrenches(q, qd, qdd, self.tips, wrenches)
+    }
+
+    fn forward_dynamics_with_wrenches<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        tau: &[T; DOF],
+        wrenches: &[Wrench<T>; TIPS],
+    ) -> [T; DOF] {
+        self.arm.forward_dynamics_with_wrenches(q, qd, tau, self.tips, wrenches)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Force and moment at the tip.
 
-use crate::Scalar;
+use crate::{Dual, Scalar};
 
 /// The lecture's f_{n,n+1} and n_{n,n+1}: exerted BY the last link ON its environment, at the origin of the tip frame
 /// (`tool` included), in tip-frame axes. So τ = τ_free + Jᵀ w, and what the environment exerts on the robot is the
@@ -25,6 +25,11 @@ impl<T: Scalar> Wrench<T> {
     #[must_use]
     pub fn zero() -> Self {
         Self { force: [T::zero(); 3], moment: [T::zero(); 3] }
+    }
+
+    /// The same wrench where nothing changes it.
+    pub(crate) fn still(self) -> Wrench<Dual<T>> {
+        Wrench { force: self.force.map(Dual::constant), moment: self.moment.map(Dual::constant) }
     }
 }
 

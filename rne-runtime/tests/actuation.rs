@@ -119,6 +119,22 @@ fn smooth_friction_tends_to_the_other() {
         let dual = friction(Dual { value: rate, derivative: 1.0 }, Some(Dual::constant(0.2)));
         assert!((dual.derivative - slope).abs() < 1e-6, "{} {slope}", dual.derivative);
     }
+    // The matrix has the closed form of the slope on its diagonal, and nothing beside it.
+    let width = 0.2_f64;
+    let found = arm().actuator_torques_smooth_derivatives(&QD, width);
+    let slope = |qd: f64, motor: &Motor| {
+        let (g, [plus, minus], r) = (motor.gear_ratio.abs(), motor.coulomb, qd.hypot(width));
+        let friction = 0.5 * (plus - minus) + (plus + minus) * qd / r;
+        g * g * motor.viscous + g * friction * width * width / (r * r * r)
+    };
+    let element = |i: usize, j: usize| MOTORS[i].as_ref().filter(|_| i == j).map_or(0.0, |motor| slope(QD[i], motor));
+    let expected: [[f64; 6]; 6] = std::array::from_fn(|i| std::array::from_fn(|j| element(i, j)));
+    assert!(relative_error(found.as_flattened(), expected.as_flattened()) < 1e-14, "{found:?} {expected:?}");
+    let dyn_arm = DynArm::new(&six_joints(Standard)).with_motors(MOTORS.to_vec()).expect("six");
+    let rows = dyn_arm.actuator_torques_smooth_derivatives(&QD, width).expect("six");
+    assert_eq!(rows.concat(), found.as_flattened());
+    assert!(dyn_arm.actuator_torques_smooth_derivatives(&QD[..5], width).is_err());
+    assert!(!friction(Dual { value: 0.0_f64, derivative: 1.0 }, Some(Dual::constant(0.0))).derivative.is_finite());
     // Rising everywhere between, and the rest of the motor as it is.
     let rates: Vec<f64> = (-50..50).map(|k| friction(f64::from(k) * 0.01, Some(0.1))).collect();
     assert!(rates.windows(2).all(|pair| pair[0] < pair[1]));

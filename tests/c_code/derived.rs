@@ -4,8 +4,8 @@ use rne::{
     Actuation, BaseMotion, BaseTwist, CentreOfMass, CentroidalMomentum, ContactDynamics, CoriolisMatrix, Energy,
     FloatingBase, FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor,
     ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient,
-    JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Pose, Regressor, Scalar,
-    TipWrenches, Wrench,
+    JacobianDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Pose,
+    Regressor, Scalar, TipWrenches, Wrench,
 };
 use rne_codegen::Form;
 pub(crate) use rne_codegen::Function;
@@ -47,6 +47,7 @@ pub(crate) trait Everything<const DOF: usize, const NV: usize, const BODIES: usi
     + FloatingInverseDynamicsDerivatives<DOF, NV, 1>
     + InverseDynamicsGradient<DOF>
     + ForwardDynamicsDerivatives<DOF>
+    + JacobianDerivatives<DOF>
 {
 }
 
@@ -116,6 +117,21 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, const BODIES: usize, T:
         Function::ForwardDynamicsDerivatives => {
             let derivatives = robot.forward_dynamics_derivatives(q, qd, tau);
             [flat(derivatives.dq), flat(derivatives.dqd), flat(derivatives.dtau)].concat()
+        }
+        Function::JacobianRate => flat(robot.jacobian_rate(q, qd)),
+        Function::JacobianDerivatives => robot.jacobian_derivatives(q).into_iter().flat_map(flat).collect(),
+        Function::InverseMassMatrixTimesTorques => robot.inverse_mass_matrix_times_torques(q, tau).to_vec(),
+        Function::InverseDynamicsDerivativesWithWrenches => {
+            let by = robot.inverse_dynamics_derivatives_with_wrenches(q, qd, qdd, &[Wrench { force, moment }]);
+            [flat(by.dq), flat(by.dqd)].concat()
+        }
+        Function::ForwardDynamicsDerivativesWithWrenches => {
+            let by = robot.forward_dynamics_derivatives_with_wrenches(q, qd, tau, &[Wrench { force, moment }]);
+            [flat(by.dq), flat(by.dqd), flat(by.dtau)].concat()
+        }
+        Function::ForwardDynamicsDerivativesWithPayload => {
+            let by = robot.forward_dynamics_derivatives_with_payload(q, qd, tau, &states::payload(payload));
+            [flat(by.dq), flat(by.dqd), flat(by.dtau)].concat()
         }
         Function::JointWrenches => {
             let wrenches = robot.joint_wrenches(q, qd, qdd);
@@ -206,6 +222,7 @@ macro_rules! robot {
                 rne::FloatingInverseDynamicsDerivatives,
                 rne::InverseDynamicsGradient,
                 rne::ForwardDynamicsDerivatives,
+                rne::JacobianDerivatives,
             )]
             #[robot(path = $path, form = $form, inline)]
             pub(crate) struct Robot;

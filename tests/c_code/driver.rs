@@ -136,14 +136,21 @@ impl Driver<'_> {
                 | Function::JointWrenches => "q, qd, qdd",
                 Function::InverseDynamicsWithWrench => "q, qd, qdd, force, moment",
                 // the moment stands behind the force
-                Function::InverseDynamicsWithWrenches => &format!("q, qd, qdd, (const {real} (*)[6])force"),
-                Function::ForwardDynamicsWithWrenches => &format!("q, qd, tau, (const {real} (*)[6])force"),
+                Function::InverseDynamicsWithWrenches | Function::InverseDynamicsDerivativesWithWrenches => {
+                    &format!("q, qd, qdd, (const {real} (*)[6])force")
+                }
+                Function::ForwardDynamicsWithWrenches | Function::ForwardDynamicsDerivativesWithWrenches => {
+                    &format!("q, qd, tau, (const {real} (*)[6])force")
+                }
                 Function::InverseDynamicsWithPayload | Function::InverseDynamicsDerivativesWithPayload => {
                     "q, qd, qdd, payload"
                 }
                 Function::GravityTorquesWithPayload | Function::MassMatrixWithPayload => "q, payload",
                 Function::BiasTorquesWithPayload => "q, qd, payload",
-                Function::ForwardDynamicsWithPayload | Function::MomentumAndRateWithPayload => "q, qd, tau, payload",
+                Function::ForwardDynamicsWithPayload
+                | Function::MomentumAndRateWithPayload
+                | Function::ForwardDynamicsDerivativesWithPayload => "q, qd, tau, payload",
+                Function::InverseMassMatrixTimesTorques => "q, tau",
                 Function::InverseDynamicsFromSinCos => "sine, cosine, q, qd, qdd",
                 Function::GravityTorques
                 | Function::MassMatrix
@@ -151,6 +158,7 @@ impl Driver<'_> {
                 | Function::ForwardKinematics
                 | Function::LinkPoses
                 | Function::Jacobian
+                | Function::JacobianDerivatives
                 | Function::PotentialEnergy
                 | Function::CentreOfMass
                 | Function::CentreOfMassJacobian
@@ -160,6 +168,7 @@ impl Driver<'_> {
                 Function::BiasTorques
                 | Function::CoriolisMatrix
                 | Function::JacobianRateTimesVelocity
+                | Function::JacobianRate
                 | Function::KineticEnergy => "q, qd",
                 Function::ForwardDynamics | Function::MomentumAndRate | Function::ForwardDynamicsDerivatives => {
                     "q, qd, tau"
@@ -199,18 +208,23 @@ impl Driver<'_> {
                 | Function::CoriolisMatrix => (format!("{real} x[{n}][{n}]"), "x"),
                 Function::ForwardKinematics => (format!("{prefix}_pose x"), "&x"),
                 Function::LinkPoses => (format!("{prefix}_pose x[{n}]"), "x"),
-                Function::Jacobian => (format!("{real} x[6][{n}]"), "x"),
+                Function::Jacobian | Function::JacobianRate => (format!("{real} x[6][{n}]"), "x"),
+                Function::JacobianDerivatives => (format!("{real} x[6][{n}][{n}]"), "x"),
                 Function::CentreOfMass => (format!("{real} x[3]"), "x"),
                 Function::CentreOfMassJacobian => (format!("{real} x[3][{n}]"), "x"),
                 Function::JacobianRateTimesVelocity | Function::CentroidalBias | Function::CentroidalMomentum => {
                     (format!("{real} x[6]"), "x")
                 }
                 Function::Regressor => (format!("{real} x[{n}][{n}][10]"), "x"),
-                Function::InverseDynamicsDerivatives | Function::InverseDynamicsDerivativesWithPayload => {
-                    (format!("{prefix}_torque_derivatives x"), "&x")
-                }
+                Function::InverseDynamicsDerivatives
+                | Function::InverseDynamicsDerivativesWithPayload
+                | Function::InverseDynamicsDerivativesWithWrenches => (format!("{prefix}_torque_derivatives x"), "&x"),
                 Function::TorqueGradient => (format!("{prefix}_gradient x"), "&x"),
-                Function::ForwardDynamicsDerivatives => (format!("{prefix}_acceleration_derivatives x"), "&x"),
+                Function::ForwardDynamicsDerivatives
+                | Function::ForwardDynamicsDerivativesWithWrenches
+                | Function::ForwardDynamicsDerivativesWithPayload => {
+                    (format!("{prefix}_acceleration_derivatives x"), "&x")
+                }
                 Function::MomentumAndRate | Function::MomentumAndRateWithPayload => {
                     (format!("{prefix}_momentum x"), "&x")
                 }

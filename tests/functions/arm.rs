@@ -414,6 +414,18 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
         Function::ForwardDynamicsDerivatives => {
             arm.forward_dynamics_derivatives(q, qd, tau).map(|by| flat([by.dq, by.dqd, by.dtau].concat()))
         }
+        Function::JacobianRate => arm.jacobian_rate(q, qd).map(flat),
+        Function::JacobianDerivatives => arm.jacobian_derivatives(q).map(|rows| flat(rows.concat())),
+        Function::InverseMassMatrixTimesTorques => arm.inverse_mass_matrix_times_torques(q, tau),
+        Function::InverseDynamicsDerivativesWithWrenches => arm
+            .inverse_dynamics_derivatives_with_wrenches(q, qd, qdd, &wrenches)
+            .map(|by| flat([by.dq, by.dqd].concat())),
+        Function::ForwardDynamicsDerivativesWithWrenches => arm
+            .forward_dynamics_derivatives_with_wrenches(q, qd, tau, &wrenches)
+            .map(|by| flat([by.dq, by.dqd, by.dtau].concat())),
+        Function::ForwardDynamicsDerivativesWithPayload => arm
+            .forward_dynamics_derivatives_with_payload(q, qd, tau, payload)
+            .map(|by| flat([by.dq, by.dqd, by.dtau].concat())),
         Function::JointWrenches => arm
             .joint_wrenches(q, qd, qdd)
             .map(|wrenches| wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment].concat()).collect()),

@@ -99,10 +99,13 @@ fn projected(function: Function, ratios: &[Vec<f64>], is_coordinate: &[bool], nu
     match function {
         Function::MassMatrix
         | Function::MassMatrixWithPayload
+        | Function::JacobianDerivatives
         | Function::CoriolisMatrix
         | Function::InverseDynamicsDerivatives
-        | Function::InverseDynamicsDerivativesWithPayload => rows().chunks(dof).flat_map(matrix).collect(),
+        | Function::InverseDynamicsDerivativesWithPayload
+        | Function::InverseDynamicsDerivativesWithWrenches => rows().chunks(dof).flat_map(matrix).collect(),
         Function::Jacobian
+        | Function::JacobianRate
         | Function::CentreOfMassJacobian
         | Function::MomentumAndRate
         | Function::MomentumAndRateWithPayload

@@ -5,7 +5,7 @@
 
 use fastrand::Rng;
 use rne::{BaseMotion, Payload, Wrench};
-use rne_codegen::{Argument, Form, Function};
+use rne_codegen::{Argument, Capability, Form, Function};
 use rne_model::{Dh, Robot};
 
 use crate::arm::{Arm, Given, Maker, base_rotation, of_runtime};
@@ -15,7 +15,7 @@ use crate::golden::ROBOTS;
 use crate::trees::contact_condition;
 
 /// Functions whose seven steps are the runtime's operations, in its order.
-const SAME_BITS: [Function; 33] = [
+const SAME_BITS: [Function; 35] = [
     Function::InverseDynamics,
     Function::InverseDynamicsWithWrench,
     Function::InverseDynamicsWithPayload,
@@ -49,6 +49,8 @@ const SAME_BITS: [Function; 33] = [
     Function::FloatingKineticEnergy,
     Function::CentroidalMomentum,
     Function::FloatingInverseDynamicsDerivatives,
+    Function::InverseMassMatrixTimesTorques,
+    Function::InverseDynamicsDerivativesWithWrenches,
 ];
 
 /// Of the largest number of the result.
@@ -80,7 +82,8 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
         | Function::GravityTorques
         | Function::BiasTorques
         | Function::FloatingInverseDynamicsDerivatives
-        | Function::InverseDynamicsDerivatives => LEAST * of(Function::JointWrenches),
+        | Function::InverseDynamicsDerivatives
+        | Function::InverseDynamicsDerivativesWithWrenches => LEAST * of(Function::JointWrenches),
         Function::TorqueGradient => LEAST * of(Function::JointWrenches) * largest(given.tau),
         // the joints carry the payload, too
         Function::GravityTorquesWithPayload
@@ -96,6 +99,9 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
             LEAST * mass * largest(&arm.robot.gravity) * reach(arm, given)
         }
         Function::CentreOfMass | Function::CentreOfMassJacobian => LEAST * reach(arm, given),
+        // axes have the length one
+        Function::JacobianRate => (1.0 + reach(arm, given)) * largest(given.qd),
+        Function::JacobianDerivatives => 1.0 + reach(arm, given),
         Function::WrenchTorques => {
             let Wrench { force, moment } = given.wrench;
             LEAST * (largest(&moment) + largest(&force) * (1.0 + reach(arm, given)))
@@ -106,11 +112,25 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
 
 /// Compares all functions of an arm at a state.
 pub(crate) fn compare(arm: &Arm, maker: Maker, given: &Given<'_, f64>, tolerance: f64, worst: &mut Worst) {
-    let takes = |function: &Function| !(arm.robot.has_couplings() && function.is_of_every_link());
+    // code has the rates of the tip alone, where the runtime has those at the frame that a robot is seen from
+    let is_of_tip = |function: &Function| function.capability() == Capability::JacobianDerivatives;
+    let takes = |function: &Function| {
+        !(arm.robot.has_couplings() && function.is_of_every_link()) && !(arm.robot.at.is_some() && is_of_tip(function))
+    };
     for function in Function::OF_TREES.into_iter().filter(takes) {
         let found = arm.numbers(function, given);
         worst.see(function.name(), error(arm, maker, function, given, &found, tolerance));
     }
+}
+
+/// How far derivatives of the accelerations are from those expected, beside derivatives of the torques: each of the
+/// three matrices is a product with M⁻¹.
+pub(crate) fn error_of_accelerations(found: &[f64], expected: &[f64], of_torques: f64, of_mass: &Conditioning) -> f64 {
+    let &Conditioning { number, largest } = of_mass;
+    let by_state = of_torques * number / largest;
+    let (found, expected) = (found.chunks(found.len() / 3), expected.chunks(expected.len() / 3));
+    let parts = found.zip(expected).zip([by_state, by_state, number / largest]);
+    parts.fold(0.0, |worst, ((found, expected), scale)| worst.max(error_on_scale(found, expected, scale) / number))
 }
 
 /// How far what is found is from the runtime, of its scale and, for accelerations, of the condition of M.
@@ -130,6 +150,7 @@ pub(crate) fn error(
         && [
             Function::InverseDynamicsDerivatives,
             Function::InverseDynamicsDerivativesWithPayload,
+            Function::InverseDynamicsDerivativesWithWrenches,
             Function::FloatingInverseDynamicsDerivatives,
             Function::InverseDynamicsFromSinCos,
         ]
@@ -169,26 +190,32 @@ pub(crate) fn error(
             }
             error_on_scale(found, &expected, 0.0) / number
         }
-        Function::ForwardDynamicsDerivatives => {
-            let matrix = arm.runtime.mass_matrix(given.q).expect("one per joint");
+        Function::ForwardDynamicsDerivatives
+        | Function::ForwardDynamicsDerivativesWithWrenches
+        | Function::ForwardDynamicsDerivativesWithPayload => {
+            let payload = if function.takes(Argument::Payload) { given.payload } else { Payload::none() };
+            let matrix = arm.runtime.mass_matrix_with_payload(given.q, &payload).expect("one per joint");
             let Some(Conditioning { number, largest: of_matrix }) = conditioning(&matrix) else { return 0.0 };
             if number >= 1e12 {
                 return 0.0;
             }
-            let qdd = arm.runtime.forward_dynamics(given.q, given.qd, given.tau).expect("one per joint");
-            let of_torques = Given { qdd: &qdd, ..*given };
-            let of_torques = largest(&of_runtime(&arm.runtime, Function::InverseDynamicsDerivatives, &of_torques));
-            // each of the three matrices is a product with M⁻¹
-            let elements = matrix.len() * matrix.len();
-            let by_state = of_torques * number / of_matrix;
-            let parts =
-                found.chunks(elements).zip(expected.chunks(elements)).zip([by_state, by_state, number / of_matrix]);
-            parts.fold(0.0, |worst: f64, ((found, expected), scale)| {
-                worst.max(error_on_scale(found, expected, scale) / number)
-            })
+            let (solved, torques) = match function {
+                Function::ForwardDynamicsDerivatives => {
+                    (Function::ForwardDynamics, Function::InverseDynamicsDerivatives)
+                }
+                Function::ForwardDynamicsDerivativesWithPayload => {
+                    (Function::ForwardDynamicsWithPayload, Function::InverseDynamicsDerivativesWithPayload)
+                }
+                _ => (Function::ForwardDynamicsWithWrenches, Function::InverseDynamicsDerivativesWithWrenches),
+            };
+            let qdd = of_runtime(&arm.runtime, solved, given);
+            let given = &Given { qdd: &qdd, ..*given };
+            let of_torques = largest(&of_runtime(&arm.runtime, torques, given)).max(scale(arm, torques, given));
+            error_of_accelerations(found, &expected, of_torques, &Conditioning { number, largest: of_matrix })
         }
         Function::ForwardDynamics
         | Function::InverseMassMatrix
+        | Function::InverseMassMatrixTimesTorques
         | Function::ForwardDynamicsWithPayload
         | Function::ForwardDynamicsWithWrenches
         | Function::FloatingForwardDynamics => {

@@ -14,6 +14,7 @@ mod compiled_trees;
 mod compiler;
 mod conventions;
 mod couplings;
+mod derivatives;
 #[path = "../c_code/driver.rs"]
 mod driver;
 mod energy;

@@ -10,6 +10,7 @@ use rne_model::{Inertia, Link, Robot};
 use crate::arm::{Arm, Given, Maker, of_runtime};
 use crate::case::{self, Case, largest};
 use crate::check::{Conditioning, Worst, conditioning, error_on_scale, relative_error};
+use crate::equality::error_of_accelerations;
 use crate::golden::ROBOTS;
 
 const TOLERANCE: f64 = 1e-13;
@@ -102,6 +103,13 @@ fn a_link_that_carries_it_is_the_lumped_one() {
     worst.at_most(TOLERANCE, "a link that carries a payload");
 }
 
+/// The largest derivative of the torques at the accelerations of an arm.
+fn of_torques(arm: &DynArm, given: &Given<'_, f64>) -> f64 {
+    let qdd = &of_runtime(arm, Function::ForwardDynamics, given);
+    let of = |function| largest(&of_runtime(arm, function, &Given { qdd, ..*given }));
+    of(Function::InverseDynamicsDerivatives).max(1e-2 * of(Function::JointWrenches))
+}
+
 /// The functions that have one with a payload, and those with it.
 fn pairs() -> impl Iterator<Item = (Function, Function)> {
     Function::OF_TREES.into_iter().filter_map(|function| Some((function, function.with_payload()?)))
@@ -110,7 +118,7 @@ fn pairs() -> impl Iterator<Item = (Function, Function)> {
 /// Every function with a payload is the function without one of the arm whose last link has the payload.
 #[test]
 fn every_function_is_that_of_the_lumped_arm() {
-    assert_eq!(pairs().count(), 7);
+    assert_eq!(pairs().count(), 8);
     for maker in Maker::ALL {
         let mut worst = Worst::default();
         for case in case::cases(maker) {
@@ -131,6 +139,12 @@ fn every_function_is_that_of_the_lumped_arm() {
                         }
                         let scale = largest(given.tau).max(of(Function::BiasTorques)) / of_matrix;
                         worst.see(with.name(), error_on_scale(&found, &expected, scale) / number.max(1.0));
+                        continue;
+                    }
+                    Function::ForwardDynamicsDerivatives => {
+                        let Some(of_mass) = condition.as_ref().filter(|of_mass| of_mass.number < 1e8) else { continue };
+                        let error = error_of_accelerations(&found, &expected, of_torques(&lumped, &given), of_mass);
+                        worst.see(with.name(), error);
                         continue;
                     }
                     Function::MassMatrix => of(Function::MassMatrix),
@@ -159,6 +173,12 @@ fn without_mass_and_inertia_every_function_is_that_of_the_arm_alone() {
                     if expected.iter().all(|x| x.is_finite()) {
                         assert_eq!(found, expected, "{with}");
                     }
+                    continue;
+                }
+                if without == Function::ForwardDynamicsDerivatives {
+                    let Some(of_mass) = condition.as_ref().filter(|of_mass| of_mass.number < 1e8) else { continue };
+                    let of_torques = of_torques(&case.arm.runtime, &given);
+                    worst.see(with.name(), error_of_accelerations(&found, &expected, of_torques, of_mass));
                     continue;
                 }
                 let number = match (without, condition) {

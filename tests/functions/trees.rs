@@ -174,6 +174,11 @@ fn in_contact(robot: &Robot, state: &State) -> Vec<f64> {
     [&solution.as_slice()[..size], &wrenches].concat()
 }
 
+/// The products of the rows of a matrix, which are as long as `x`, with it.
+fn times_rows(rows: &[f64], x: &[f64]) -> Vec<f64> {
+    rows.chunks(x.len()).map(|row| row.iter().zip(x).map(|(a, b)| a * b).sum()).collect()
+}
+
 /// What a function returns, without a recursion. Of the functions that solve with the mass matrix, the solution of
 /// nalgebra.
 #[allow(clippy::too_many_lines)] // an arm for each function
@@ -192,11 +197,6 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
     let tip = function.frame(robot).map_or_else(|| robot.tip(), |frame| robot.fixed_frame(frame));
     let of_tip = || oracle::jacobian(robot, &tip, q, &Vector3::zeros());
     let of_wrench = || of_wrench_at(robot, &tip, q, wrench);
-    let of_wrenches = || {
-        let tips = robot.wrench_frames();
-        let parts = tips.iter().zip(at_tips(tips.len(), wrench));
-        parts.fold(zeros.clone(), |all, (tip, wrench)| sum(&all, &of_wrench_at(robot, tip, q, &wrench)))
-    };
     let floating_at = |q: &[f64], qd: &[f64], qdd: &[f64], base: BaseMotion<f64>| {
         let tips = robot.wrench_frames();
         let mut numbers = of_floating_base(robot, &Motion { joints: [q, qd, qdd], base });
@@ -228,6 +228,16 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
         let column = |joint| oracle::by_rate(qd, joint, |qd| torques(q, qd, qdd, fixed));
         transposed((0..dof).map(column).collect())
     };
+    // with the wrenches of the tips, if the function takes them
+    let with_wrenches = |q: &[f64], torques: Vec<f64>| {
+        let tips = robot.wrench_frames().into_iter().filter(|_| function.takes(Argument::Wrenches));
+        let parts = tips.zip(at_tips(robot.tip_count(), wrench));
+        parts.fold(torques, |all, (tip, wrench)| sum(&all, &of_wrench_at(robot, &tip, q, &wrench)))
+    };
+    let by_positions = |qdd: &[f64]| -> Vec<f64> {
+        let all = |q: &[f64]| with_wrenches(q, torques(q, qd, qdd, fixed));
+        transposed((0..dof).map(|joint| oracle::by_position(robot, q, joint, all)).collect())
+    };
     let solved = |right: DMatrix<f64>| {
         let matrix = DMatrix::from_row_slice(dof, dof, &flat(mass_matrix()));
         let solution = matrix.lu().solve(&right).unwrap_or_else(|| DMatrix::from_element(dof, right.ncols(), f64::NAN));
@@ -238,9 +248,9 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
             torques(q, qd, qdd, fixed)
         }
         Function::InverseDynamicsWithWrench => sum(&torques(q, qd, qdd, fixed), &of_wrench()),
-        Function::InverseDynamicsWithWrenches => sum(&torques(q, qd, qdd, fixed), &of_wrenches()),
+        Function::InverseDynamicsWithWrenches => with_wrenches(q, torques(q, qd, qdd, fixed)),
         Function::ForwardDynamicsWithWrenches => {
-            let bias = sum(&torques(q, qd, &zeros, fixed), &of_wrenches());
+            let bias = with_wrenches(q, torques(q, qd, &zeros, fixed));
             solved(DMatrix::from_fn(dof, 1, |joint, _| tau[joint] - bias[joint]))
         }
         Function::InverseDynamicsOnMovingBase => torques(q, qd, qdd, *base),
@@ -300,15 +310,15 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
         Function::BiasTorques | Function::BiasTorquesWithPayload => torques(q, qd, &zeros, fixed),
         Function::MassMatrix | Function::MassMatrixWithPayload => flat(mass_matrix()),
         Function::InverseMassMatrix => solved(DMatrix::identity(dof, dof)),
+        Function::InverseMassMatrixTimesTorques => solved(DMatrix::from_column_slice(dof, 1, tau)),
         Function::ForwardDynamics | Function::ForwardDynamicsWithPayload => {
             let bias = torques(q, qd, &zeros, fixed);
             solved(DMatrix::from_fn(dof, 1, |joint, _| tau[joint] - bias[joint]))
         }
         Function::CoriolisMatrix => by_rates(&zeros).iter().map(|element| element / 2.0).collect(),
-        Function::InverseDynamicsDerivatives | Function::InverseDynamicsDerivativesWithPayload => {
-            let column = |joint| oracle::by_position(robot, q, joint, |q| torques(q, qd, qdd, fixed));
-            [transposed((0..dof).map(column).collect()), by_rates(qdd)].concat()
-        }
+        Function::InverseDynamicsDerivatives
+        | Function::InverseDynamicsDerivativesWithPayload
+        | Function::InverseDynamicsDerivativesWithWrenches => [by_positions(qdd), by_rates(qdd)].concat(),
         // the multipliers are the torques of the state
         Function::TorqueGradient => {
             let weighted = |torques: Vec<f64>| vec![torques.iter().zip(tau).map(|(a, b)| a * b).sum::<f64>()];
@@ -317,14 +327,15 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
             let by_qdd = times(&mass_matrix(), tau);
             [(0..dof).map(by_q).collect(), (0..dof).map(by_qd).collect(), by_qdd].concat()
         }
-        Function::ForwardDynamicsDerivatives => {
-            let bias = torques(q, qd, &zeros, fixed);
+        Function::ForwardDynamicsDerivatives
+        | Function::ForwardDynamicsDerivativesWithWrenches
+        | Function::ForwardDynamicsDerivativesWithPayload => {
+            let bias = with_wrenches(q, torques(q, qd, &zeros, fixed));
             let qdd = &solved(DMatrix::from_fn(dof, 1, |joint, _| tau[joint] - bias[joint]));
             if !qdd.iter().all(|x| x.is_finite()) {
                 return vec![f64::NAN; 3 * dof * dof];
             }
-            let by_q = |joint| oracle::by_position(robot, q, joint, |q| torques(q, qd, qdd, fixed));
-            let by_q = solved(-DMatrix::from_row_slice(dof, dof, &transposed((0..dof).map(by_q).collect())));
+            let by_q = solved(-DMatrix::from_row_slice(dof, dof, &by_positions(qdd)));
             let by_qd = solved(-DMatrix::from_row_slice(dof, dof, &by_rates(qdd)));
             [by_q, by_qd, solved(DMatrix::identity(dof, dof))].concat()
         }
@@ -356,6 +367,15 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
             let motion = Motion { joints: [q, qd, &zeros], ..still };
             let [_, parts] = oracle::rates(&oracle::frame(robot, &tip, &motion), &Vector3::zeros());
             parts.iter().flat_map(|part| (world.0 * part).as_slice().to_vec()).collect()
+        }
+        Function::JacobianRate | Function::JacobianDerivatives => {
+            let elements = |q: &[f64]| {
+                let columns = oracle::jacobian(robot, &tip, q, &Vector3::zeros());
+                rows(&columns.iter().map(|it| it.map(|part| world.0 * part)).collect::<Vec<_>>())
+            };
+            let by: Vec<Vec<f64>> = (0..dof).map(|joint| oracle::by_position(robot, q, joint, elements)).collect();
+            let by = transposed(by);
+            if function == Function::JacobianDerivatives { by } else { times_rows(&by, qd) }
         }
         Function::WrenchTorques => of_wrench(),
         Function::KineticEnergy => vec![oracle::kinetic_energy(robot, q, qd, None)],
@@ -437,7 +457,10 @@ pub(crate) fn scale(robot: &Robot, function: Function, state: &State) -> f64 {
         | Function::CoriolisMatrix
         | Function::InverseDynamicsDerivatives
         | Function::FloatingInverseDynamicsDerivatives
-        | Function::InverseDynamicsDerivativesWithPayload => largest,
+        | Function::InverseDynamicsDerivativesWithPayload
+        | Function::InverseDynamicsDerivativesWithWrenches => largest,
+        Function::JacobianRate => state.qd.iter().fold(0.0, |most, qd| f64::max(most, qd.abs())),
+        Function::JacobianDerivatives => 1.0,
         // centripetal, one metre from an axis
         Function::JacobianRateTimesVelocity => state.qd.iter().map(|qd| qd * qd).fold(0.0, f64::max),
         Function::TipAccelerations => state.qd.iter().chain(&state.base.omega).map(|qd| qd * qd).fold(0.0, f64::max),

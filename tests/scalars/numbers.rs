@@ -23,7 +23,7 @@ fn close<T: Copy>(
     for ((name, found), (_, expected)) in found.iter().zip(expected) {
         assert_eq!(found.len(), expected.len());
         let scale = expected.iter().fold(0.0_f64, |scale, x| scale.max(x.abs()));
-        let inverts = ["forward_dynamics", "inverse_mass_matrix"].contains(name);
+        let inverts = ["forward_dynamics", "inverse_mass_matrix", "inverse_mass_matrix_times_torques"].contains(name);
         let tolerance = if inverts { CONDITION * tolerance } else { tolerance };
         for (&found, &expected) in found.iter().zip(expected) {
             let error = (read(found) - expected).abs();

@@ -110,6 +110,7 @@ pub(crate) fn all<const DOF: usize, T: Scalar>(
         ("bias_torques", robot.bias_torques(q, qd).to_vec()),
         ("mass_matrix", robot.mass_matrix(q).concat()),
         ("inverse_mass_matrix", robot.inverse_mass_matrix(q).concat()),
+        ("inverse_mass_matrix_times_torques", robot.inverse_mass_matrix_times_torques(q, qdd).to_vec()),
         ("coriolis_matrix", robot.coriolis_matrix(q, qd).concat()),
         ("forward_dynamics", robot.forward_dynamics(q, qd, qdd).to_vec()),
         ("forward_kinematics", of_pose(&robot.forward_kinematics(q))),

@@ -7,6 +7,7 @@ mod batch_profile;
 mod capi;
 mod certificate;
 mod counts;
+mod derivatives;
 mod doors;
 mod features;
 mod fleet;
@@ -76,6 +77,7 @@ enum Task {
     Light(light::Light),
     Lines(lines::Lines),
     Loops(loops::Loops),
+    Derivatives(derivatives::Derivatives),
     Prose(prose::Prose),
     Package(package::Package),
     Tool(tool::Tool),
@@ -126,6 +128,7 @@ impl Task {
             Self::Light(_) => ("light", false, light::Light::run()),
             Self::Lines(task) => ("lines", false, task.run()),
             Self::Loops(task) => ("loops", false, task.run()),
+            Self::Derivatives(task) => ("derivatives", false, task.run()),
             Self::Prose(task) => ("prose", false, task.run()),
             Self::Package(task) => ("package", false, task.run()),
             Self::Tool(task) => ("tool", task.install, task.run()),

@@ -65,6 +65,9 @@ macro_rules! returned {
     (SpatialRows) => {
         "shape (6, n) or (N, 6, n)."
     };
+    (SpatialMatrices) => {
+        "shape (6, n, n) or (N, 6, n, n)."
+    };
     (Pose) => {
         "a homogeneous matrix: shape (4, 4) or (N, 4, 4)."
     };
@@ -192,6 +195,9 @@ macro_rules! method {
     };
     (InverseDynamicsDerivatives $($rest:tt)*) => {
         loaded! { InverseDynamicsDerivatives InverseDynamicsDerivativesWithPayload $($rest)* }
+    };
+    (ForwardDynamicsDerivatives $($rest:tt)*) => {
+        loaded! { ForwardDynamicsDerivatives ForwardDynamicsDerivativesWithPayload $($rest)* }
     };
     (MomentumAndRate $($rest:tt)*) => {
         loaded! { MomentumAndRate MomentumAndRateWithPayload $($rest)* }

@@ -86,7 +86,7 @@ macro_rules! methods {
                 rne::InverseDynamics, rne::MassMatrix, rne::CoriolisMatrix, rne::ForwardDynamics, rne::Kinematics,
                 rne::Energy, rne::CentreOfMass, rne::Regressor, rne::InverseDynamicsDerivatives, rne::JointWrenches,
                 rne::MomentumObserver, rne::MovingBase, rne::Actuation, rne::PayloadDynamics,
-                rne::InverseDynamicsGradient, rne::ForwardDynamicsDerivatives,
+                rne::InverseDynamicsGradient, rne::ForwardDynamicsDerivatives, rne::JacobianDerivatives,
             )]
             #[robot(path = "../../../robots/puma560.yaml", form = $name)]
             struct Robot;
@@ -163,6 +163,12 @@ methods! {
     PayloadDynamics: momentum_and_rate_with_payload(
         q: [f32; 6], qd: [f32; 6], tau: [f32; 6], payload: Payload<f32>
     ) -> MomentumAndRate<6, f32>;
+    MassMatrix: inverse_mass_matrix_times_torques(q: [f32; 6], tau: [f32; 6]) -> [f32; 6];
+    PayloadDynamics: forward_dynamics_derivatives_with_payload(
+        q: [f32; 6], qd: [f32; 6], tau: [f32; 6], payload: Payload<f32>
+    ) -> AccelerationDerivatives<6, f32>;
+    JacobianDerivatives: jacobian_rate(q: [f32; 6], qd: [f32; 6]) -> [[f32; 6]; 6];
+    JacobianDerivatives: jacobian_derivatives(q: [f32; 6]) -> [[[f32; 6]; 6]; 6];
     InverseDynamicsGradient: torque_gradient(
         q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], multipliers: [f32; 6]
     ) -> TorqueGradient<6, f32>;

@@ -262,6 +262,7 @@ fn of_eval() -> String {
          inverse_dynamics_derivatives, joint_wrenches; with --wrench inverse_dynamics_with_wrench, with --payload \
          inverse_dynamics_with_payload, with the --base-… options inverse_dynamics_on_moving_base",
     );
+    row("--q --tau", &functions_of(&[Positions, Torques]));
     row("--q --qd --tau", &functions_of(&[Positions, Rates, Torques]));
     row("--q --qd --qdd --multipliers", &functions_of(&[Positions, Rates, Accelerations, Multipliers]));
     row("--qd --qdd", "actuator_torques (zero for a joint without a motor)");

@@ -63,6 +63,8 @@ fn size(function: Function, state: &State, arm: &DynArm) -> Result<f64, Failure>
             | Function::LinkPoses
             | Function::Jacobian
             | Function::JacobianRateTimesVelocity
+            | Function::JacobianRate
+            | Function::JacobianDerivatives
             | Function::CentreOfMass
             | Function::CentreOfMassJacobian
     );

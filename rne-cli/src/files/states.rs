@@ -87,7 +87,7 @@ fn restricted(compiled: &CompiledFunction) -> Restricted {
 /// places in it, from 1, as those of a matrix by row and column.
 fn results(function: Function, arm: &CompiledArm) -> Vec<String> {
     let symbol = match function {
-        Function::ForwardDynamics | Function::ForwardDynamicsWithWrenches => Some("qdd"),
+        _ if function.returns_accelerations() => Some("qdd"),
         _ if *function.answer() == Answer::Torques => Some("tau"),
         _ => None,
     };

@@ -483,7 +483,8 @@ fn not_taken(function: Function, name: &str, kind: Argument) -> Failure {
         }
         [only] => format!("; {only} does"),
         [some @ .., last] if others.len() <= MOST_NAMED => format!("; {} and {last} do", some.join(", ")),
-        _ => String::new(),
+        [] => String::new(),
+        _ => "; `rne explain arguments` lists the functions that do".to_owned(),
     };
     Failure::usage(format_args!("{function} takes no {name}{hint}"))
 }

@@ -92,6 +92,72 @@ pub(crate) fn jacobian<'s>(arm: &Arm<'s>, frames: &Frames<'s>) -> Vec<[Vector<'s
     columns.collect()
 }
 
+/// The columns of J̇. The link before joint i has the angular velocity ω; joint i and those behind it move the tip with
+/// the velocity u:
+///
+/// ω × J_v + z_i × u, ω × z_i (revolute);   ω × z_i, 0 (prismatic)
+pub(crate) fn jacobian_rate<'s>(arm: &Arm<'s>, states: &[JointState<'s>], frames: &Frames<'s>) -> Vec<[Vector<'s>; 2]> {
+    let builder = arm.builder;
+    let columns = jacobian(arm, frames);
+    let still = builder.zeros(Cause::BehindFrame);
+    let mut behind = vec![builder.zeros(Cause::FixedBase); columns.len() + 1];
+    for index in (0..columns.len()).rev() {
+        behind[index] = behind[index + 1];
+        if arm.moves_tip(index) {
+            let sum = || columns[index][0] * states[index].qd + behind[index + 1];
+            behind[index] = builder.joint(index + 1).within(Quantity::JacobianLinearRate, sum);
+        }
+    }
+    let mut omega = builder.zeros(Cause::FixedBase);
+    let column = |(index, link): (usize, &Link<'s>)| {
+        let (line, [linear, axis]) = (builder.joint(index + 1), columns[index]);
+        if !arm.moves_tip(index) {
+            return [still; 2];
+        }
+        let (linear, angular) = match link.kind {
+            Revolute => {
+                let before = omega;
+                omega = line.within(Quantity::JacobianAngularRate, || axis * states[index].qd + before);
+                let linear = || before.cross(linear) + axis.cross(behind[index]);
+                (line.within(Quantity::JacobianLinearRate, linear), before.cross(axis))
+            }
+            Prismatic => {
+                (line.within(Quantity::JacobianLinearRate, || omega.cross(linear)), builder.zeros(Cause::JointAxis))
+            }
+        };
+        [
+            line.name_vector(Quantity::JacobianLinearRate, linear),
+            line.name_vector(Quantity::JacobianAngularRate, angular),
+        ]
+    };
+    arm.links.iter().enumerate().map(column).collect()
+}
+
+/// The derivatives of each column of J by the position of each joint. Joint i turns what is behind it, with the tip and
+/// the axes there, so that for i ≤ k
+///
+/// ∂J_v,k/∂q_i = ∂J_v,i/∂q_k = z_i × J_v,k (revolute i; otherwise 0);   ∂z_k/∂q_i = z_i × z_k, i < k, both revolute
+pub(crate) fn jacobian_derivatives<'s>(arm: &Arm<'s>, frames: &Frames<'s>) -> Vec<Vec<[Vector<'s>; 2]>> {
+    let builder = arm.builder;
+    let columns = jacobian(arm, frames);
+    let dof = columns.len();
+    let mut found = vec![vec![[builder.no_vector(); 2]; dof]; dof];
+    let turns = |index: usize| arm.moves_tip(index) && arm.links[index].kind == Revolute;
+    for near in (0..dof).filter(|&near| turns(near)) {
+        let axis = columns[near][1];
+        for far in (near..dof).filter(|&far| arm.moves_tip(far)) {
+            let line = builder.joint(far + 1);
+            let linear = line.within(Quantity::JacobianLinear, || axis.cross(columns[far][0]));
+            found[near][far][0] = linear;
+            found[far][near][0] = linear;
+            if far > near && turns(far) {
+                found[far][near][1] = line.within(Quantity::JacobianAngular, || axis.cross(columns[far][1]));
+            }
+        }
+    }
+    found
+}
+
 /// Linear and angular acceleration of the tip in world axes, for a base at rest and joints that do not accelerate: step
 /// 4 from joint to joint, without centres of mass. s_i = J_i → J_{i+1}, the last to the tip:
 ///

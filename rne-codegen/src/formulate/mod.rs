@@ -69,19 +69,23 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         | Function::ForwardDynamicsWithPayload
         | Function::ForwardDynamicsWithWrenches
         | Function::ForwardDynamicsOfLoops => {
-            forward_dynamics(builder, &derivation.system(), &derivation.upper_half(), derivation.tau())
+            forward_dynamics(builder, &derivation.system(), &derivation.upper_half(), &derivation.tau())
         }
         Function::ForwardKinematics => derivation.tip_pose(),
         Function::LinkPoses => derivation.link_poses(),
         Function::Jacobian => derivation.jacobian(),
         Function::JacobianRateTimesVelocity => derivation.tip_acceleration(),
+        Function::JacobianRate => derivation.jacobian_rate(),
+        Function::JacobianDerivatives => derivation.jacobian_derivatives(),
         Function::WrenchTorques => derivation.wrench_torques(),
         Function::KineticEnergy | Function::FloatingKineticEnergy => derivation.kinetic_energy(),
         Function::PotentialEnergy => derivation.potential_energy(),
         Function::CentreOfMass => derivation.centre_of_mass(),
         Function::CentreOfMassJacobian => derivation.centre_of_mass_jacobian(),
         Function::Regressor => derivation.regressor(),
-        Function::InverseDynamicsDerivatives | Function::InverseDynamicsDerivativesWithPayload => {
+        Function::InverseDynamicsDerivatives
+        | Function::InverseDynamicsDerivativesWithPayload
+        | Function::InverseDynamicsDerivativesWithWrenches => {
             derivatives(builder, derivation.coordinates(), &derivation.tau())
         }
         Function::JointWrenches => derivation.joint_wrenches(),
@@ -119,7 +123,9 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
             floating_derivatives(builder, derivation.coordinates(), derivation.floating_torques())
         }
         Function::TorqueGradient => adjoint::gradient(builder, derivation.coordinates(), &derivation.tau()),
-        Function::ForwardDynamicsDerivatives => {
+        Function::ForwardDynamicsDerivatives
+        | Function::ForwardDynamicsDerivativesWithWrenches
+        | Function::ForwardDynamicsDerivativesWithPayload => {
             let system = derivation.system();
             let inverse = adjoint::Inverse::of(builder, &system, &derivation.upper_half());
             // the same quantities come again, at these accelerations
@@ -136,6 +142,9 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::LoopMap => closure::map(builder, derivation.coordinates()),
         Function::LoopMapRateTimesVelocity => closure::bias(builder, derivation.coordinates()),
         Function::InverseMassMatrix => inverse_mass_matrix(builder, &derivation.system(), &derivation.upper_half()),
+        Function::InverseMassMatrixTimesTorques => {
+            accelerations(builder, &derivation.system(), &derivation.upper_half(), |applied, _| applied)
+        }
     };
     outputs.into_iter().map(|(name, symbol)| (name, symbol.at)).collect()
 }
@@ -302,10 +311,42 @@ impl<'s, 'r> Derivation<'s, 'r> {
 
     fn jacobian(&self) -> Outputs<'s> {
         let columns = kinematics::jacobian(&self.arm, &self.frames());
-        let of_joints = |half: usize| columns.iter().map(|column| column[half]).collect::<Vec<_>>();
-        let [linear, angular] = [0, 1].map(|half| self.columns(&of_joints(half)));
-        let by_row = |quantity, columns| by_row(self.coordinates(), quantity, columns);
-        [by_row(Quantity::JacobianLinear, &linear), by_row(Quantity::JacobianAngular, &angular)].concat()
+        self.spatial_rows([Quantity::JacobianLinear, Quantity::JacobianAngular], &columns)
+    }
+
+    fn jacobian_rate(&self) -> Outputs<'s> {
+        let columns = kinematics::jacobian_rate(&self.arm, &self.states, &self.frames());
+        self.spatial_rows([Quantity::JacobianLinearRate, Quantity::JacobianAngularRate], &columns)
+    }
+
+    /// Three linear rows, then three angular ones, of columns of the joints.
+    fn spatial_rows(&self, quantities: [Quantity; 2], columns: &[[Vector<'s>; 2]]) -> Outputs<'s> {
+        let rows = |half: usize| {
+            let of_joints: Vec<_> = columns.iter().map(|column| column[half]).collect();
+            by_row(self.coordinates(), quantities[half], &self.columns(&of_joints))
+        };
+        [rows(0), rows(1)].concat()
+    }
+
+    fn jacobian_derivatives(&self) -> Outputs<'s> {
+        let found = kinematics::jacobian_derivatives(&self.arm, &self.frames());
+        let joints = self.coordinates().joints();
+        let mut outputs = Vec::new();
+        for (row, quantity) in [Quantity::JacobianLinear, Quantity::JacobianAngular].iter().enumerate() {
+            for axis in Axis::ALL {
+                let elements: Vec<Vec<_>> = found
+                    .iter()
+                    .map(|column| column.iter().map(|parts: &[Vector<'s>; 2]| parts[row].0[axis as usize]).collect())
+                    .collect();
+                let matrix = self.coordinates().matrix(&elements);
+                outputs.extend(square(joints.len(), |column, position| {
+                    let by = Some(WithRespectTo::Position(joints[position] + 1));
+                    let name = Name { by, ..Name::vector(*quantity, joints[column] + 1, axis) };
+                    self.coordinates().named(name, matrix[column][position])
+                }));
+            }
+        }
+        outputs
     }
 
     fn tip_acceleration(&self) -> Outputs<'s> {
@@ -488,13 +529,23 @@ pub(crate) fn forward_dynamics<'s>(
     builder: &'s Builder,
     system: &System<'_>,
     upper: &[Vec<Symbol<'s>>],
-    bias: Vec<Symbol<'s>>,
+    bias: &[Symbol<'s>],
 ) -> Outputs<'s> {
-    let rest = |(&joint, torque): (&usize, Symbol<'s>)| {
+    accelerations(builder, system, upper, |applied, place| applied - bias[place])
+}
+
+/// M⁻¹ times what is left of the torques at each place.
+pub(crate) fn accelerations<'s>(
+    builder: &'s Builder,
+    system: &System<'_>,
+    upper: &[Vec<Symbol<'s>>],
+    left: impl Fn(Symbol<'s>, usize) -> Symbol<'s>,
+) -> Outputs<'s> {
+    let rest = |(place, &joint): (usize, &usize)| {
         let applied = system.coordinates.applied(builder, joint);
-        builder.joint(joint + 1).within(Quantity::Reduced, || applied - torque)
+        builder.joint(joint + 1).within(Quantity::Reduced, || left(applied, place))
     };
-    let rest: Vec<_> = system.coordinates.joints().iter().zip(bias).map(rest).collect();
+    let rest: Vec<_> = system.coordinates.joints().iter().enumerate().map(rest).collect();
     by_joint(system.coordinates, Quantity::RateDot, ldlt::solved(builder, system, upper, &rest))
 }
 

@@ -58,6 +58,8 @@ named! {
         InverseDynamicsGradient = "InverseDynamicsGradient",
         /// Derivatives of the motion from torques.
         ForwardDynamicsDerivatives = "ForwardDynamicsDerivatives",
+        /// How the Jacobian changes.
+        JacobianDerivatives = "JacobianDerivatives",
     }
 }
 

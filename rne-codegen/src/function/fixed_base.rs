@@ -11,6 +11,11 @@ const fn of_joints(about: &'static str, unit: MatrixUnit) -> AnswerTable {
     AnswerTable { about, unit: Some(unit), rows: Labels::Joints, columns: Labels::Joints }
 }
 
+/// A row for each column of the Jacobian, and a column for each position.
+const fn by_position(about: &'static str) -> AnswerTable {
+    AnswerTable::of(about, Labels::Joints, Labels::Joints)
+}
+
 /// The mass of the payload in a listing.
 const PAYLOAD_MASS: Own = Own::names(Quantity::Mass, "mass of link i; of the payload for i = n + 1");
 
@@ -82,6 +87,23 @@ const PER_TORQUE: &str =
 /// Why a mass matrix may have no inverse.
 const INVERSE_OF_NOTHING: &str =
     "the inverse is not finite: the mass matrix is singular (a joint moves no mass), or the positions are too large";
+
+const ACCELERATION_DERIVATIVES: Entry = Entry {
+    output: "derivatives",
+    listed: "returned: the rows of ∂q̈/∂q, then those of ∂q̈/∂q̇, then those of ∂q̈/∂τ",
+    answer: Answer::Tables(&[
+        AnswerTable::of("∂q̈/∂q (1/s²; rows in rad/s² or m/s², columns per rad or m)", Labels::Joints, Labels::Joints),
+        AnswerTable::of("∂q̈/∂q̇ (1/s)", Labels::Joints, Labels::Joints),
+        AnswerTable::of(PER_TORQUE, Labels::Joints, Labels::Joints),
+    ]),
+    divides: Some(
+        "the derivatives are not finite: the mass matrix is singular \
+         (a joint moves no mass), or the state is too large",
+    ),
+    inverts_mass: true,
+    feels_rotors: true,
+    ..Entry::of(Function::ForwardDynamicsDerivatives, Capability::ForwardDynamicsDerivatives)
+};
 
 /// The functions.
 pub(super) const FIXED_BASE: &[Entry] = &[
@@ -301,24 +323,54 @@ pub(super) const FIXED_BASE: &[Entry] = &[
         feels_rotors: true,
         ..Entry::of(Function::TorqueGradient, Capability::InverseDynamicsGradient)
     },
+    ACCELERATION_DERIVATIVES,
+    Entry {
+        function: Function::InverseMassMatrixTimesTorques,
+        capability: Capability::MassMatrix,
+        is_of_motion: true,
+        ..FORWARD_DYNAMICS
+    },
+    Entry {
+        function: Function::InverseDynamicsDerivativesWithWrenches,
+        capability: Capability::TipWrenches,
+        ..DERIVATIVES
+    },
+    Entry {
+        function: Function::ForwardDynamicsDerivativesWithWrenches,
+        capability: Capability::TipWrenches,
+        ..ACCELERATION_DERIVATIVES
+    },
+    Entry {
+        function: Function::ForwardDynamicsDerivativesWithPayload,
+        capability: Capability::PayloadDynamics,
+        own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
+        ..ACCELERATION_DERIVATIVES
+    },
+    Entry {
+        output: "rate",
+        listed: "returned: three linear rows, then three angular ones",
+        own: &[
+            Own::of(Quantity::JacobianLinearRate, |joint| format!("column {joint} of the rate of the Jacobian")),
+            Own::of(Quantity::JacobianAngularRate, |joint| format!("column {joint} of the rate of the Jacobian")),
+        ],
+        answer: Answer::Tables(&[AnswerTable::of(
+            "acceleration of the tip per joint velocity, world axes: v in m/s², w in rad/s²",
+            Labels::Names(&["vx", "vy", "vz", "wx", "wy", "wz"]),
+            Labels::Joints,
+        )]),
+        ..Entry::of(Function::JacobianRate, Capability::JacobianDerivatives)
+    },
     Entry {
         output: "derivatives",
-        listed: "returned: the rows of ∂q̈/∂q, then those of ∂q̈/∂q̇, then those of ∂q̈/∂τ",
+        listed: "returned: six matrices, of vx, vy, vz, wx, wy, wz: the column of the Jacobian, then the position",
         answer: Answer::Tables(&[
-            AnswerTable::of(
-                "∂q̈/∂q (1/s²; rows in rad/s² or m/s², columns per rad or m)",
-                Labels::Joints,
-                Labels::Joints,
-            ),
-            AnswerTable::of("∂q̈/∂q̇ (1/s)", Labels::Joints, Labels::Joints),
-            AnswerTable::of(PER_TORQUE, Labels::Joints, Labels::Joints),
+            by_position("∂(row vx of the Jacobian)/∂q, world axes"),
+            by_position("∂(row vy)/∂q"),
+            by_position("∂(row vz)/∂q"),
+            by_position("∂(row wx)/∂q"),
+            by_position("∂(row wy)/∂q"),
+            by_position("∂(row wz)/∂q"),
         ]),
-        divides: Some(
-            "the derivatives are not finite: the mass matrix is singular \
-             (a joint moves no mass), or the state is too large",
-        ),
-        inverts_mass: true,
-        feels_rotors: true,
-        ..Entry::of(Function::ForwardDynamicsDerivatives, Capability::ForwardDynamicsDerivatives)
+        ..Entry::of(Function::JacobianDerivatives, Capability::JacobianDerivatives)
     },
 ];

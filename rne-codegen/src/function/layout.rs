@@ -86,6 +86,8 @@ pub enum Returned {
     TorqueGradient,
     /// Three matrices.
     AccelerationDerivatives,
+    /// A matrix for each of three linear coordinates, then of three angular ones.
+    SpatialMatrices,
 }
 
 impl Returned {
@@ -125,6 +127,7 @@ impl Returned {
             }
             Self::TorqueGradient => &Shape::Record(Record::TorqueGradient, &[VECTOR, VECTOR, VECTOR]),
             Self::AccelerationDerivatives => &Shape::Record(Record::AccelerationDerivatives, &[MATRIX, MATRIX, MATRIX]),
+            Self::SpatialMatrices => &Shape::Array(Length::Fixed(6), &MATRIX),
             Self::AccelerationsAndWrenches => {
                 &Shape::Record(Record::AccelerationsAndWrenches, &[ACCELERATIONS, Shape::Array(Length::Tips, &WRENCH)])
             }

@@ -115,6 +115,7 @@ impl Function {
             Self::MassMatrix => Some(Self::MassMatrixWithPayload),
             Self::ForwardDynamics => Some(Self::ForwardDynamicsWithPayload),
             Self::InverseDynamicsDerivatives => Some(Self::InverseDynamicsDerivativesWithPayload),
+            Self::ForwardDynamicsDerivatives => Some(Self::ForwardDynamicsDerivativesWithPayload),
             Self::MomentumAndRate => Some(Self::MomentumAndRateWithPayload),
             _ => None,
         }

@@ -322,6 +322,37 @@ macro_rules! functions {
                 "dq[i][j], dqd[i][j], dtau[i][j]: of acceleration i, by joint j; -M⁻¹ times the derivatives of the \
                  torques at these accelerations, and M⁻¹, which is symmetric. A singular mass matrix (a joint that \
                  moves nothing) gives numbers that are not finite.";
+            InverseMassMatrixTimesTorques = inverse_mass_matrix_times_torques(q: Positions, tau: Torques) -> Vector:
+                "M(q)⁻¹ τ: the accelerations that torques add, in fewer operations than the inverse has.",
+                "qdd: accelerations for the torques tau from rest and without gravity; at any motion, how the \
+                 accelerations change with the torques. tau may be any vector, of torques or of impulses (N m s or N s): \
+                 then qdd are the changes of the velocities. Rotor inertia in an arm with its rotors only. A singular \
+                 mass matrix (a joint that moves nothing) gives numbers that are not finite.";
+            InverseDynamicsDerivativesWithWrenches = inverse_dynamics_derivatives_with_wrenches(
+                q: Positions, qd: Rates, qdd: Accelerations, wrenches: Wrenches
+            ) -> TorqueDerivatives:
+                "∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics_with_wrenches`; row i is torque i.",
+                "dq[i][j], dqd[i][j]: of torque i, by joint j. wrenches: as in inverse_dynamics_with_wrenches; they do \
+                 not change in axes of their tips. The derivative by q̈ is the mass matrix.";
+            ForwardDynamicsDerivativesWithWrenches = forward_dynamics_derivatives_with_wrenches(
+                q: Positions, qd: Rates, tau: Torques, wrenches: Wrenches
+            ) -> AccelerationDerivatives:
+                "∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂τ of `forward_dynamics_with_wrenches`; row i is acceleration i.",
+                "dq[i][j], dqd[i][j], dtau[i][j]: as in forward_dynamics_derivatives. wrenches: as in \
+                 inverse_dynamics_derivatives_with_wrenches.";
+            ForwardDynamicsDerivativesWithPayload = forward_dynamics_derivatives_with_payload(
+                q: Positions, qd: Rates, tau: Torques, payload: Payload
+            ) -> AccelerationDerivatives:
+                "∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂τ of `forward_dynamics_with_payload`; row i is acceleration i.",
+                "dq[i][j], dqd[i][j], dtau[i][j]: as in forward_dynamics_derivatives. payload: as in \
+                 inverse_dynamics_with_payload.";
+            JacobianRate = jacobian_rate(q: Positions, qd: Rates) -> SpatialRows:
+                "The rate J̇ of the geometric Jacobian at velocities `qd`, in world axes.",
+                "rate[r][i]: of element (r, i) of jacobian. Its product with q̇ is jacobian_rate_times_velocity.";
+            JacobianDerivatives = jacobian_derivatives(q: Positions) -> SpatialMatrices:
+                "∂J/∂q: the derivatives of the geometric Jacobian by the positions, in world axes.",
+                "derivatives[r][i][j]: of element (r, i) of jacobian, by joint j. The three linear matrices are \
+                 symmetric. The sum over j of these times q̇ⱼ is jacobian_rate.";
         }
     };
 }

@@ -93,14 +93,17 @@ impl Algorithm {
             | Function::ForwardDynamicsOfLoops
             | Function::FloatingMassMatrixOfLoops
             | Function::FloatingForwardDynamicsOfLoops
-            | Function::ForwardDynamicsDerivatives => &[BY_GROUPS, BY_JOINTS],
+            | Function::ForwardDynamicsDerivatives
+            | Function::InverseDynamicsDerivativesWithWrenches
+            | Function::ForwardDynamicsDerivativesWithWrenches
+            | Function::ForwardDynamicsDerivativesWithPayload => &[BY_GROUPS, BY_JOINTS],
             Function::ForwardDynamicsWithPayload | Function::FloatingForwardDynamics => &[
                 BY_GROUPS,
                 BY_JOINTS,
                 Algorithm::Aba(ExpressedIn::GroupFrame),
                 Algorithm::Aba(ExpressedIn::JointFrame),
             ],
-            Function::ForwardDynamics => &[
+            Function::ForwardDynamics | Function::InverseMassMatrixTimesTorques => &[
                 BY_GROUPS,
                 BY_JOINTS,
                 Algorithm::UnitColumns,
@@ -127,7 +130,9 @@ impl Algorithm {
             | Function::TipAccelerations
             | Function::ClosureStep
             | Function::LoopMap
-            | Function::LoopMapRateTimesVelocity => &[],
+            | Function::LoopMapRateTimesVelocity
+            | Function::JacobianRate
+            | Function::JacobianDerivatives => &[],
         }
     }
 
@@ -208,6 +213,14 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
             formulate::mass_matrix(coordinates, &upper_half())
         }
         (Function::InverseMassMatrix, _) => formulate::inverse_mass_matrix(builder, &system(), &upper_half()),
+        (Function::InverseMassMatrixTimesTorques, Algorithm::Aba(_)) => {
+            let joint_frames = arm.joint_frames.without_gravity();
+            let weightless = Arm { joint_frames: &joint_frames, ..*arm };
+            by_joint(Quantity::RateDot, aba::forward_dynamics(&weightless).1)
+        }
+        (Function::InverseMassMatrixTimesTorques, _) => {
+            formulate::accelerations(builder, &system(), &upper_half(), |applied, _| applied)
+        }
         (Function::ForwardDynamics | Function::ForwardDynamicsWithPayload, Algorithm::Aba(_)) => {
             by_joint(Quantity::RateDot, aba::forward_dynamics(arm).1)
         }
@@ -219,10 +232,12 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
             _,
         ) => {
             let (upper, bias) = (upper_half(), coordinates.torques(&recursion(arm, algorithm)));
-            formulate::forward_dynamics(builder, &system(), &upper, bias)
+            formulate::forward_dynamics(builder, &system(), &upper, &bias)
         }
         (
-            Function::InverseDynamicsDerivatives | Function::InverseDynamicsDerivativesWithPayload,
+            Function::InverseDynamicsDerivatives
+            | Function::InverseDynamicsDerivativesWithPayload
+            | Function::InverseDynamicsDerivativesWithWrenches,
             Algorithm::Crba(_),
         ) => {
             let found = sensitivity(arm, Number::integer(2));
@@ -256,7 +271,12 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
         (Function::InverseDynamicsDerivatives, _) => {
             formulate::derivatives(builder, coordinates, &coordinates.torques(&recursion(arm, algorithm)))
         }
-        (Function::ForwardDynamicsDerivatives, _) => {
+        (
+            Function::ForwardDynamicsDerivatives
+            | Function::ForwardDynamicsDerivativesWithWrenches
+            | Function::ForwardDynamicsDerivativesWithPayload,
+            _,
+        ) => {
             // the same quantities come again, at the accelerations that are solved for
             let bias = builder.unnamed(|| coordinates.torques(&recursion(arm, algorithm)));
             let (upper, system) = (upper_half(), system());

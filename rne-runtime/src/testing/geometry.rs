@@ -5,7 +5,7 @@ use core::iter;
 use super::RobotFile;
 use super::comparison::{Allowed, are_finite, compare, largest};
 use super::state::{State, states};
-use crate::{Arm, CentreOfMass, Kinematics, Pose};
+use crate::{Arm, CentreOfMass, JacobianDerivatives, Kinematics, Pose};
 
 /// How far the arm reaches at most from the origin of the world, m.
 fn reach<const DOF: usize>(arm: &Arm<DOF>, state: &State<DOF>) -> f64 {
@@ -62,5 +62,23 @@ pub fn centre_of_mass_is_that_of_the_runtime<const DOF: usize, R: CentreOfMass<D
         compare("centre_of_mass", &state, allowed, &found, &expected);
         let (found, expected) = (robot.centre_of_mass_jacobian(&state.q), arm.centre_of_mass_jacobian(&state.q));
         compare("centre_of_mass_jacobian", &state, allowed, found.as_flattened(), expected.as_flattened());
+    }
+}
+
+/// J̇, and ∂J/∂q.
+pub fn derivatives_of_the_jacobian_are_those_of_the_runtime<const DOF: usize, R: JacobianDerivatives<DOF>>(
+    robot: &R,
+    file: &RobotFile,
+) {
+    let arm = file.arm::<DOF>();
+    for state in states() {
+        let State { q, qd, .. } = &state;
+        let size = largest(arm.jacobian(q).as_flattened());
+        let (found, expected) = (robot.jacobian_rate(q, qd), arm.jacobian_rate(q, qd));
+        let allowed = Allowed::Rounding { scale: size * largest(qd) };
+        compare("jacobian_rate", &state, allowed, found.as_flattened(), expected.as_flattened());
+        let (found, expected) = (robot.jacobian_derivatives(q), arm.jacobian_derivatives(q));
+        let (found, expected) = (found.as_flattened().as_flattened(), expected.as_flattened().as_flattened());
+        compare("jacobian_derivatives", &state, Allowed::Rounding { scale: size }, found, expected);
     }
 }

@@ -27,7 +27,8 @@ pub use batches::{
 };
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use geometry::{
-    centre_of_mass_is_that_of_the_runtime, kinematics_are_those_of_the_runtime, rotations_are_orthonormal,
+    centre_of_mass_is_that_of_the_runtime, derivatives_of_the_jacobian_are_those_of_the_runtime,
+    kinematics_are_those_of_the_runtime, rotations_are_orthonormal,
 };
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use golden::{GoldenState, torques_are_those_of_the_golden_file};

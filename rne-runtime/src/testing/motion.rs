@@ -18,6 +18,12 @@ pub fn mass_matrix_is_that_of_the_runtime<const DOF: usize, R: MassMatrix<DOF>>(
     for state in states() {
         let (found, expected) = (robot.mass_matrix(&state.q), arm.mass_matrix(&state.q));
         compare("mass_matrix", &state, file.same_operations(0.0), found.as_flattened(), expected.as_flattened());
+        let accelerations = robot.inverse_mass_matrix_times_torques(&state.q, &state.tau);
+        if are_finite(&arm.inverse_mass_matrix_times_torques(&state.q, &state.tau)) {
+            let scale = largest(expected.as_flattened()) * largest(&accelerations);
+            let found = product(&expected, &accelerations);
+            compare("M M⁻¹ τ", &state, Allowed::Rounding { scale }, &found, &state.tau);
+        }
     }
 }
 

@@ -388,9 +388,39 @@ class Arm:
         """The gradient of λᵀτ: of the torques of `inverse_dynamics`, each times its multiplier λ and added up."""
     def forward_dynamics_derivatives(
         self, q: Joints, qd: Joints, tau: Joints, *,
-        parameters: Parameters = ..., out: Floats | None = ...,
+        payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats, Floats]:
         """∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂τ of `forward_dynamics`; row i is acceleration i."""
+    def inverse_mass_matrix_times_torques(
+        self, q: Joints, tau: Joints, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """M(q)⁻¹ τ: the accelerations that torques add, in fewer operations than the inverse has."""
+    def inverse_dynamics_derivatives_with_wrenches(
+        self, q: Joints, qd: Joints, qdd: Joints, wrenches: ArrayLike | dict[str, ArrayLike], *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats]:
+        """∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics_with_wrenches`; row i is torque i."""
+    def forward_dynamics_derivatives_with_wrenches(
+        self, q: Joints, qd: Joints, tau: Joints, wrenches: ArrayLike | dict[str, ArrayLike], *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats, Floats]:
+        """∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂τ of `forward_dynamics_with_wrenches`; row i is acceleration i."""
+    def forward_dynamics_derivatives_with_payload(
+        self, q: Joints, qd: Joints, tau: Joints, payload: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats, Floats]:
+        """∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂τ of `forward_dynamics_with_payload`; row i is acceleration i."""
+    def jacobian_rate(
+        self, q: Joints, qd: Joints, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The rate J̇ of the geometric Jacobian at velocities `qd`, in world axes."""
+    def jacobian_derivatives(
+        self, q: Joints, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """∂J/∂q: the derivatives of the geometric Jacobian by the positions, in world axes."""
     # <!-- end -->
     @property
     def passive_joints(self) -> list[str]:
