@@ -126,8 +126,8 @@ pub use rne_macro::{
     BatchInverseDynamicsDerivatives, BatchMassMatrix, CentreOfMass, CentroidalMomentum, ClosedLoops, ContactDynamics,
     CoriolisMatrix, Energy, FloatingBase, FloatingClosedLoops, FloatingEnergy, FloatingInverseDynamicsDerivatives,
     FloatingKinematics, FloatingRegressor, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics,
-    InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, JointWrenches, Kinematics, MassMatrix,
-    MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
+    InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian, JointWrenches,
+    Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
 };
 #[doc(inline)]
 pub use rne_model as model;
@@ -139,10 +139,11 @@ pub use rne_runtime::{
     ContactDynamics, CoriolisMatrix, Dual, Energy, FloatingAccelerations, FloatingBase, FloatingClosedLoops,
     FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor,
     FloatingTorqueDerivatives, FloatingTorques, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics,
-    InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, JointOrderError, JointWrenches, Kinematics,
-    LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations,
-    Payload, PayloadDynamics, Pose, Quaternion, Regressor, Scalar, TipWrenches, TorqueDerivatives, TorqueGradient,
-    VectorUnit, Wrench, dynamically_consistent_inverse, joint_order, operational_space_inertia,
+    InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian, JointOrderError,
+    JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass,
+    ObserverState, Operations, Payload, PayloadDynamics, Pose, Quaternion, Regressor, Scalar, TipWrenches,
+    TorqueDerivatives, TorqueGradient, TorqueHessian, VectorUnit, Wrench, dynamically_consistent_inverse, joint_order,
+    operational_space_inertia,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]
@@ -151,7 +152,8 @@ pub use rne_runtime::{Arm, LinkTrace, Trace};
 #[doc(inline)]
 pub use rne_runtime::{
     BaseParameter, BaseParameters, DynAccelerationDerivatives, DynArm, DynFloatingTorqueDerivatives, DynObserverState,
-    DynTorqueDerivatives, DynTorqueGradient, DynTrace, LinkParameter, LoadError, WrongJointCount, WrongLength,
+    DynTorqueDerivatives, DynTorqueGradient, DynTorqueHessian, DynTrace, LinkParameter, LoadError, WrongJointCount,
+    WrongLength,
 };
 // The Python package has arms of any number of joints.
 #[doc(hidden)]

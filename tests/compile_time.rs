@@ -178,6 +178,7 @@ fn all_derives_of_seven_joints_build() {
                         | Capability::FloatingInverseDynamicsDerivatives
                         | Capability::InverseDynamicsGradient
                         | Capability::ForwardDynamicsDerivatives
+                        | Capability::InverseDynamicsHessian
                 )
         };
         let functions = Function::OF_TREES.into_iter().filter(|&function| !is_left_out(function));

@@ -7,8 +7,8 @@ use rne::testing::{self, GoldenState, RobotFile};
 use rne::{
     Actuation, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives, BatchMassMatrix,
     CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics,
-    InverseDynamicsDerivatives, InverseDynamicsGradient, JointWrenches, Kinematics, MassMatrix, MomentumObserver,
-    MovingBase, Payload, Pose, Regressor, Scalar, Wrench,
+    InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian, JointWrenches, Kinematics, MassMatrix,
+    MomentumObserver, MovingBase, Payload, Pose, Regressor, Scalar, Wrench,
 };
 
 #[derive(
@@ -28,6 +28,7 @@ use rne::{
     Actuation,
     InverseDynamicsGradient,
     ForwardDynamicsDerivatives,
+    InverseDynamicsHessian,
     BatchMassMatrix,
     BatchForwardDynamics,
     BatchInverseDynamicsDerivatives,
@@ -48,6 +49,7 @@ struct Puma560Reduced;
     CentreOfMass,
     InverseDynamicsGradient,
     ForwardDynamicsDerivatives,
+    InverseDynamicsHessian,
 )]
 #[robot(builtin = "panda", form = "reduced", tests)]
 struct Panda;

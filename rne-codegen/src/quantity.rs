@@ -404,6 +404,8 @@ quantities! {
     // Of the torques weighted by multipliers.
     Multiplier:                 "lam",       Joint,     0, false, "λ", "", "multiplier of the torque of joint i";
     WeightedTorque:             "lt",        Alone,     8, true,  "", "", "sum of the torques times the multipliers";
+    WeightedByPosition:         "lt_q",      Joint,     8, true,  "", "", "its derivative by the position of joint i";
+    WeightedByRate:             "lt_qd",     Joint,     8, true,  "", "", "its derivative by the rate of joint i";
 }
 
 impl Quantity {

@@ -43,6 +43,7 @@ mod floating_derivatives;
 mod floating_kinematics;
 #[cfg(feature = "arm")]
 mod forward_dynamics;
+mod hessian;
 #[cfg(feature = "arm")]
 mod joint;
 mod joint_order;
@@ -131,6 +132,9 @@ pub use error::{LoadError, WrongJointCount, WrongLength};
 #[cfg(feature = "std")]
 pub use floating_derivatives::DynFloatingTorqueDerivatives;
 pub use floating_derivatives::{FloatingInverseDynamicsDerivatives, FloatingTorqueDerivatives};
+#[cfg(all(feature = "arm", feature = "std"))]
+pub use hessian::DynTorqueHessian;
+pub use hessian::{InverseDynamicsHessian, TorqueHessian};
 pub use joint_order::{JointOrderError, joint_order};
 #[doc(hidden)]
 pub use names::unknown_frame;

@@ -4,8 +4,8 @@ use rne::{
     Actuation, BaseMotion, BaseTwist, CentreOfMass, CentroidalMomentum, ContactDynamics, CoriolisMatrix, Energy,
     FloatingBase, FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor,
     ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient,
-    JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Pose, Regressor, Scalar,
-    TipWrenches, Wrench,
+    InverseDynamicsHessian, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Pose,
+    Regressor, Scalar, TipWrenches, Wrench,
 };
 use rne_codegen::Form;
 pub(crate) use rne_codegen::Function;
@@ -47,6 +47,7 @@ pub(crate) trait Everything<const DOF: usize, const NV: usize, const BODIES: usi
     + FloatingInverseDynamicsDerivatives<DOF, NV, 1>
     + InverseDynamicsGradient<DOF>
     + ForwardDynamicsDerivatives<DOF>
+    + InverseDynamicsHessian<DOF>
 {
 }
 
@@ -116,6 +117,10 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, const BODIES: usize, T:
         Function::ForwardDynamicsDerivatives => {
             let derivatives = robot.forward_dynamics_derivatives(q, qd, tau);
             [flat(derivatives.dq), flat(derivatives.dqd), flat(derivatives.dtau)].concat()
+        }
+        Function::TorqueHessian => {
+            let hessian = robot.torque_hessian(q, qd, qdd, tau);
+            [hessian.dq_dq, hessian.dq_dqd, hessian.dqd_dqd, hessian.dq_dqdd].map(flat).concat()
         }
         Function::JointWrenches => {
             let wrenches = robot.joint_wrenches(q, qd, qdd);
@@ -206,6 +211,7 @@ macro_rules! robot {
                 rne::FloatingInverseDynamicsDerivatives,
                 rne::InverseDynamicsGradient,
                 rne::ForwardDynamicsDerivatives,
+                rne::InverseDynamicsHessian,
             )]
             #[robot(path = $path, form = $form, inline)]
             pub(crate) struct Robot;

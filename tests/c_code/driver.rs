@@ -164,7 +164,7 @@ impl Driver<'_> {
                 Function::ForwardDynamics | Function::MomentumAndRate | Function::ForwardDynamicsDerivatives => {
                     "q, qd, tau"
                 }
-                Function::TorqueGradient => "q, qd, qdd, tau",
+                Function::TorqueGradient | Function::TorqueHessian => "q, qd, qdd, tau",
                 Function::InverseDynamicsOnMovingBase | Function::FloatingRegressor => {
                     "q, qd, qdd, omega, omega_dot, acceleration, gravity"
                 }
@@ -211,6 +211,7 @@ impl Driver<'_> {
                 }
                 Function::TorqueGradient => (format!("{prefix}_gradient x"), "&x"),
                 Function::ForwardDynamicsDerivatives => (format!("{prefix}_acceleration_derivatives x"), "&x"),
+                Function::TorqueHessian => (format!("{prefix}_hessian x"), "&x"),
                 Function::MomentumAndRate | Function::MomentumAndRateWithPayload => {
                     (format!("{prefix}_momentum x"), "&x")
                 }

@@ -81,7 +81,7 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
         | Function::BiasTorques
         | Function::FloatingInverseDynamicsDerivatives
         | Function::InverseDynamicsDerivatives => LEAST * of(Function::JointWrenches),
-        Function::TorqueGradient => LEAST * of(Function::JointWrenches) * largest(given.tau),
+        Function::TorqueGradient | Function::TorqueHessian => LEAST * of(Function::JointWrenches) * largest(given.tau),
         // the joints carry the payload, too
         Function::GravityTorquesWithPayload
         | Function::BiasTorquesWithPayload

@@ -58,6 +58,8 @@ named! {
         InverseDynamicsGradient = "InverseDynamicsGradient",
         /// Derivatives of the motion from torques.
         ForwardDynamicsDerivatives = "ForwardDynamicsDerivatives",
+        /// Second derivatives of a weighted sum of the torques.
+        InverseDynamicsHessian = "InverseDynamicsHessian",
     }
 }
 

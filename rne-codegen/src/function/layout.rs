@@ -86,6 +86,8 @@ pub enum Returned {
     TorqueGradient,
     /// Three matrices.
     AccelerationDerivatives,
+    /// Four matrices.
+    TorqueHessian,
 }
 
 impl Returned {
@@ -125,6 +127,7 @@ impl Returned {
             }
             Self::TorqueGradient => &Shape::Record(Record::TorqueGradient, &[VECTOR, VECTOR, VECTOR]),
             Self::AccelerationDerivatives => &Shape::Record(Record::AccelerationDerivatives, &[MATRIX, MATRIX, MATRIX]),
+            Self::TorqueHessian => &Shape::Record(Record::TorqueHessian, &[MATRIX, MATRIX, MATRIX, MATRIX]),
             Self::AccelerationsAndWrenches => {
                 &Shape::Record(Record::AccelerationsAndWrenches, &[ACCELERATIONS, Shape::Array(Length::Tips, &WRENCH)])
             }
@@ -254,6 +257,8 @@ pub enum Record {
     TorqueGradient,
     /// By q, by q̇ and by τ.
     AccelerationDerivatives,
+    /// By q twice, by q and q̇, by q̇ twice, by q and q̈.
+    TorqueHessian,
 }
 
 impl Record {
@@ -273,6 +278,7 @@ impl Record {
             Self::ClosureStep => "ClosureStep",
             Self::TorqueGradient => "TorqueGradient",
             Self::AccelerationDerivatives => "AccelerationDerivatives",
+            Self::TorqueHessian => "TorqueHessian",
         }
     }
 
@@ -292,6 +298,7 @@ impl Record {
             Self::ClosureStep => &["passive", "residual"],
             Self::TorqueGradient => &["dq", "dqd", "dqdd"],
             Self::AccelerationDerivatives => &["dq", "dqd", "dtau"],
+            Self::TorqueHessian => &["dq_dq", "dq_dqd", "dqd_dqd", "dq_dqdd"],
         }
     }
 }

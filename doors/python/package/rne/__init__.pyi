@@ -391,6 +391,11 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats, Floats]:
         """∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂τ of `forward_dynamics`; row i is acceleration i."""
+    def torque_hessian(
+        self, q: Joints, qd: Joints, qdd: Joints, multipliers: Joints, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats, Floats, Floats]:
+        """The Hessian of λᵀτ: of the torques of `inverse_dynamics`, each times its multiplier λ and added up."""
     # <!-- end -->
     @property
     def passive_joints(self) -> list[str]:
