@@ -126,8 +126,8 @@ pub use rne_macro::{
     BatchInverseDynamicsDerivatives, BatchMassMatrix, CentreOfMass, CentroidalMomentum, ClosedLoops, ContactDynamics,
     CoriolisMatrix, Energy, FloatingBase, FloatingClosedLoops, FloatingEnergy, FloatingInverseDynamicsDerivatives,
     FloatingKinematics, FloatingRegressor, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics,
-    InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, JacobianDerivatives, JointWrenches,
-    Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
+    InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian, JacobianDerivatives,
+    JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
 };
 #[doc(inline)]
 pub use rne_model as model;
@@ -141,10 +141,11 @@ pub use rne_runtime::{
     FloatingKinematics, FloatingRegressor, FloatingState, FloatingStepDerivatives, FloatingTorqueDerivatives,
     FloatingTorques, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics, IntegratorStep,
     IntegratorStepDerivatives, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient,
-    JacobianDerivatives, JointOrderError, JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumAndRate,
-    MomentumObserver, MovingBase, NegativeMass, NextState, NextStateDerivatives, ObserverState, Operations, Payload,
-    PayloadDynamics, Pose, Quaternion, Regressor, Scalar, StepDerivatives, TipWrenches, TorqueDerivatives,
-    TorqueGradient, VectorUnit, Wrench, dynamically_consistent_inverse, joint_order, operational_space_inertia,
+    InverseDynamicsHessian, JacobianDerivatives, JointOrderError, JointWrenches, Kinematics, LengthMismatch,
+    MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, NextState, NextStateDerivatives,
+    ObserverState, Operations, Payload, PayloadDynamics, Pose, Quaternion, Regressor, Scalar, StepDerivatives,
+    TipWrenches, TorqueDerivatives, TorqueGradient, TorqueHessian, VectorUnit, Wrench, dynamically_consistent_inverse,
+    joint_order, operational_space_inertia,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]
@@ -153,7 +154,8 @@ pub use rne_runtime::{Arm, LinkTrace, Trace};
 #[doc(inline)]
 pub use rne_runtime::{
     BaseParameter, BaseParameters, DynAccelerationDerivatives, DynArm, DynFloatingTorqueDerivatives, DynObserverState,
-    DynTorqueDerivatives, DynTorqueGradient, DynTrace, LinkParameter, LoadError, WrongJointCount, WrongLength,
+    DynTorqueDerivatives, DynTorqueGradient, DynTorqueHessian, DynTrace, LinkParameter, LoadError, WrongJointCount,
+    WrongLength,
 };
 // The Python package has arms of any number of joints.
 #[doc(hidden)]

@@ -179,6 +179,7 @@ fn all_derives_of_seven_joints_build() {
                         | Capability::InverseDynamicsGradient
                         | Capability::ForwardDynamicsDerivatives
                         | Capability::JacobianDerivatives
+                        | Capability::InverseDynamicsHessian
                 )
         };
         let functions = Function::OF_TREES.into_iter().filter(|&function| !is_left_out(function));

@@ -7,8 +7,8 @@ use rne::testing::{self, GoldenState, RobotFile};
 use rne::{
     Actuation, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives, BatchMassMatrix,
     CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics,
-    InverseDynamicsDerivatives, InverseDynamicsGradient, JacobianDerivatives, JointWrenches, Kinematics, MassMatrix,
-    MomentumObserver, MovingBase, Payload, Pose, Regressor, Scalar, Wrench,
+    InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian, JacobianDerivatives, JointWrenches,
+    Kinematics, MassMatrix, MomentumObserver, MovingBase, Payload, Pose, Regressor, Scalar, Wrench,
 };
 
 #[derive(
@@ -29,6 +29,7 @@ use rne::{
     InverseDynamicsGradient,
     ForwardDynamicsDerivatives,
     JacobianDerivatives,
+    InverseDynamicsHessian,
     BatchMassMatrix,
     BatchForwardDynamics,
     BatchInverseDynamicsDerivatives,
@@ -49,6 +50,7 @@ struct Puma560Reduced;
     CentreOfMass,
     InverseDynamicsGradient,
     ForwardDynamicsDerivatives,
+    InverseDynamicsHessian,
 )]
 #[robot(builtin = "panda", form = "reduced", tests)]
 struct Panda;

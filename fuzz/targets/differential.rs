@@ -146,7 +146,8 @@ fn compare(u: &mut Unstructured<'_>) -> Result<()> {
         }
         _ => {
             // multipliers magnify what cancels
-            let weights = if function == Function::TorqueGradient { scale(&state.tau) } else { 1.0 };
+            let is_weighted = matches!(function, Function::TorqueGradient | Function::TorqueHessian);
+            let weights = if is_weighted { scale(&state.tau) } else { 1.0 };
             let scale = weights * scale(&expected);
             // an arm without mass has no centre
             let is_close = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-11 * scale || !(a.is_finite() || b.is_finite());
@@ -288,6 +289,10 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
         Function::ForwardDynamicsDerivativesWithPayload => {
             let by = arm.forward_dynamics_derivatives_with_payload(q, qd, tau, &Payload::from_array(*payload))?;
             [by.dq, by.dqd, by.dtau].concat().concat()
+        }
+        Function::TorqueHessian => {
+            let hessian = arm.torque_hessian(q, qd, qdd, tau)?;
+            [hessian.dq_dq, hessian.dq_dqd, hessian.dqd_dqd, hessian.dq_dqdd].concat().concat()
         }
         Function::JointWrenches => {
             let wrenches = arm.joint_wrenches(q, qd, qdd)?;

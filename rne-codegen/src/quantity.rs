@@ -410,6 +410,8 @@ quantities! {
         "rate of the velocity of the tip per rate of joint i, world axes";
     JacobianAngularRate:        "jwd",       Vector,    8, true,  "", "",
         "rate of the angular velocity of the tip per rate of joint i, world axes";
+    WeightedByPosition:         "lt_q",      Joint,     8, true,  "", "", "its derivative by the position of joint i";
+    WeightedByRate:             "lt_qd",     Joint,     8, true,  "", "", "its derivative by the rate of joint i";
 }
 
 impl Quantity {

@@ -83,3 +83,22 @@ fn derivatives_by_torques_are_the_inverse_of_the_mass_matrix_with_the_load() {
         }
     }
 }
+/// λᵀτ has the rates in a quadratic form, whose gradient is its Hessian times the rates.
+#[test]
+fn the_hessian_is_that_of_a_quadratic_form_of_the_rates() {
+    for robot in robots() {
+        let dof = robot.dof();
+        let [hessian, gradient] =
+            [Function::TorqueHessian, Function::TorqueGradient].map(|function| ExactFunction::new(&robot, function));
+        for point in 1..=3 {
+            let blocks = hessian.at(point);
+            let blocks: Vec<_> = blocks.chunks(dof * dof).collect();
+            let rate = |at: usize| hessian.argument(point, Name::scalar(Quantity::Rate, at + 1));
+            assert_eq!(product(blocks[2], rate, dof), gradient.at(point)[dof..2 * dof], "{}", robot.name);
+            for block in [blocks[0], blocks[2]] {
+                let is_symmetric = (0..dof * dof).all(|at| block[at] == block[at % dof * dof + at / dof]);
+                assert!(is_symmetric, "{}", robot.name);
+            }
+        }
+    }
+}

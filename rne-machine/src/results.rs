@@ -117,6 +117,19 @@ pub struct AccelerationDerivatives<T> {
     pub dtau: Matrix<T>,
 }
 
+/// The second derivatives of λᵀτ.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TorqueHessian<T> {
+    /// ∂²(λᵀτ)/∂q_i∂q_j.
+    pub dq_dq: Matrix<T>,
+    /// ∂²(λᵀτ)/∂q_i∂q̇_j.
+    pub dq_dqd: Matrix<T>,
+    /// ∂²(λᵀτ)/∂q̇_i∂q̇_j.
+    pub dqd_dqd: Matrix<T>,
+    /// ∂²(λᵀτ)/∂q_i∂q̈_j.
+    pub dq_dqdd: Matrix<T>,
+}
+
 /// A result that is made of the numbers of a function, in the order of its layout.
 pub(crate) trait Shaped<T> {
     /// Takes as many numbers as the layout has.
@@ -152,12 +165,16 @@ impl<T, E: Shaped<T>, const N: usize> Shaped<T> for [E; N] {
 }
 
 macro_rules! records {
-    ($($record:ident { $first:ident, $second:ident $(, $third:ident)? })*) => {$(
+    ($($record:ident { $first:ident, $second:ident $(, $third:ident $(, $fourth:ident)?)? })*) => {$(
         impl<T: crate::Number> Shaped<T> for $record<T> {
             fn take(layout: &Layout, numbers: &mut impl Iterator<Item = T>) -> Self {
                 let $first = Shaped::take(part(layout, 0), numbers);
                 let $second = Shaped::take(part(layout, 1), numbers);
-                Self { $first, $second $(, $third: Shaped::take(part(layout, 2), numbers))? }
+                $(
+                    let $third = Shaped::take(part(layout, 2), numbers);
+                    $(let $fourth = Shaped::take(part(layout, 3), numbers);)?
+                )?
+                Self { $first, $second $(, $third $(, $fourth)?)? }
             }
         }
     )*};
@@ -168,5 +185,5 @@ records! {
     BaseAcceleration { linear, angular } FloatingAccelerations { base, qdd }
     AccelerationsAndWrenches { accelerations, wrenches_on_robot } FloatingTorqueDerivatives { dq, dqd, domega }
     ClosureStep { passive, residual } TorqueGradient { dq, dqd, dqdd }
-    AccelerationDerivatives { dq, dqd, dtau }
+    AccelerationDerivatives { dq, dqd, dtau } TorqueHessian { dq_dq, dq_dqd, dqd_dqd, dq_dqdd }
 }

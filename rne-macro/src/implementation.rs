@@ -421,6 +421,7 @@ impl Target<'_> {
                     Record::TorqueDerivatives
                     | Record::TorqueGradient
                     | Record::AccelerationDerivatives
+                    | Record::TorqueHessian
                     | Record::MomentumAndRate
                     | Record::FloatingTorques
                     | Record::FloatingAccelerations => quote!(#krate::#name<#dof, T>),

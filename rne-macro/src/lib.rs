@@ -362,6 +362,16 @@ pub fn derive_jacobian_derivatives(input: TokenStream) -> TokenStream {
     expand::capability(Capability::JacobianDerivatives, input.into()).into()
 }
 
+/// Implements the trait `InverseDynamicsHessian` for a struct: the second derivatives of a weighted sum of the torques.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations, `TORQUE_HESSIAN_OPERATIONS`; `DOF`, names and limits come with
+/// `InverseDynamics`.
+#[proc_macro_derive(InverseDynamicsHessian, attributes(robot))]
+pub fn derive_inverse_dynamics_hessian(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::InverseDynamicsHessian, input.into()).into()
+}
+
 /// Implements the trait `ClosedLoops` for a struct: a robot whose file has `loops` with a cut joint.
 ///
 /// The tips are the frames of the list `tips` of the robot file in its order, or the tip frame alone. Other derives

@@ -45,6 +45,7 @@ mod floating_integrator;
 mod floating_kinematics;
 #[cfg(feature = "arm")]
 mod forward_dynamics;
+mod hessian;
 mod integrator;
 mod jacobian_derivatives;
 #[cfg(feature = "arm")]
@@ -139,6 +140,9 @@ pub use floating_derivatives::{FloatingInverseDynamicsDerivatives, FloatingTorqu
 pub use floating_integrator::{
     FloatingIntegratorStep, FloatingIntegratorStepDerivatives, FloatingState, FloatingStepDerivatives,
 };
+#[cfg(all(feature = "arm", feature = "std"))]
+pub use hessian::DynTorqueHessian;
+pub use hessian::{InverseDynamicsHessian, TorqueHessian};
 pub use integrator::{IntegratorStep, IntegratorStepDerivatives, NextState, NextStateDerivatives, StepDerivatives};
 pub use jacobian_derivatives::JacobianDerivatives;
 pub use joint_order::{JointOrderError, joint_order};

@@ -4,8 +4,8 @@ use rne::{
     Actuation, BaseMotion, BaseTwist, CentreOfMass, CentroidalMomentum, ContactDynamics, CoriolisMatrix, Energy,
     FloatingBase, FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor,
     ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient,
-    JacobianDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Pose,
-    Regressor, Scalar, TipWrenches, Wrench,
+    InverseDynamicsHessian, JacobianDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase,
+    PayloadDynamics, Pose, Regressor, Scalar, TipWrenches, Wrench,
 };
 use rne_codegen::Form;
 pub(crate) use rne_codegen::Function;
@@ -48,6 +48,7 @@ pub(crate) trait Everything<const DOF: usize, const NV: usize, const BODIES: usi
     + InverseDynamicsGradient<DOF>
     + ForwardDynamicsDerivatives<DOF>
     + JacobianDerivatives<DOF>
+    + InverseDynamicsHessian<DOF>
 {
 }
 
@@ -132,6 +133,10 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, const BODIES: usize, T:
         Function::ForwardDynamicsDerivativesWithPayload => {
             let by = robot.forward_dynamics_derivatives_with_payload(q, qd, tau, &states::payload(payload));
             [flat(by.dq), flat(by.dqd), flat(by.dtau)].concat()
+        }
+        Function::TorqueHessian => {
+            let hessian = robot.torque_hessian(q, qd, qdd, tau);
+            [hessian.dq_dq, hessian.dq_dqd, hessian.dqd_dqd, hessian.dq_dqdd].map(flat).concat()
         }
         Function::JointWrenches => {
             let wrenches = robot.joint_wrenches(q, qd, qdd);
@@ -223,6 +228,7 @@ macro_rules! robot {
                 rne::InverseDynamicsGradient,
                 rne::ForwardDynamicsDerivatives,
                 rne::JacobianDerivatives,
+                rne::InverseDynamicsHessian,
             )]
             #[robot(path = $path, form = $form, inline)]
             pub(crate) struct Robot;

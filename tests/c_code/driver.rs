@@ -173,7 +173,7 @@ impl Driver<'_> {
                 Function::ForwardDynamics | Function::MomentumAndRate | Function::ForwardDynamicsDerivatives => {
                     "q, qd, tau"
                 }
-                Function::TorqueGradient => "q, qd, qdd, tau",
+                Function::TorqueGradient | Function::TorqueHessian => "q, qd, qdd, tau",
                 Function::InverseDynamicsOnMovingBase | Function::FloatingRegressor => {
                     "q, qd, qdd, omega, omega_dot, acceleration, gravity"
                 }
@@ -220,6 +220,7 @@ impl Driver<'_> {
                 | Function::InverseDynamicsDerivativesWithPayload
                 | Function::InverseDynamicsDerivativesWithWrenches => (format!("{prefix}_torque_derivatives x"), "&x"),
                 Function::TorqueGradient => (format!("{prefix}_gradient x"), "&x"),
+                Function::TorqueHessian => (format!("{prefix}_hessian x"), "&x"),
                 Function::ForwardDynamicsDerivatives
                 | Function::ForwardDynamicsDerivativesWithWrenches
                 | Function::ForwardDynamicsDerivativesWithPayload => {

@@ -426,6 +426,9 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
         Function::ForwardDynamicsDerivativesWithPayload => arm
             .forward_dynamics_derivatives_with_payload(q, qd, tau, payload)
             .map(|by| flat([by.dq, by.dqd, by.dtau].concat())),
+        Function::TorqueHessian => {
+            arm.torque_hessian(q, qd, qdd, tau).map(|by| flat([by.dq_dq, by.dq_dqd, by.dqd_dqd, by.dq_dqdd].concat()))
+        }
         Function::JointWrenches => arm
             .joint_wrenches(q, qd, qdd)
             .map(|wrenches| wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment].concat()).collect()),

@@ -103,6 +103,7 @@ fn projected(function: Function, ratios: &[Vec<f64>], is_coordinate: &[bool], nu
         | Function::CoriolisMatrix
         | Function::InverseDynamicsDerivatives
         | Function::InverseDynamicsDerivativesWithPayload
+        | Function::TorqueHessian
         | Function::InverseDynamicsDerivativesWithWrenches => rows().chunks(dof).flat_map(matrix).collect(),
         Function::Jacobian
         | Function::JacobianRate
@@ -183,7 +184,7 @@ fn every_function_of_a_robot_with_followers_is_that_of_the_free_robot_projected(
             let is_projected = |function: &Function| !function.is_of_every_link() && !function.inverts_mass();
             for function in Function::OF_TREES.into_iter().filter(is_projected) {
                 let mut all = all.clone();
-                if function == Function::TorqueGradient {
+                if matches!(function, Function::TorqueGradient | Function::TorqueHessian) {
                     // λᵀ Gᵀ τ
                     all.tau = times(&ratios, &own.tau);
                 }

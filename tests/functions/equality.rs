@@ -84,7 +84,7 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
         | Function::FloatingInverseDynamicsDerivatives
         | Function::InverseDynamicsDerivatives
         | Function::InverseDynamicsDerivativesWithWrenches => LEAST * of(Function::JointWrenches),
-        Function::TorqueGradient => LEAST * of(Function::JointWrenches) * largest(given.tau),
+        Function::TorqueGradient | Function::TorqueHessian => LEAST * of(Function::JointWrenches) * largest(given.tau),
         // the joints carry the payload, too
         Function::GravityTorquesWithPayload
         | Function::BiasTorquesWithPayload

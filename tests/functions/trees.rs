@@ -327,6 +327,31 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
             let by_qdd = times(&mass_matrix(), tau);
             [(0..dof).map(by_q).collect(), (0..dof).map(by_qd).collect(), by_qdd].concat()
         }
+        Function::TorqueHessian => {
+            let weighted = |torques: Vec<f64>| torques.iter().zip(tau).map(|(a, b)| a * b).sum::<f64>();
+            let by_q = |q: &[f64], qd: &[f64]| -> Vec<f64> {
+                let along =
+                    |joint| oracle::by_position(robot, q, joint, |q| vec![weighted(torques(q, qd, qdd, fixed))])[0];
+                (0..dof).map(along).collect()
+            };
+            let by_qd = |qd: &[f64]| -> Vec<f64> {
+                let along = |joint| oracle::by_rate(qd, joint, |qd| vec![weighted(torques(q, qd, qdd, fixed))])[0];
+                (0..dof).map(along).collect()
+            };
+            let momenta = |q: &[f64]| {
+                let columns = (0..dof).map(|joint| {
+                    let unit: Vec<f64> = (0..dof).map(|other| f64::from(u8::from(other == joint))).collect();
+                    let still = Motion { joints: [q, &zeros, &unit], base: BaseMotion::fixed([0.0; 3]) };
+                    weighted(oracle::torques(robot, &still, None))
+                });
+                columns.collect::<Vec<f64>>()
+            };
+            let dq_dq: Vec<_> = (0..dof).map(|joint| oracle::by_position(robot, q, joint, |q| by_q(q, qd))).collect();
+            let dq_dqd: Vec<_> = (0..dof).map(|joint| oracle::by_rate(qd, joint, |qd| by_q(q, qd))).collect();
+            let dqd_dqd: Vec<_> = (0..dof).map(|joint| oracle::by_rate(qd, joint, by_qd)).collect();
+            let dq_dqdd: Vec<_> = (0..dof).map(|joint| oracle::by_position(robot, q, joint, momenta)).collect();
+            [flat(dq_dq), transposed(dq_dqd), flat(dqd_dqd), flat(dq_dqdd)].concat()
+        }
         Function::ForwardDynamicsDerivatives
         | Function::ForwardDynamicsDerivativesWithWrenches
         | Function::ForwardDynamicsDerivativesWithPayload => {
@@ -461,6 +486,8 @@ pub(crate) fn scale(robot: &Robot, function: Function, state: &State) -> f64 {
         | Function::InverseDynamicsDerivativesWithWrenches => largest,
         Function::JacobianRate => state.qd.iter().fold(0.0, |most, qd| f64::max(most, qd.abs())),
         Function::JacobianDerivatives => 1.0,
+        // the multipliers are the torques of the state
+        Function::TorqueHessian => largest * state.tau.iter().fold(0.0, |most, tau| tau.abs().max(most)),
         // centripetal, one metre from an axis
         Function::JacobianRateTimesVelocity => state.qd.iter().map(|qd| qd * qd).fold(0.0, f64::max),
         Function::TipAccelerations => state.qd.iter().chain(&state.base.omega).map(|qd| qd * qd).fold(0.0, f64::max),

@@ -138,6 +138,10 @@ macro_rules! returned {
         "dq, dqd and dtau, three arrays of shape (n, n) or (N, n, n); `out` is one array of shape (3, n, n) or \
          (N, 3, n, n)."
     };
+    (TorqueHessian) => {
+        "dq_dq, dq_dqd, dqd_dqd and dq_dqdd, four arrays of shape (n, n) or (N, n, n); `out` is one array of shape \
+         (4, n, n) or (N, 4, n, n)."
+    };
     (MomentumAndRate) => {
         "momentum and rate, two arrays of shape (n,) or (N, n); `out` is one array of shape (2, n) or (N, 2, n)."
     };

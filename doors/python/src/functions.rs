@@ -32,6 +32,7 @@ fn shape(function: Function, arm: &CompiledArm) -> Vec<usize> {
                 | Record::FloatingTorqueDerivatives
                 | Record::TorqueGradient
                 | Record::AccelerationDerivatives
+                | Record::TorqueHessian
                 | Record::ClosureStep,
                 parts,
             ) => {
@@ -130,7 +131,8 @@ fn evaluate_in<'py, T: Element + Number>(
             Record::TorqueDerivatives
             | Record::MomentumAndRate
             | Record::TorqueGradient
-            | Record::AccelerationDerivatives,
+            | Record::AccelerationDerivatives
+            | Record::TorqueHessian,
             parts,
         ) => {
             let all = vec![PySlice::full(py).into_any(); of_state.len() - 1];

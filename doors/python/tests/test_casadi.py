@@ -103,6 +103,27 @@ def test_derivatives_go_through_expressions(both, name):
             assert difference(found, expected) < tolerance
 
 
+@pytest.mark.parametrize("name", FUNCTIONS[:1] + FUNCTIONS[2:])
+def test_second_derivatives_are_those_of_expressions(both, name):
+    """The Hessian of λᵀτ, as CasADi asks for it: the Jacobian of what goes backwards."""
+    arm, expressions = both
+    ours, theirs = (of.reverse(1).jacobian() for of in (arm.casadi(name), getattr(expressions, name)))
+    assert described(ours) == described(theirs)
+    random = np.random.default_rng(6)
+    for _ in range(10):
+        arguments = [random.uniform(-1.5, 1.5, size=ours.size_in(index)) for index in range(ours.n_in())]
+        for found, expected in zip(ours.call(arguments), theirs.call(arguments), strict=True):
+            assert difference(found, expected) < 1e-10
+    # the number of a Lagrangian
+    x, multipliers = ca.MX.sym("x", arm.dof), ca.MX.sym("multipliers", arm.dof)
+    hessians = [ca.Function("hessian", [x, multipliers], [ca.hessian(
+        ca.dot(multipliers, of(*[ca.sin(x), x * x, 0.5 * x][: of.n_in()])), x)[0]])
+        for of in (arm.casadi(name), getattr(expressions, name))]
+    for point in random.uniform(-0.7, 0.7, size=(5, 2, arm.dof)):
+        found, expected = (hessian(*point) for hessian in hessians)
+        assert difference(found, expected) < 1e-10
+
+
 def test_zeros_of_a_tree_are_left_out():
     jacobian = rne.load(ROBOTS / "trees/hyq.yaml").casadi("inverse_dynamics").jacobian()
     # four legs of three joints
@@ -338,11 +359,16 @@ def test_functions_for_acados_are_those_that_casadi_generates(tmp_path):
     x, u, p = ca.MX.sym("x", 12), ca.MX.sym("u", 6), ca.MX.sym("p", 0, 0)
     from_x, from_u, multipliers = ca.MX.sym("Sx", 12, 12), ca.MX.sym("Su", 12, 6), ca.MX.sym("lambda", 12)
     rate = ca.vertcat(x[6:], Expressions("puma560").forward_dynamics(x[:6], x[6:], u))
+    backward = ca.jtimes(rate, ca.vertcat(x, u), multipliers, True)
+    moved = ca.vertcat(ca.horzcat(from_x, from_u), ca.horzcat(ca.DM.zeros(6, 12), ca.DM.eye(6)))
+    hessian = ca.densify(moved.T @ ca.jtimes(backward, ca.vertcat(x, u), moved))
+    lower = ca.vertcat(*[hessian[row, column] for column in range(18) for row in range(column, 18)])
     forward = [rate, ca.jtimes(rate, x, from_x), ca.jacobian(rate, u) + ca.jtimes(rate, x, from_u)]
     theirs = {
         "expl_ode_fun": ([x, u, p], [rate]),
         "expl_vde_forw": ([x, from_x, from_u, u, p], forward),
-        "expl_vde_adj": ([x, multipliers, u, p], [ca.jtimes(rate, ca.vertcat(x, u), multipliers, True)]),
+        "expl_vde_adj": ([x, multipliers, u, p], [backward]),
+        "expl_ode_hess": ([x, from_x, from_u, multipliers, u, p], [backward, lower]),
     }
     random = np.random.default_rng(8)
     for name, (inputs, outputs) in theirs.items():

@@ -1,6 +1,6 @@
 //! What a function returns, number by number.
 
-use rne::{AccelerationDerivatives, MomentumAndRate, Pose, TorqueDerivatives, TorqueGradient, Wrench};
+use rne::{AccelerationDerivatives, MomentumAndRate, Pose, TorqueDerivatives, TorqueGradient, TorqueHessian, Wrench};
 
 /// Numbers in a shape.
 pub trait Numbers {
@@ -63,5 +63,14 @@ impl<const DOF: usize> Numbers for MomentumAndRate<DOF, f32> {
     fn each(&self, act: &mut impl FnMut(f32)) {
         self.momentum.each(act);
         self.rate.each(act);
+    }
+}
+
+impl<const DOF: usize> Numbers for TorqueHessian<DOF, f32> {
+    fn each(&self, act: &mut impl FnMut(f32)) {
+        self.dq_dq.each(act);
+        self.dq_dqd.each(act);
+        self.dqd_dqd.each(act);
+        self.dq_dqdd.each(act);
     }
 }

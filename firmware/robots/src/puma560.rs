@@ -2,7 +2,7 @@
 
 use rne::{
     AccelerationDerivatives, BaseMotion, MomentumAndRate, ObserverState, Payload, Pose, Scalar, TorqueDerivatives,
-    TorqueGradient, Wrench,
+    TorqueGradient, TorqueHessian, Wrench,
 };
 
 use crate::numbers::Numbers;
@@ -79,7 +79,7 @@ macro_rules! methods {
         pub mod $form {
             use super::{
                 AccelerationDerivatives, BaseMotion, MomentumAndRate, ObserverState, Payload, Pose, TorqueDerivatives,
-                TorqueGradient, Wrench,
+                TorqueGradient, TorqueHessian, Wrench,
             };
 
             #[derive(
@@ -87,6 +87,7 @@ macro_rules! methods {
                 rne::Energy, rne::CentreOfMass, rne::Regressor, rne::InverseDynamicsDerivatives, rne::JointWrenches,
                 rne::MomentumObserver, rne::MovingBase, rne::Actuation, rne::PayloadDynamics,
                 rne::InverseDynamicsGradient, rne::ForwardDynamicsDerivatives, rne::JacobianDerivatives,
+                rne::InverseDynamicsHessian,
             )]
             #[robot(path = "../../../robots/puma560.yaml", form = $name)]
             struct Robot;
@@ -174,4 +175,7 @@ methods! {
     ) -> TorqueGradient<6, f32>;
     ForwardDynamicsDerivatives: forward_dynamics_derivatives(q: [f32; 6], qd: [f32; 6], tau: [f32; 6])
         -> AccelerationDerivatives<6, f32>;
+    InverseDynamicsHessian: torque_hessian(
+        q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], multipliers: [f32; 6]
+    ) -> TorqueHessian<6, f32>;
 }

@@ -347,7 +347,7 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
         return choice::functions_of(robot).collect();
     }
     let is_asked = |function: &Function| match asked.as_slice() {
-        _ if arguments.acados && *function == Function::ForwardDynamics => true,
+        _ if arguments.acados && matches!(function, Function::ForwardDynamics | Function::TorqueHessian) => true,
         [] if arguments.casadi && robot.closed.is_empty() => {
             matches!(function, Function::InverseDynamics | Function::ForwardDynamics)
         }

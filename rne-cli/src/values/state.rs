@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use rne::{
     BaseAcceleration, BaseMotion, BaseTwist, DynAccelerationDerivatives, DynArm, DynFloatingTorqueDerivatives,
-    DynTorqueDerivatives, DynTorqueGradient, Payload, Pose, Quaternion, Wrench, WrongLength,
+    DynTorqueDerivatives, DynTorqueGradient, DynTorqueHessian, Payload, Pose, Quaternion, Wrench, WrongLength,
 };
 use rne_codegen::{Argument, Capability, Function};
 use rne_model::{Robot, nearest_name};
@@ -306,6 +306,7 @@ records! {
     Pose { rotation, translation } Wrench { force, moment } DynTorqueDerivatives { dq, dqd }
     BaseAcceleration { linear, angular } DynFloatingTorqueDerivatives { dq, dqd, domega }
     DynTorqueGradient { dq, dqd, dqdd } DynAccelerationDerivatives { dq, dqd, dtau }
+    DynTorqueHessian { dq_dq, dq_dqd, dqd_dqd, dq_dqdd }
 }
 
 /// Positions of the dependent joints of closed loops: those that close the loops, from the given ones. A Newton step

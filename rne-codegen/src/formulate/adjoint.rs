@@ -29,6 +29,64 @@ pub(crate) fn gradient<'s>(builder: &'s Builder, coordinates: &Coordinates, torq
     by.into_iter().zip(found).map(|(by, derivative)| (name(by), builder.name(name(by), derivative))).collect()
 }
 
+/// The second derivatives of λᵀτ, each by rows.
+pub(crate) struct Hessian<M> {
+    /// By q and q: the upper half, from the diagonal on.
+    pub(crate) dq_dq: M,
+    /// By q, for the rows, and q̇.
+    pub(crate) dq_dqd: M,
+    /// By q̇ and q̇: the upper half, from the diagonal on.
+    pub(crate) dqd_dqd: M,
+    /// By q, for the rows, and q̈.
+    pub(crate) dq_dqdd: M,
+}
+
+impl<'s> Hessian<Vec<Vec<Symbol<'s>>>> {
+    /// The blocks, by name; an element and its mirror are one number.
+    pub(crate) fn outputs(&self, coordinates: &Coordinates) -> Outputs<'s> {
+        use WithRespectTo::{Position, Rate, RateDot};
+        let joints = coordinates.joints();
+        let block = |rows: &[Vec<Symbol<'s>>], by: Quantity, kind: fn(usize) -> WithRespectTo, is_symmetric: bool| {
+            square(joints.len(), |row, column| {
+                let (row, column) = if is_symmetric { (row.min(column), row.max(column)) } else { (row, column) };
+                let name = Name { by: Some(kind(joints[column] + 1)), ..Name::scalar(by, joints[row] + 1) };
+                let element = rows[row][if is_symmetric { column - row } else { column }];
+                (name, element.builder.name(name, element))
+            })
+        };
+        let (by_position, by_rate) = (Quantity::WeightedByPosition, Quantity::WeightedByRate);
+        [
+            block(&self.dq_dq, by_position, Position, true),
+            block(&self.dq_dqd, by_position, Rate, false),
+            block(&self.dqd_dqd, by_rate, Rate, true),
+            block(&self.dq_dqdd, by_position, RateDot, false),
+        ]
+        .concat()
+    }
+}
+
+/// The second derivatives of λᵀτ: those of its gradient, forwards.
+pub(crate) fn hessian<'s>(builder: &'s Builder, coordinates: &Coordinates, torques: &[Symbol<'s>]) -> Outputs<'s> {
+    let joints = coordinates.joints();
+    let dof = joints.len();
+    let variables = |kind: fn(usize) -> WithRespectTo| joints.iter().map(move |joint| kind(joint + 1));
+    let kinds = [WithRespectTo::Position, WithRespectTo::Rate, WithRespectTo::RateDot];
+    let all: Vec<_> = kinds.into_iter().flat_map(variables).map(WithRespectTo::variable).collect();
+    builder.at(Quantity::WeightedTorque, 0);
+    let gradient = builder.gradient(weighted(builder, coordinates, torques), &all);
+    // the elements by q̈ are M λ
+    let by_position = builder.derivatives(&gradient, variables(WithRespectTo::Position));
+    let by_rate = builder.derivatives(&gradient[dof..2 * dof], variables(WithRespectTo::Rate));
+    let whole = |kind: usize| {
+        (0..dof).map(|row| (0..dof).map(|column| by_position[row][kind * dof + column]).collect()).collect()
+    };
+    let half = |columns: &[Vec<Symbol<'s>>]| {
+        (0..dof).map(|row| (row..dof).map(|column| columns[column][row]).collect()).collect()
+    };
+    let [dq_dqd, dq_dqdd] = [1, 2].map(whole);
+    Hessian { dq_dq: half(&by_position), dq_dqd, dqd_dqd: half(&by_rate), dq_dqdd }.outputs(coordinates)
+}
+
 /// The inverse of a mass matrix, on the way to the derivatives of the accelerations.
 pub(crate) struct Inverse<'s, 'a> {
     builder: &'s Builder,

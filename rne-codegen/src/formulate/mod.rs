@@ -123,6 +123,7 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
             floating_derivatives(builder, derivation.coordinates(), derivation.floating_torques())
         }
         Function::TorqueGradient => adjoint::gradient(builder, derivation.coordinates(), &derivation.tau()),
+        Function::TorqueHessian => adjoint::hessian(builder, derivation.coordinates(), &derivation.tau()),
         Function::ForwardDynamicsDerivatives
         | Function::ForwardDynamicsDerivativesWithWrenches
         | Function::ForwardDynamicsDerivativesWithPayload => {

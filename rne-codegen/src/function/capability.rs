@@ -60,6 +60,8 @@ named! {
         ForwardDynamicsDerivatives = "ForwardDynamicsDerivatives",
         /// How the Jacobian changes.
         JacobianDerivatives = "JacobianDerivatives",
+        /// Second derivatives of a weighted sum of the torques.
+        InverseDynamicsHessian = "InverseDynamicsHessian",
     }
 }
 

@@ -373,4 +373,21 @@ pub(super) const FIXED_BASE: &[Entry] = &[
         ]),
         ..Entry::of(Function::JacobianDerivatives, Capability::JacobianDerivatives)
     },
+    Entry {
+        output: "hessian",
+        listed: "returned: the rows by q and q, by q and q̇, by q̇ and q̇, by q and q̈",
+        own: &[
+            Own::of(Quantity::WeightedByPosition, |joint| format!("second derivatives of λᵀτ, by q{joint}")),
+            Own::of(Quantity::WeightedByRate, |joint| format!("second derivatives of λᵀτ, by q̇{joint}")),
+        ],
+        answer: Answer::Tables(&[
+            AnswerTable::of("∂²(λᵀτ)/∂q∂q (per rad or m, of each joint)", Labels::Joints, Labels::Joints),
+            AnswerTable::of("∂²(λᵀτ)/∂q∂q̇ (rows by q, columns by q̇)", Labels::Joints, Labels::Joints),
+            AnswerTable::of("∂²(λᵀτ)/∂q̇∂q̇", Labels::Joints, Labels::Joints),
+            AnswerTable::of("∂²(λᵀτ)/∂q∂q̈ (rows by q, columns by q̈)", Labels::Joints, Labels::Joints),
+        ]),
+        is_of_motion: true,
+        feels_rotors: true,
+        ..Entry::of(Function::TorqueHessian, Capability::InverseDynamicsHessian)
+    },
 ];

@@ -88,6 +88,8 @@ pub enum Returned {
     AccelerationDerivatives,
     /// A matrix for each of three linear coordinates, then of three angular ones.
     SpatialMatrices,
+    /// Four matrices.
+    TorqueHessian,
 }
 
 impl Returned {
@@ -128,6 +130,7 @@ impl Returned {
             Self::TorqueGradient => &Shape::Record(Record::TorqueGradient, &[VECTOR, VECTOR, VECTOR]),
             Self::AccelerationDerivatives => &Shape::Record(Record::AccelerationDerivatives, &[MATRIX, MATRIX, MATRIX]),
             Self::SpatialMatrices => &Shape::Array(Length::Fixed(6), &MATRIX),
+            Self::TorqueHessian => &Shape::Record(Record::TorqueHessian, &[MATRIX, MATRIX, MATRIX, MATRIX]),
             Self::AccelerationsAndWrenches => {
                 &Shape::Record(Record::AccelerationsAndWrenches, &[ACCELERATIONS, Shape::Array(Length::Tips, &WRENCH)])
             }
@@ -257,6 +260,8 @@ pub enum Record {
     TorqueGradient,
     /// By q, by q̇ and by τ.
     AccelerationDerivatives,
+    /// By q twice, by q and q̇, by q̇ twice, by q and q̈.
+    TorqueHessian,
 }
 
 impl Record {
@@ -276,6 +281,7 @@ impl Record {
             Self::ClosureStep => "ClosureStep",
             Self::TorqueGradient => "TorqueGradient",
             Self::AccelerationDerivatives => "AccelerationDerivatives",
+            Self::TorqueHessian => "TorqueHessian",
         }
     }
 
@@ -295,6 +301,7 @@ impl Record {
             Self::ClosureStep => &["passive", "residual"],
             Self::TorqueGradient => &["dq", "dqd", "dqdd"],
             Self::AccelerationDerivatives => &["dq", "dqd", "dtau"],
+            Self::TorqueHessian => &["dq_dq", "dq_dqd", "dqd_dqd", "dq_dqdd"],
         }
     }
 }

@@ -353,6 +353,14 @@ macro_rules! functions {
                 "∂J/∂q: the derivatives of the geometric Jacobian by the positions, in world axes.",
                 "derivatives[r][i][j]: of element (r, i) of jacobian, by joint j. The three linear matrices are \
                  symmetric. The sum over j of these times q̇ⱼ is jacobian_rate.";
+            TorqueHessian = torque_hessian(
+                q: Positions, qd: Rates, qdd: Accelerations, multipliers: Multipliers
+            ) -> TorqueHessian:
+                "The Hessian of λᵀτ: of the torques of `inverse_dynamics`, each times its multiplier λ and added up.",
+                "multipliers: λ, as an optimiser has them for the equations of motion. dq_dq[i][j], dq_dqd[i][j], \
+                 dqd_dqd[i][j], dq_dqdd[i][j]: second derivatives of λᵀτ by the position (dqd_dqd: velocity) of joint i \
+                 and by the position, velocity or acceleration of joint j. dq_dq and dqd_dqd are symmetric. The other \
+                 second derivatives, by q̇ and q̈ and by q̈ twice, are zero: the torques are linear in q̈, with M(q).";
         }
     };
 }

@@ -11,7 +11,7 @@ use crate::reduced::backward::{torques, torques_of_floating_base};
 use crate::reduced::crba::ExpressedIn;
 use crate::reduced::forward::motions;
 use crate::reduced::rnea_derivatives::sensitivity;
-use crate::reduced::{Arm, Wrench, aba, crba, momentum};
+use crate::reduced::{Arm, Wrench, aba, crba, momentum, torque_hessian};
 
 /// How a function is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -73,7 +73,9 @@ impl Algorithm {
             Function::InverseDynamicsWithPayload | Function::BiasTorquesWithPayload => {
                 &[Algorithm::Rnea, Algorithm::UnturnedPayload]
             }
-            Function::CoriolisMatrix | Function::InverseDynamicsDerivatives => &[BY_GROUPS, BY_JOINTS, Algorithm::Rnea],
+            Function::CoriolisMatrix | Function::InverseDynamicsDerivatives | Function::TorqueHessian => {
+                &[BY_GROUPS, BY_JOINTS, Algorithm::Rnea]
+            }
             Function::GravityTorques => &[Algorithm::Rnea, BY_GROUPS, BY_JOINTS],
             Function::GravityTorquesWithPayload => &[Algorithm::Rnea, Algorithm::UnturnedPayload, BY_GROUPS, BY_JOINTS],
             Function::MassMatrix | Function::InverseMassMatrix => &[BY_GROUPS, BY_JOINTS, Algorithm::UnitColumns],
@@ -137,15 +139,17 @@ impl Algorithm {
     }
 
     /// The ways of a function that are worth counting for a robot. Those that write the recursion anew for every joint
-    /// grow faster than composite bodies, and lose long before `MANY`. Articulated bodies are those of links
-    /// alone, each with a joint that moves freely.
+    /// grow faster than composite bodies, and lose long before `MANY`, second derivatives before `FEW`. Articulated
+    /// bodies are those of links alone, each with a joint that moves freely.
     pub(crate) fn of_robot(function: Function, robot: &Robot) -> Vec<Self> {
         const MANY: usize = 10;
+        const FEW: usize = 5;
         let is_worth = |algorithm: Self| match algorithm {
             Self::UnitColumns => robot.joints.len() < MANY,
             Self::Rnea if matches!(function, Function::CoriolisMatrix | Function::InverseDynamicsDerivatives) => {
                 robot.joints.len() < MANY
             }
+            Self::Rnea if function == Function::TorqueHessian => robot.joints.len() < FEW,
             Self::Rnea | Self::UnturnedPayload | Self::Crba(_) => true,
             Self::Aba(_) => {
                 !robot.has_rotors() && !robot.has_couplings() && robot.closed.is_empty() && !robot.has_spinning_rotors()
@@ -287,6 +291,23 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
         }
         (Function::TorqueGradient, _) => {
             adjoint::gradient(builder, coordinates, &coordinates.torques(&recursion(arm, algorithm)))
+        }
+        (Function::TorqueHessian, Algorithm::Crba(_)) => {
+            let adjoint::Hessian { dq_dq, dq_dqd, dqd_dqd, dq_dqdd } = torque_hessian::hessian(arm);
+            let upper = |rows: Vec<Vec<Symbol<'s>>>| {
+                let rows = rows.into_iter().enumerate().map(|(at, row)| row[at..].to_vec());
+                coordinates.upper_half(builder, rows.collect())
+            };
+            let found = adjoint::Hessian {
+                dq_dq: upper(dq_dq),
+                dq_dqd: coordinates.matrix(&dq_dqd),
+                dqd_dqd: upper(dqd_dqd),
+                dq_dqdd: coordinates.matrix(&dq_dqdd),
+            };
+            found.outputs(coordinates)
+        }
+        (Function::TorqueHessian, _) => {
+            adjoint::hessian(builder, coordinates, &coordinates.torques(&recursion(arm, algorithm)))
         }
         (Function::CoriolisMatrix, _) => {
             let torques = coordinates.torques(&recursion(arm, algorithm));

@@ -121,6 +121,11 @@ impl<'s> Arm<'_, 's> {
         }
     }
 
+    /// λ of a joint.
+    pub(crate) fn multiplier(&self, joint: usize) -> Symbol<'s> {
+        self.of_joint(Quantity::Multiplier, joint)
+    }
+
     /// Force and moment at each tip where the function has them.
     pub(crate) fn wrenches(&self) -> Vec<(&Tip, [Vector<'s>; 2])> {
         let (builder, tips) = (self.builder, &self.joint_frames.tips);

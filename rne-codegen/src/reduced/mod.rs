@@ -25,6 +25,7 @@ pub(crate) mod payload;
 pub(crate) mod regrouping;
 pub(crate) mod rnea_derivatives;
 pub(crate) mod siblings;
+pub(crate) mod torque_hessian;
 pub(crate) mod wrench;
 
 pub(crate) use algorithm::Algorithm;

@@ -86,30 +86,30 @@ impl<'s> Sensitivity<'s> {
 }
 
 /// ∫ r vᵀ dm
-type Moment<'s> = [[Symbol<'s>; 3]; 3];
+pub(crate) type Moment<'s> = [[Symbol<'s>; 3]; 3];
 
 /// The links from a joint on, about its origin.
 #[derive(Clone, Copy)]
-struct Behind<'s> {
-    body: Composite<'s>,
+pub(crate) struct Behind<'s> {
+    pub(crate) body: Composite<'s>,
     /// Times the factor of the velocities.
-    moment: Moment<'s>,
+    pub(crate) moment: Moment<'s>,
     /// G11 + G22, which a turn about z leaves alone, where it has been turned so.
-    around: Option<Symbol<'s>>,
-    momentum: Vector<'s>,
-    wrench: Wrench<'s>,
+    pub(crate) around: Option<Symbol<'s>>,
+    pub(crate) momentum: Vector<'s>,
+    pub(crate) wrench: Wrench<'s>,
 }
 
 /// The contribution of joint `joint` to the rows and columns of joints nearer to the base.
 #[derive(Clone, Copy)]
-struct Column<'s> {
+pub(crate) struct Column<'s> {
     joint: usize,
     /// The column of M.
-    unit: Wrench<'s>,
+    pub(crate) unit: Wrench<'s>,
     /// tr(G) z - G z
     spin: Vector<'s>,
-    by_position: Wrench<'s>,
-    by_rate: Wrench<'s>,
+    pub(crate) by_position: Wrench<'s>,
+    pub(crate) by_rate: Wrench<'s>,
 }
 
 impl<'s> Body<'s> for Behind<'s> {
@@ -126,13 +126,19 @@ impl<'s> Body<'s> for Behind<'s> {
 }
 
 impl<'s> Behind<'s> {
-    fn around(&self) -> Symbol<'s> {
+    pub(crate) fn around(&self) -> Symbol<'s> {
         self.around.unwrap_or_else(|| self.moment[0][0] + self.moment[1][1])
     }
 
     /// With a rotor on the link: of its angular momentum Jm s a the moment ∫ r vᵀ dm has half, as what turns
     /// it is antisymmetric.
-    fn with_rotor(self, arm: &Arm<'_, 's>, gyrostat: &Gyrostat, carrier: &Motion<'s>, factor: Number) -> Self {
+    pub(crate) fn with_rotor(
+        self,
+        arm: &Arm<'_, 's>,
+        gyrostat: &Gyrostat,
+        carrier: &Motion<'s>,
+        factor: Number,
+    ) -> Self {
         let half = Number::integer(2).inverse().unwrap_or_default();
         let [x, y, z] = arm.builder.vector(gyrostat.axis).0;
         let rate = gyrostat.of_joints(arm, |joint| arm.rate(joint)).times(factor * half);
@@ -152,6 +158,11 @@ impl<'s> Behind<'s> {
         Self { wrench: self.wrench.plus(wrench), ..self }
     }
 
+    /// (tr(G) - G) v
+    pub(crate) fn about(&self, v: Vector<'s>) -> Vector<'s> {
+        about(&self.moment, self.around(), v)
+    }
+
     /// 2 Ω × velocity, for a doubled velocity.
     fn deflected(&self, by: Vector<'s>) -> Wrench<'s> {
         let g = &self.moment;
@@ -165,15 +176,30 @@ impl<'s> Behind<'s> {
     }
 }
 
+/// (tr(G) - G) v, with G11 + G22.
+pub(crate) fn about<'s>(g: &Moment<'s>, around: Symbol<'s>, v: Vector<'s>) -> Vector<'s> {
+    let [x, y, z] = v.0;
+    Vector([
+        (g[1][1] + g[2][2]) * x - (g[0][1] * y + g[0][2] * z),
+        (g[0][0] + g[2][2]) * y - (g[1][0] * x + g[1][2] * z),
+        around * z - (g[2][0] * x + g[2][1] * y),
+    ])
+}
+
+/// R G Rᵀ: rows, then columns.
+pub(crate) fn turned<'s>(moment: &Moment<'s>, turn: Turned<'s>) -> Moment<'s> {
+    let rows = moment.map(|row| turn.of(Vector(row)).0);
+    let columns = [0, 1, 2].map(|j| turn.of(Vector(rows.map(|row| row[j]))).0);
+    square(|i, j| columns[j][i])
+}
+
 impl<'s> Inward<'s> for Behind<'s> {
     fn turned(self, turn: Turned<'s>) -> Self {
         let around = if let Turned::AboutZ(_) = turn { Some(self.around()) } else { None };
-        // R G Rᵀ: rows, then columns
-        let rows = self.moment.map(|row| turn.of(Vector(row)).0);
-        let columns = [0, 1, 2].map(|j| turn.of(Vector(rows.map(|row| row[j]))).0);
+        let moment = turned(&self.moment, turn);
         Self {
             body: self.body.turned(turn),
-            moment: square(|i, j| columns[j][i]),
+            moment,
             around,
             momentum: turn.of(self.momentum),
             wrench: self.wrench.turned(turn),
@@ -236,7 +262,7 @@ pub(crate) fn sensitivity<'s>(arm: &Arm<'_, 's>, factor: Number) -> Sensitivity<
         let behind = load.whole(load.with_link(own), turn);
         let mut columns = load.columns(turn);
         behind.body.name(builder, index + 1);
-        let column = column(arm, index, station, &behind);
+        let column = column(arm, index, &twists(arm, index, station), &behind);
         for column in &columns {
             meet(arm, index, station, column, &mut found);
             meet_back(arm, index, column, &mut found);
@@ -338,14 +364,9 @@ fn gather<'s>(columns: &mut Vec<Column<'s>>, column: Column<'s>) {
 }
 
 /// The contribution of a link alone, in its axes.
-fn own<'s>(body: Composite<'s>, motion: &Motion<'s>) -> Behind<'s> {
+pub(crate) fn own<'s>(body: Composite<'s>, motion: &Motion<'s>) -> Behind<'s> {
     let (h, m, s) = (body.h, body.mass, full(body.s));
-    let ([x, y, z], [vx, vy, vz]) = (motion.twice_omega.0, motion.twice_velocity.0);
-    let moment = [0, 1, 2].map(|i| {
-        let [sx, sy, sz] = s[i];
-        let hi = h.0[i];
-        [hi * vx + (y * sz - z * sy), hi * vy + (z * sx - x * sz), hi * vz + (x * sy - y * sx)]
-    });
+    let moment = moment_of(h, &s, motion.twice_omega, motion.twice_velocity);
     let gradient = Gradient::new(motion.omega, motion.omega_dot);
     Behind {
         body,
@@ -359,16 +380,31 @@ fn own<'s>(body: Composite<'s>, motion: &Motion<'s>) -> Behind<'s> {
     }
 }
 
-/// The twists of a joint in its frame N: by its position and by its rate, each angular and linear, and Ω.
-struct Twists<'s> {
-    angular: Vector<'s>,
-    linear: Vector<'s>,
-    rate_angular: Vector<'s>,
-    rate_linear: Vector<'s>,
-    deflection: Vector<'s>,
+/// ∫ r vᵀ dm of a body with these moments.
+pub(crate) fn moment_of<'s>(
+    h: Vector<'s>,
+    s: &[[Symbol<'s>; 3]; 3],
+    omega: Vector<'s>,
+    velocity: Vector<'s>,
+) -> Moment<'s> {
+    let ([x, y, z], [vx, vy, vz]) = (omega.0, velocity.0);
+    [0, 1, 2].map(|i| {
+        let [sx, sy, sz] = s[i];
+        let hi = h.0[i];
+        [hi * vx + (y * sz - z * sy), hi * vy + (z * sx - x * sz), hi * vz + (x * sy - y * sx)]
+    })
 }
 
-fn twists<'s>(arm: &Arm<'_, 's>, index: usize, station: &JointMotion<'s>) -> Twists<'s> {
+/// The twists of a joint in its frame N: by its position and by its rate, each angular and linear, and Ω.
+pub(crate) struct Twists<'s> {
+    pub(crate) angular: Vector<'s>,
+    pub(crate) linear: Vector<'s>,
+    pub(crate) rate_angular: Vector<'s>,
+    pub(crate) rate_linear: Vector<'s>,
+    pub(crate) deflection: Vector<'s>,
+}
+
+pub(crate) fn twists<'s>(arm: &Arm<'_, 's>, index: usize, station: &JointMotion<'s>) -> Twists<'s> {
     let builder = arm.builder;
     let row = &arm.rows()[index];
     let Motion { omega, omega_dot, acceleration, twice_omega, twice_velocity } = station.before;
@@ -400,10 +436,9 @@ fn twists<'s>(arm: &Arm<'_, 's>, index: usize, station: &JointMotion<'s>) -> Twi
 }
 
 /// The contribution of a joint to rows and columns of joints nearer to the base.
-fn column<'s>(arm: &Arm<'_, 's>, index: usize, station: &JointMotion<'s>, behind: &Behind<'s>) -> Column<'s> {
+pub(crate) fn column<'s>(arm: &Arm<'_, 's>, index: usize, twists: &Twists<'s>, behind: &Behind<'s>) -> Column<'s> {
     let builder = arm.builder;
     let row = &arm.rows()[index];
-    let twists = twists(arm, index, station);
     let body = &behind.body;
     let (zero, g) = (builder.zero(), &behind.moment);
     let Wrench { force, moment } = behind.wrench;
@@ -467,6 +502,6 @@ fn meet_back<'s>(arm: &Arm<'_, 's>, index: usize, column: &Column<'s>, found: &m
     add(&mut found.by_rate[index][column.joint], along(&column.by_rate));
 }
 
-fn add<'s>(place: &mut Symbol<'s>, element: Symbol<'s>) {
+pub(crate) fn add<'s>(place: &mut Symbol<'s>, element: Symbol<'s>) {
     *place = if place.is_zero() { element } else { *place + element };
 }

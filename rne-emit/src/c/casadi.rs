@@ -1,8 +1,9 @@
 //! The functions of a file by CasADi's external interface, with Jacobians and directional derivatives.
 //!
 //! `casadi.external("inverse_dynamics", "arm.so")` finds a function by its name, and its derivatives by theirs:
-//! `jac_inverse_dynamics`, `fwd1_inverse_dynamics`, `adj1_inverse_dynamics`. The names, the order of inputs and outputs
-//! and the compressed columns are those of the code that CasADi 3.6 to 3.8 generates.
+//! `jac_inverse_dynamics`, `fwd1_inverse_dynamics`, `adj1_inverse_dynamics`, and the second derivatives
+//! `jac_adj1_inverse_dynamics`. The names, the order of inputs and outputs and the compressed columns are those of the
+//! code that CasADi 3.6 to 3.8 generates.
 
 use std::fmt::Write;
 
@@ -20,6 +21,9 @@ const MATRICES: &str = include_str!("casadi_matrices.c");
 
 /// The operation that derivatives without a gradient need.
 const TRANSPOSED: &str = include_str!("casadi_transposed.c");
+
+/// The operation that second derivatives need.
+const SECOND: &str = include_str!("casadi_second.c");
 
 /// The bodies of the functions for acados, in the order of [`Writer::of_acados`].
 const ACADOS: &str = include_str!("acados.c");
@@ -44,7 +48,8 @@ pub fn casadi_derivatives(function: Function) -> Vec<Function> {
     let derivatives = derivatives(function);
     let of_derivatives = |derivatives: Derivatives| {
         let sources = derivatives.sources.iter().map(|source| source.function);
-        sources.chain(derivatives.gradient.map(|(function, _)| function)).collect()
+        let gradient = derivatives.gradient.into_iter().flat_map(|(function, _)| [function, Function::TorqueHessian]);
+        sources.chain(gradient).collect()
     };
     derivatives.map(of_derivatives).unwrap_or_default()
 }
@@ -119,6 +124,9 @@ pub(super) fn definitions(file: &File) -> String {
     if derived.iter().any(|derivatives| derivatives.gradient.is_none()) {
         text.push_str(&writer.filled(TRANSPOSED));
     }
+    if derived.iter().any(|derivatives| derivatives.gradient.is_some()) {
+        text.push_str(&writer.filled(SECOND));
+    }
     text.push_str("\n// rows, columns; then 1 if all elements are there, else starts of the columns and the rows\n");
     for (index, pattern) in writer.patterns.iter().enumerate() {
         let numbers: Vec<String> = pattern.iter().map(ToString::to_string).collect();
@@ -158,10 +166,18 @@ impl Writer<'_> {
         self.pattern(vec![rows, columns, 1])
     }
 
-    /// The compressed columns of a square matrix whose elements, row by row, stand after the first `skipped` outputs.
-    fn square(&mut self, program: &Program, skipped: usize) -> String {
+    /// A square matrix of zeros.
+    fn nothing(&mut self) -> String {
+        let dof = self.file.robot.dof();
+        self.pattern([vec![dof, dof], vec![0; dof + 1]].concat())
+    }
+
+    /// The compressed columns of a square matrix, or of its transpose, whose elements, row by row, stand after the
+    /// first `skipped` outputs.
+    fn square(&mut self, program: &Program, skipped: usize, is_transposed: bool) -> String {
         let dof = program.dof;
         let is_there = |row: usize, column: usize| {
+            let (row, column) = if is_transposed { (column, row) } else { (row, column) };
             let output = &program.outputs[skipped + row * dof + column];
             program.values.get(output.value) != Value::Constant(0.0)
         };
@@ -214,7 +230,7 @@ impl Writer<'_> {
             of.iter().map(|(name, pattern)| (format!("{start}{name}"), pattern.clone())).collect()
         };
         let at = [given.clone(), vec![absent]].concat();
-        let blocks = self.blocks(&derivatives);
+        let blocks = self.blocks(&derivatives, false);
         let jacobian = Interface {
             name: format!("jac_{}", program.name),
             inputs: at.clone(),
@@ -237,17 +253,85 @@ impl Writer<'_> {
             outputs: named("adj_", &given),
             body: self.reverse(&arrays, &derivatives),
         };
-        vec![value, jacobian, forward, reverse]
+        let second = self.second(&reverse, &arrays, &derivatives);
+        [value, jacobian, forward, reverse].into_iter().chain(second).collect()
+    }
+
+    /// The Jacobian of the reverse derivatives by all that these take, where the file has the Hessian.
+    fn second(
+        &mut self,
+        reverse: &Interface,
+        arrays: &[ArgumentArray],
+        derivatives: &Derivatives,
+    ) -> Option<Interface> {
+        derivatives.gradient?;
+        let (prefix, dof, count) = (self.file.prefix, self.file.robot.dof(), arrays.len());
+        let program = self.find(Function::TorqueHessian)?;
+        let Layout::Record(record, _) = program.layout() else { return None };
+        let call = self.call(Function::TorqueHessian, arrays, &["&by".to_owned()]);
+        let columns = count + 2;
+        // by q, q̇ and q̈: the rows of the Hessian, of which those of a function of fewer arguments are the first
+        let places = [(0, 0, 0, false), (0, 1, 1, false), (0, 2, 3, false)];
+        let places = [&places[..], &[(1, 0, 1, true), (1, 1, 2, false), (2, 0, 3, true)]].concat();
+        let places: Vec<_> = places.into_iter().filter(|(row, column, ..)| (*row).max(*column) < count).collect();
+        let patterns: Vec<String> = places
+            .iter()
+            .map(|&(.., block, is_transposed)| {
+                let program = self.file.programs.iter().find(|program| program.function == Function::TorqueHessian);
+                program.map_or_else(String::new, |program| self.square(program, block * dof * dof, is_transposed))
+            })
+            .collect();
+        let mut body = String::new();
+        let wanted: Vec<_> =
+            places.iter().map(|(row, column, ..)| format!("res[{}]", row * columns + column)).collect();
+        let condition = wrapped("    if (", &[wanted.join(" || ")]);
+        let _ = writeln!(body, "{} {{", condition.trim_end());
+        let _ = writeln!(body, "        {} by;\n        {call};", record_type(self.file, record));
+        for ((&(.., block, is_transposed), pattern), result) in places.iter().zip(&patterns).zip(&wanted) {
+            let (put, field) = (if is_transposed { "put_transposed" } else { "put" }, record.fields()[block]);
+            let _ = writeln!(body, "        {prefix}_{put}(by.{field}, {pattern}, {result});");
+        }
+        body.push_str("    }\n");
+        let of_torques = self.blocks(derivatives, true);
+        let place = |input: usize| format!("res[{}]", input * columns + count + 1);
+        let put = |input: usize, matrix: &str| {
+            format!("{prefix}_put_transposed({matrix}, {}, {})", of_torques[input], place(input))
+        };
+        body.push_str(&self.with_matrices(arrays, derivatives, place, put));
+        let nothing = self.nothing();
+        let absent = self.pattern([vec![dof, 1], vec![0, 0]].concat());
+        let output = |(of, row): (&(String, String), usize)| {
+            let by = |(column, (by, _)): (usize, &(String, String))| {
+                let place = places.iter().position(|&(i, j, ..)| (i, j) == (row, column));
+                let of_multipliers = (column == count + 1).then(|| of_torques[row].clone());
+                let pattern = place.map(|place| patterns[place].clone()).or(of_multipliers);
+                (format!("jac_{}_{by}", of.0), pattern.unwrap_or_else(|| nothing.clone()))
+            };
+            reverse.inputs.iter().enumerate().map(by).collect::<Vec<_>>()
+        };
+        Some(Interface {
+            name: format!("jac_{}", reverse.name),
+            inputs: reverse
+                .inputs
+                .iter()
+                .cloned()
+                .chain(reverse.outputs.iter().map(|(name, _)| (format!("out_{name}"), absent.clone())))
+                .collect(),
+            outputs: reverse.outputs.iter().zip(0..).flat_map(output).collect(),
+            body,
+        })
     }
 
     /// The functions of an explicit differential equation as acados has CasADi generate them: x = (q, qd), u = tau, and
-    /// no parameters p. The derivatives of x by where it began, Sx and Su, are in columns.
+    /// no parameters p. The derivatives of x by where it began, Sx and Su, are in columns. The Hessian is that of λᵀ ẋ
+    /// by where it began and by u, its lower triangle column by column.
     fn of_acados(&mut self) -> Vec<Interface> {
         let (prefix, dof) = (self.file.prefix, self.file.robot.dof());
-        let functions: [(&str, &[&str], &[&str]); 3] = [
+        let functions: [(&str, &[&str], &[&str]); 4] = [
             ("expl_ode_fun", &["x", "u", "p"], &["xdot"]),
             ("expl_vde_forw", &["x", "Sx", "Su", "u", "p"], &["xdot", "Sxdot", "Sudot"]),
             ("expl_vde_adj", &["x", "lambda", "u", "p"], &["adj"]),
+            ("expl_ode_hess", &["x", "Sx", "Su", "lambda", "u", "p"], &["adj", "hess"]),
         ];
         let bodies = ACADOS.split("// next function\n");
         let bodies: Vec<String> = bodies.map(|body| self.filled(body)).collect();
@@ -258,6 +342,7 @@ impl Writer<'_> {
                 "u" => vec![dof, 1, 1],
                 "p" => vec![0, 0, 0],
                 "adj" => vec![3 * dof, 1, 1],
+                "hess" => vec![3 * dof * (3 * dof + 1) / 2, 1, 1],
                 _ => vec![2 * dof, 1, 1],
             };
             names.iter().map(|&name| (name.to_owned(), self.pattern(pattern(name)))).collect()
@@ -271,8 +356,8 @@ impl Writer<'_> {
         functions.into_iter().zip(bodies).map(interface).collect()
     }
 
-    /// The compressed columns of the derivatives by each input.
-    fn blocks(&mut self, derivatives: &Derivatives) -> Vec<String> {
+    /// The compressed columns of the derivatives by each input, or of their transposes.
+    fn blocks(&mut self, derivatives: &Derivatives, is_transposed: bool) -> Vec<String> {
         let mut blocks = Vec::new();
         for source in derivatives.sources {
             for (place, _) in source.blocks.iter().enumerate() {
@@ -280,7 +365,7 @@ impl Writer<'_> {
                 else {
                     continue;
                 };
-                blocks.push(self.square(program, place * program.dof * program.dof));
+                blocks.push(self.square(program, place * program.dof * program.dof, is_transposed));
             }
         }
         blocks

@@ -252,6 +252,10 @@ const fn about(record: Record) -> &'static str {
         Record::AccelerationDerivatives => {
             "Accelerations by positions, by velocities and by torques; row i is acceleration i, column j is joint j."
         }
+        Record::TorqueHessian => {
+            "Second derivatives of the torques, each times its multiplier and added up: element (i, j) is by joint i \
+             and by joint j."
+        }
         Record::TorqueDerivatives => "Torques by positions and by velocities; row i is torque i, column j is joint j.",
     }
 }

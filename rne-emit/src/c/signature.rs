@@ -111,6 +111,7 @@ pub fn record_name(prefix: &str, record: Record) -> String {
         Record::ClosureStep => "closure",
         Record::TorqueGradient => "gradient",
         Record::AccelerationDerivatives => "acceleration_derivatives",
+        Record::TorqueHessian => "hessian",
     };
     format!("{prefix}_{name}")
 }

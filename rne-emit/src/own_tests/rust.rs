@@ -23,9 +23,12 @@ pub fn rust_tests(robot: &Robot, programs: &[Program], golden: &[Golden]) -> Str
          mod tests {{\n    extern crate std;\n\n    use core::ops::{{{imported}}};\n    use std::vec::Vec;\n\n    \
          use super::Scalar;\n{NUMBER}{division}{SCALAR}{by_sign}    }}\n{COMPARISON}\n"
     );
-    let has_three_parts = |program: &Program| matches!(program.function.shape(), Shape::Record(_, [_, _, _]));
-    if programs.iter().any(has_three_parts) {
-        text.push_str(THREE_PARTS);
+    for (count, parts) in [(3, THREE_PARTS), (4, FOUR_PARTS)] {
+        let has =
+            |program: &Program| matches!(program.function.shape(), Shape::Record(_, parts) if parts.len() == count);
+        if programs.iter().any(has) {
+            text.push_str(parts);
+        }
     }
     text.push_str(&tests.states());
     for index in 0..programs.len() {
@@ -78,6 +81,12 @@ const BY_SIGN: &str = "        fn by_sign(self, positive: Self, negative: Self) 
 
 const THREE_PARTS: &str = "    impl<A: Flat, B: Flat, C: Flat> Flat for (A, B, C) {
         fn flat(&self) -> Vec<f64> { [self.0.flat(), self.1.flat(), self.2.flat()].concat() }
+    }
+
+";
+
+const FOUR_PARTS: &str = "    impl<A: Flat, B: Flat, C: Flat, D: Flat> Flat for (A, B, C, D) {
+        fn flat(&self) -> Vec<f64> { [self.0.flat(), self.1.flat(), self.2.flat(), self.3.flat()].concat() }
     }
 
 ";

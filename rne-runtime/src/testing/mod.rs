@@ -46,9 +46,10 @@ pub use state::{JOINTS, Random};
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use torques::{
     actuator_torques_are_those_of_the_runtime, derivatives_are_those_of_the_runtime, gradient_is_that_of_the_runtime,
-    gravity_and_bias_are_torques_without_motion, joint_wrenches_are_those_of_the_runtime,
-    payload_dynamics_are_those_of_the_runtime, regressor_is_that_of_the_runtime, torques_are_linear_in_accelerations,
-    torques_are_those_of_the_runtime, torques_on_a_moving_base_are_those_of_the_runtime,
+    gravity_and_bias_are_torques_without_motion, hessian_is_that_of_the_runtime,
+    joint_wrenches_are_those_of_the_runtime, payload_dynamics_are_those_of_the_runtime,
+    regressor_is_that_of_the_runtime, torques_are_linear_in_accelerations, torques_are_those_of_the_runtime,
+    torques_on_a_moving_base_are_those_of_the_runtime,
 };
 
 /// The tests themselves, where there is a runtime to compare with.

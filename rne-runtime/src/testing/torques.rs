@@ -6,8 +6,8 @@ use super::RobotFile;
 use super::comparison::{Allowed, are_finite, compare, largest};
 use super::state::{State, states};
 use crate::{
-    Actuation, Arm, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, JointWrenches, MovingBase,
-    PayloadDynamics, Regressor, Wrench,
+    Actuation, Arm, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian,
+    JointWrenches, MovingBase, PayloadDynamics, Regressor, Wrench,
 };
 
 /// Torques that vanish but for rounding are measured by this part of the forces and moments at the joints.
@@ -125,6 +125,21 @@ pub fn gradient_is_that_of_the_runtime<const DOF: usize, R: InverseDynamicsGradi
         compare("∂(λᵀτ)/∂q", &state, allowed, &found.dq, &expected.dq);
         compare("∂(λᵀτ)/∂q̇", &state, allowed, &found.dqd, &expected.dqd);
         compare("∂(λᵀτ)/∂q̈", &state, allowed, &found.dqdd, &expected.dqdd);
+    }
+}
+
+/// The Hessian of λᵀτ, which generated code has from other formulas than dual numbers.
+pub fn hessian_is_that_of_the_runtime<const DOF: usize, R: InverseDynamicsHessian<DOF>>(robot: &R, file: &RobotFile) {
+    let arm = file.arm::<DOF>();
+    for state in states() {
+        let State { q, qd, qdd, tau: multipliers, .. } = &state;
+        let allowed = Allowed::Rounding { scale: scale(&arm, &state) * largest(multipliers) };
+        let found = robot.torque_hessian(q, qd, qdd, multipliers);
+        let expected = arm.torque_hessian(q, qd, qdd, multipliers);
+        compare("∂²(λᵀτ)/∂q∂q", &state, allowed, found.dq_dq.as_flattened(), expected.dq_dq.as_flattened());
+        compare("∂²(λᵀτ)/∂q∂q̇", &state, allowed, found.dq_dqd.as_flattened(), expected.dq_dqd.as_flattened());
+        compare("∂²(λᵀτ)/∂q̇∂q̇", &state, allowed, found.dqd_dqd.as_flattened(), expected.dqd_dqd.as_flattened());
+        compare("∂²(λᵀτ)/∂q∂q̈", &state, allowed, found.dq_dqdd.as_flattened(), expected.dq_dqdd.as_flattened());
     }
 }
 

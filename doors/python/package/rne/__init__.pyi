@@ -421,6 +421,11 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """∂J/∂q: the derivatives of the geometric Jacobian by the positions, in world axes."""
+    def torque_hessian(
+        self, q: Joints, qd: Joints, qdd: Joints, multipliers: Joints, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats, Floats, Floats]:
+        """The Hessian of λᵀτ: of the torques of `inverse_dynamics`, each times its multiplier λ and added up."""
     # <!-- end -->
     @property
     def passive_joints(self) -> list[str]:

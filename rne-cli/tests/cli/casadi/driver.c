@@ -23,6 +23,7 @@ WITH_DERIVATIVES(inverse_dynamics)
 WITH_DERIVATIVES(forward_dynamics)
 WITH_DERIVATIVES(gravity_torques)
 WITH_DERIVATIVES(bias_torques)
+DECLARED(jac_adj1_inverse_dynamics)
 
 static int compared = 0;
 
@@ -155,6 +156,40 @@ static void check(const function *f, const double *at[3], const double expected[
     }
 }
 
+// The second derivatives of the torques: blocks of the Hessian and of the Jacobian; each alone, then all of them.
+static void check_second(const double *at[3], const double *given[3], double by[3][N][N])
+{
+    double multipliers[N], store[15][N * N], full[N][N];
+    const double *arg[8] = {given[0], given[1], given[2], 0, multipliers, 0, 0, 0};
+    double *res[15];
+    arm_hessian twice;
+    for (int i = 0; i < N; i++) {
+        multipliers[i] = 0.3 - 0.1 * i;
+    }
+    arm_torque_hessian(at[0], at[1], at[2], multipliers, &twice);
+    for (int asked = 0; asked <= 15; asked++) {
+        for (int k = 0; k < 15; k++) {
+            res[k] = asked == k || asked == 15 ? store[k] : 0;
+        }
+        jac_adj1_inverse_dynamics(arg, res, 0, 0, 0);
+        for (int k = 0; k < 15; k++) {
+            if (!res[k]) {
+                continue;
+            }
+            spread(jac_adj1_inverse_dynamics_sparsity_out(k), store[k], full);
+            for (int i = 0; i < N; i++) {
+                for (int j = 0; j < N; j++) {
+                    const double expected = k % 5 == 4 ? by[k / 5][j][i]
+                        : k == 0 ? twice.dq_dq[i][j] : k == 1 ? twice.dq_dqd[i][j] : k == 2 ? twice.dq_dqdd[i][j]
+                        : k == 5 ? twice.dq_dqd[j][i] : k == 6 ? twice.dqd_dqd[i][j] : k == 10 ? twice.dq_dqdd[j][i]
+                        : 0;
+                    expect("jac_adj1_inverse_dynamics", full[i][j], expected);
+                }
+            }
+        }
+    }
+}
+
 #define FUNCTION(f, inputs) {#f, inputs, f, jac_##f, fwd1_##f, adj1_##f, jac_##f##_sparsity_out}
 
 // Without `q` or without velocities they are zero.
@@ -173,6 +208,7 @@ static void check_state(const double *q, const double *qd, const double *qdd)
     memcpy(by[1], of_torques.dqd, sizeof by[1]);
     arm_mass_matrix(full[0], by[2]);
     check(&inverse, given, tau, by);
+    check_second(full, given, by);
 
     const function bias = FUNCTION(bias_torques, 2);
     arm_inverse_dynamics(full[0], full[1], zeros, tau);
