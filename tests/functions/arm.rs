@@ -374,6 +374,7 @@ pub(crate) fn at_tips<T: Copy>(tips: usize, wrench: &Wrench<T>) -> Vec<Wrench<T>
 }
 
 /// What the runtime returns, as a row of numbers.
+#[allow(clippy::too_many_lines)] // an arm for each function
 pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Given<'_, T>) -> Vec<T> {
     let Given { q, qd, qdd, tau, ref wrench, ref payload, ref base, ref base_rotation } = *given;
     let poses = |poses: Vec<Pose<T>>| -> Vec<T> {

@@ -5,7 +5,7 @@ use rne_model::Robot;
 
 use crate::arm::{Arm, Maker, at_tips, base_rotation};
 use crate::check::Worst;
-use crate::equality::error;
+use crate::equality::{error, is_compared};
 use crate::trees::{State, robot};
 use crate::{couplings, motors, random_trees};
 
@@ -57,8 +57,7 @@ fn compare(arm: &CompiledArm, robot: &Robot, seed: u64, worst: &mut Worst) {
         given.with(name, Array::Rows(row)).expect("an argument of this name")
     });
     let runtime = Arm::new(robot, Maker::Runtime);
-    let takes = |function: &Function| !(robot.has_couplings() && function.is_of_every_link());
-    for function in Function::OF_TREES.into_iter().filter(takes) {
+    for function in Function::OF_TREES.into_iter().filter(|&function| is_compared(robot, function)) {
         let width = arm.layout(function).len();
         let mut found = vec![f64::NAN; width * states.len()];
         arm.run(function, states.len(), &arguments, Destination::Rows(&mut found)).expect("a function that compiles");

@@ -110,14 +110,16 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
     }
 }
 
+/// Whether code and runtime have the same meaning of a function. Seen from a frame, code has the rates of the Jacobian of
+/// the tip, where the runtime has those at the frame.
+pub(crate) fn is_compared(robot: &Robot, function: Function) -> bool {
+    let is_of_tip = function.capability() == Capability::JacobianDerivatives;
+    !(robot.has_couplings() && function.is_of_every_link() || robot.at.is_some() && is_of_tip)
+}
+
 /// Compares all functions of an arm at a state.
 pub(crate) fn compare(arm: &Arm, maker: Maker, given: &Given<'_, f64>, tolerance: f64, worst: &mut Worst) {
-    // code has the rates of the tip alone, where the runtime has those at the frame that a robot is seen from
-    let is_of_tip = |function: &Function| function.capability() == Capability::JacobianDerivatives;
-    let takes = |function: &Function| {
-        !(arm.robot.has_couplings() && function.is_of_every_link()) && !(arm.robot.at.is_some() && is_of_tip(function))
-    };
-    for function in Function::OF_TREES.into_iter().filter(takes) {
+    for function in Function::OF_TREES.into_iter().filter(|&function| is_compared(&arm.robot, function)) {
         let found = arm.numbers(function, given);
         worst.see(function.name(), error(arm, maker, function, given, &found, tolerance));
     }

@@ -16,7 +16,7 @@ use crate::trees::{self, State};
 /// A robot whose number of joints is known.
 struct Joints<'a, const DOF: usize>(&'a Arm);
 
-fn given<'a, T: Scalar>([q, qd, tau]: [&'a [T]; 3]) -> Given<'a, T> {
+fn given<T: Scalar>([q, qd, tau]: [&[T]; 3]) -> Given<'_, T> {
     // the accelerations are not used
     Given { tau, ..Given::of_joints(q, qd, qd) }
 }

@@ -19,7 +19,7 @@ fn close<T: Copy>(
     read: impl Fn(T) -> f64,
     tolerance: f64,
 ) {
-    assert_eq!(found.len(), 25);
+    assert_eq!(found.len(), 26);
     for ((name, found), (_, expected)) in found.iter().zip(expected) {
         assert_eq!(found.len(), expected.len());
         let scale = expected.iter().fold(0.0_f64, |scale, x| scale.max(x.abs()));

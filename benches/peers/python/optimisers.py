@@ -37,6 +37,7 @@ FUNCTIONS = {
     "torque derivatives": ("inverse_dynamics_derivatives", False),
     "acceleration derivatives": ("forward_dynamics_derivatives", False),
     "gradient of λᵀτ": ("torque_gradient", True),
+    "Hessian of λᵀτ": ("torque_hessian", True),
 }
 
 

@@ -18,12 +18,17 @@ use mpc::experiment::{GOALS, INTERVAL, LOAD, SAMPLES, Sample, beyond, model_erro
 use mpc::model::{DOF, Method};
 use mpc::picture::picture;
 
+/// A part of the time of an iteration.
+type Part = fn(&Spent) -> f64;
+
 fn main() -> ExitCode {
     let methods = [("semi-implicit Euler", Method::Euler), ("Runge-Kutta, 4 slopes", Method::RungeKutta)];
     let motions = methods.map(|(_, method)| run(method));
     println!("Panda, {NODES} intervals of {INTERVAL} s, {LOAD} kg at the tip that the controller does not know\n");
     print!("{:<52}", "");
-    methods.iter().for_each(|(name, _)| print!("{name:>24}"));
+    for (name, _) in &methods {
+        print!("{name:>24}");
+    }
     println!("\nclosed loop");
     for (index, goal) in GOALS.iter().enumerate() {
         for (after, at) in [("0.5 s", SAMPLES / 4), ("1 s", SAMPLES / 2), ("2 s", SAMPLES)] {
@@ -38,7 +43,7 @@ fn main() -> ExitCode {
     let errors = methods.map(|(_, method)| 1e6 * model_error(method, &motions[0]));
     println!("  {:<50}{:>24.4}{:>24.4}", "error of an interval at most, urad", errors[0], errors[1]);
     println!("one real-time iteration, median (99 % are below)");
-    let times: [(&str, fn(&Spent) -> f64); 4] = [
+    let times: [(&str, Part); 4] = [
         ("whole, ms", |it| it.whole.as_secs_f64() * 1e3),
         ("intervals and their derivatives at 21 nodes, ms", |it| it.dynamics.as_secs_f64() * 1e3),
         ("these, tips, Jacobians and gravity, ms", |it| it.model.as_secs_f64() * 1e3),
@@ -78,7 +83,7 @@ fn middle(samples: &[Sample], of: fn(&Spent) -> f64) -> String {
     format!("{middle:.3} ({high:.3})")
 }
 
-/// The motion, and what the controller was given and took: casadi_mpc.py plans again from the same inputs.
+/// The motion, and what the controller was given and took: `casadi_mpc.py` plans again from the same inputs.
 fn table(samples: &[Sample]) -> String {
     let mut table = String::from("t,off,whole,model,goal1,goal2,goal3");
     for joint in 1..=DOF {

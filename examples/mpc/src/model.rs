@@ -94,10 +94,10 @@ fn runge_kutta(start: &State, tau: &Joints, external: &Joints, interval: f64) ->
         let mut slope: Box<[Rows; 2]> = Box::new([moved[1], [[0.0; 3 * DOF]; DOF]]);
         for (row, sum) in slope[1].iter_mut().enumerate() {
             sum[2 * DOF..].copy_from_slice(&of.dtau[row]);
-            for joint in 0..DOF {
-                let (position, velocity) = (of.dq[row][joint], of.dqd[row][joint]);
-                for ((sum, q), qd) in sum.iter_mut().zip(&moved[0][joint]).zip(&moved[1][joint]) {
-                    *sum += position * q + velocity * qd;
+            let [positions, velocities] = &moved;
+            for ((by_q, by_qd), (q, qd)) in of.dq[row].iter().zip(&of.dqd[row]).zip(positions.iter().zip(velocities)) {
+                for ((sum, q), qd) in sum.iter_mut().zip(q).zip(qd) {
+                    *sum += by_q * q + by_qd * qd;
                 }
             }
         }

@@ -59,7 +59,7 @@ pub(crate) struct Arguments {
     /// Joint torques for forward_dynamics, N m or N
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     tau: Option<List>,
-    /// Multipliers of the torques for torque_gradient and torque_hessian
+    /// Multipliers for torque_gradient, torque_hessian
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     multipliers: Option<List>,
     /// Wrench by the tip: fx,fy,fz,nx,ny,nz, tip axes

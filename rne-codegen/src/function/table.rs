@@ -352,7 +352,7 @@ macro_rules! functions {
             JacobianDerivatives = jacobian_derivatives(q: Positions) -> SpatialMatrices:
                 "∂J/∂q: the derivatives of the geometric Jacobian by the positions, in world axes.",
                 "derivatives[r][i][j]: of element (r, i) of jacobian, by joint j. The three linear matrices are \
-                 symmetric. The sum over j of these times q̇ⱼ is jacobian_rate.";
+                 symmetric. The sum over j of these times q̇[j] is jacobian_rate.";
             TorqueHessian = torque_hessian(
                 q: Positions, qd: Rates, qdd: Accelerations, multipliers: Multipliers
             ) -> TorqueHessian:

@@ -318,7 +318,9 @@ fn long_arms_take_no_more_plans_and_no_ways_that_lose() {
         assert!(search.counted() <= 240, "{} plans for {dof} joints", search.counted());
     }
     for function in Function::OF_TREES {
-        assert_eq!(Algorithm::of_robot(function, &dense(7)), Algorithm::of(function), "{function}");
+        // of the Hessian, the recursion of forward over reverse mode is short for a few joints alone
+        let joints = if function == Function::TorqueHessian { 4 } else { 7 };
+        assert_eq!(Algorithm::of_robot(function, &dense(joints)), Algorithm::of(function), "{function}");
         let many = Algorithm::of_robot(function, &dense(32));
         assert_eq!(many.is_empty(), Algorithm::of(function).is_empty(), "{function}");
         assert!(!many.contains(&Algorithm::UnitColumns), "{function}");
