@@ -110,8 +110,8 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
     }
 }
 
-/// Whether code and runtime have the same meaning of a function. Seen from a frame, code has the rates of the Jacobian of
-/// the tip, where the runtime has those at the frame.
+/// Whether code and runtime have the same meaning of a function. Seen from a frame, code has the rates of the Jacobian
+/// of the tip, where the runtime has those at the frame.
 pub(crate) fn is_compared(robot: &Robot, function: Function) -> bool {
     let is_of_tip = function.capability() == Capability::JacobianDerivatives;
     !(robot.has_couplings() && function.is_of_every_link() || robot.at.is_some() && is_of_tip)
