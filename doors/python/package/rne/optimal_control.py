@@ -21,8 +21,11 @@ def external(arm, function):
     except ImportError as error:
         raise ImportError("`Arm.casadi` needs the package casadi, 3.6 or later: pip install casadi") from error
     code = arm.code("c", [function], casadi=True)
-    # Without this CasADi derives a large problem direction by direction, and calls `fwd1_` for each.
-    return casadi.external(function, str(_library(arm.name, code)), {"jac_penalty": 0})
+    library = str(_library(arm.name, code))
+    # By default CasADi derives a large problem direction by direction, and calls `fwd1_` for each. For many directions
+    # it calls the Jacobian once, but not for up to two multipliers: the Jacobian has no derivatives, and `adj1_` has.
+    of = casadi.external(function, library)
+    return casadi.external(function, library, {"jac_penalty": max(2 / of.nnz_out(), 4.2 / of.nnz_in())})
 
 
 def _library(name, code):
