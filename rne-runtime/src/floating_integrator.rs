@@ -111,7 +111,7 @@ pub trait FloatingIntegratorStepDerivatives<const DOF: usize, const NV: usize, c
     ) -> FloatingStepDerivatives<DOF, NV, T> {
         let FloatingState { twist, q, qd, .. } = state;
         let found = self.floating_forward_dynamics(q, qd, tau, &twist.angular, wrenches);
-        // the accelerations less gravity are known, so gravity is none here
+        // `found` has the acceleration of the base less gravity, so the field `gravity` of the motion stays zero
         let base = BaseMotion {
             omega: twist.angular,
             omega_dot: found.base.angular,

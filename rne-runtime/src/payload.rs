@@ -57,7 +57,7 @@ impl<T: Scalar> Payload<T> {
         Self { mass: zero, com: [zero; 3], inertia }
     }
 
-    /// The same payload where nothing changes it.
+    /// The payload in dual numbers, as a constant: all its derivatives are zero.
     pub(crate) fn still(&self) -> Payload<Dual<T>> {
         Payload::from_array(self.to_array().map(Dual::constant))
     }

@@ -90,8 +90,8 @@ fn results(arm: &CompiledArm, function: Function) -> Vec<(Vec<usize>, bool)> {
     found
 }
 
-/// A function as Python is told of it: its name among the methods of the class, its own name, its operands with their
-/// shapes, its results with their shapes and whether they are poses.
+/// The description of a function that Python gets: the name of the method, the name of the function, the operands with
+/// their shapes, and the shape of each result with a flag for poses.
 type Told = (&'static str, &'static str, Vec<(&'static str, Vec<usize>)>, Vec<(Vec<usize>, bool)>);
 
 impl Arm {

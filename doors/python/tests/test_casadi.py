@@ -2,8 +2,6 @@
 CasADi is not."""
 
 import concurrent.futures
-import contextlib
-import io
 import os
 import re
 import shlex
@@ -21,6 +19,7 @@ import rne
 ca = pytest.importorskip("casadi")
 pytest.importorskip("yaml")
 from casadi_oracle import ROBOTS, Expressions  # noqa: E402
+from pages import run_examples  # noqa: E402
 
 FUNCTIONS = ["inverse_dynamics", "forward_dynamics", "gravity_torques", "bias_torques"]
 ARMS = ["puma560", "panda", "trees/hyq"]
@@ -322,18 +321,7 @@ def test_the_page_runs_as_it_stands(tmp_path, monkeypatch):
     (command,) = re.findall(r"^cargo run -- (export .*)$", text, re.MULTILINE)
     (tmp_path / "robots").symlink_to(ROBOTS)
     subprocess.run([program, *shlex.split(command)], check=True)
-    names, written = {}, text
-    for example in re.finditer(r"```python\n(.*?)```\n(?:\n```text\n(.*?)```\n)?", text, re.DOTALL):
-        printed = io.StringIO()
-        with contextlib.redirect_stdout(printed):
-            exec(example[1], names)  # noqa: S102
-        block = f"```python\n{example[1]}```\n\n```text\n{printed.getvalue()}```\n"
-        if "RNE_WRITE_DOCUMENTS" in os.environ:
-            written = written.replace(example[0], block)
-        else:
-            assert example[0] == block
-    if written != text:
-        page.write_text(written, encoding="utf-8")
+    run_examples(page)
     # the commands of the shell, and what reads their library
     (block,) = (block[1] for block in re.finditer(r"```sh\n(rne emit .*?)```", text, re.DOTALL))
     for command in block.splitlines():

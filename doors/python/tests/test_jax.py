@@ -2,11 +2,7 @@
 Skipped where JAX is not."""
 
 import concurrent.futures
-import contextlib
 import ctypes
-import io
-import os
-import re
 import subprocess
 import sys
 import warnings
@@ -20,6 +16,7 @@ import rne
 jax = pytest.importorskip("jax")
 import jax.numpy as jnp  # noqa: E402
 from jnp_recursion import Chain  # noqa: E402
+from pages import run_examples  # noqa: E402
 
 from rne.derivatives import DERIVATIVES  # noqa: E402
 from rne.xla import TARGET  # noqa: E402
@@ -323,18 +320,5 @@ def test_a_program_of_the_cache_of_another_process_is_that_of_its_arm(tmp_path):
 
 def test_the_examples_of_the_page_run():
     page = Path(__file__).parents[3] / "docs/jax.md"
-    text = page.read_text(encoding="utf-8")
-    names, written = {}, text
-    ours = text.split("\n## PyTorch\n")[0]
-    for example in re.finditer(r"```python\n(.*?)```\n\n```text\n(.*?)```\n", ours, re.DOTALL):
-        printed = io.StringIO()
-        with contextlib.redirect_stdout(printed):
-            exec(example[1], names)  # noqa: S102
-        block = f"```python\n{example[1]}```\n\n```text\n{printed.getvalue()}```\n"
-        if "RNE_WRITE_DOCUMENTS" in os.environ:
-            written = written.replace(example[0], block)
-        else:
-            assert example[0] == block
-    if "RNE_WRITE_DOCUMENTS" in os.environ:
-        page.write_text(written, encoding="utf-8")
+    names = run_examples(page, lambda text: text.split("\n## PyTorch\n")[0])
     assert "power" in names

@@ -1,8 +1,5 @@
 """`Arm.torch` against the arm's own functions, and its derivatives against differences. Skipped where PyTorch is not."""
 
-import contextlib
-import io
-import re
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +8,8 @@ import pytest
 import rne
 
 torch = pytest.importorskip("torch", minversion="2.4")
+
+from pages import run_examples  # noqa: E402
 
 from rne.derivatives import DERIVATIVES  # noqa: E402
 
@@ -134,10 +133,4 @@ def test_frames_and_no_state():
 
 
 def test_the_example_of_the_page_runs():
-    page = Path(__file__).parents[3] / "docs/jax.md"
-    ours = page.read_text(encoding="utf-8").split("\n## PyTorch\n")[1]
-    program, said = re.search(r"```python\n(.*?)```\n\n```text\n(.*?)```\n", ours, re.DOTALL).groups()
-    printed = io.StringIO()
-    with contextlib.redirect_stdout(printed):
-        exec(program, {})  # noqa: S102
-    assert printed.getvalue() == said
+    run_examples(Path(__file__).parents[3] / "docs/jax.md", lambda text: text.split("\n## PyTorch\n")[1])

@@ -29,7 +29,7 @@ struct Panda;
 const STIFFNESS: f32 = 256.0; // 1/s²
 const DAMPING: f32 = 32.0; // 1/s
 
-/// Of the observer's low-pass, Hz.
+/// The gain of the observer, which is the cut-off of its low-pass filter in Hz.
 const OBSERVER_GAIN: f64 = 20.0;
 
 /// What the encoders say.

@@ -56,7 +56,7 @@ fn an_fmu_has_no_binary_where_there_is_no_compiler() {
     assert!(files(&out).iter().all(|(name, _)| !name.starts_with("binaries/")));
 }
 
-/// What is defined through a parameter changes with it, and has no name of its own.
+/// A number that the file computes from a parameter follows this parameter. The FMU offers the parameter alone.
 #[test]
 fn parameters_of_the_file_are_parameters_of_the_fmu() {
     let folder = folder("fmu_parameters");

@@ -24,7 +24,7 @@ use super::{Argument, Call, Numbers, Room, compute};
 /// The newest version of the interface whose structs are known here. A minor version only adds fields at the end.
 const KNOWN: (c_int, c_int) = (0, 3);
 
-/// The minor version that is told to XLA: one that it has too.
+/// The minor version that this module reports to XLA. XLA must know this version.
 static MINOR: AtomicI32 = AtomicI32::new(KNOWN.1);
 
 /// Values of C's enums.
