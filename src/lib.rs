@@ -124,10 +124,11 @@
 pub use rne_macro::{
     Actuation, BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics,
     BatchInverseDynamicsDerivatives, BatchMassMatrix, CentreOfMass, CentroidalMomentum, ClosedLoops, ContactDynamics,
-    CoriolisMatrix, Energy, FloatingBase, FloatingClosedLoops, FloatingEnergy, FloatingInverseDynamicsDerivatives,
-    FloatingKinematics, FloatingRegressor, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics,
-    InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian, JacobianDerivatives,
-    JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
+    CoriolisMatrix, Energy, EulerStep, EulerStepDerivatives, FloatingBase, FloatingClosedLoops, FloatingEnergy,
+    FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor, ForwardDynamics,
+    ForwardDynamicsDerivatives, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient,
+    InverseDynamicsHessian, JacobianDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase,
+    PayloadDynamics, Regressor, TipWrenches,
 };
 #[doc(inline)]
 pub use rne_model as model;
@@ -136,16 +137,16 @@ pub use rne_runtime::{
     AccelerationDerivatives, AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, BaseMotion, BaseTwist,
     BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives,
     BatchMassMatrix, BatchScalar, CentreOfMass, CentroidalMomentum, ClosedLoops, ClosureStep, ComputedTorque, Constant,
-    ContactDynamics, CoriolisMatrix, Desired, Dual, Energy, FloatingAccelerations, FloatingBase, FloatingClosedLoops,
-    FloatingEnergy, FloatingIntegratorStep, FloatingIntegratorStepDerivatives, FloatingInverseDynamicsDerivatives,
-    FloatingKinematics, FloatingRegressor, FloatingState, FloatingStepDerivatives, FloatingTorqueDerivatives,
-    FloatingTorques, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics, IntegratorStep,
-    IntegratorStepDerivatives, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient,
-    InverseDynamicsHessian, JacobianDerivatives, JointOrderError, JointWrenches, Kinematics, LengthMismatch,
-    MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, NextState, NextStateDerivatives,
-    ObserverState, Operations, Payload, PayloadDynamics, Pose, Quaternion, Regressor, Scalar, StepDerivatives,
-    TipWrenches, TorqueDerivatives, TorqueGradient, TorqueHessian, VectorUnit, Wrench, dynamically_consistent_inverse,
-    joint_order, operational_space_inertia,
+    ContactDynamics, CoriolisMatrix, Desired, Dual, Energy, EulerStep, EulerStepDerivatives, FloatingAccelerations,
+    FloatingBase, FloatingClosedLoops, FloatingEnergy, FloatingIntegratorStep, FloatingIntegratorStepDerivatives,
+    FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor, FloatingState, FloatingStepDerivatives,
+    FloatingTorqueDerivatives, FloatingTorques, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics,
+    InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian, JacobianDerivatives,
+    JointOrderError, JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver,
+    MovingBase, NegativeMass, NextState, NextStateDerivatives, ObserverState, Operations, Payload, PayloadDynamics,
+    Pose, Quaternion, Regressor, RungeKuttaStep, RungeKuttaStepDerivatives, Scalar, StepDerivatives, TipWrenches,
+    TorqueDerivatives, TorqueGradient, TorqueHessian, VectorUnit, Wrench, dynamically_consistent_inverse, joint_order,
+    operational_space_inertia,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]
@@ -153,9 +154,9 @@ pub use rne_runtime::{Arm, LinkTrace, Trace};
 #[cfg(all(feature = "arm", feature = "std"))]
 #[doc(inline)]
 pub use rne_runtime::{
-    BaseParameter, BaseParameters, DynAccelerationDerivatives, DynArm, DynFloatingTorqueDerivatives, DynObserverState,
-    DynTorqueDerivatives, DynTorqueGradient, DynTorqueHessian, DynTrace, LinkParameter, LoadError, WrongJointCount,
-    WrongLength,
+    BaseParameter, BaseParameters, DynAccelerationDerivatives, DynArm, DynFloatingTorqueDerivatives, DynNextState,
+    DynNextStateDerivatives, DynObserverState, DynStepDerivatives, DynTorqueDerivatives, DynTorqueGradient,
+    DynTorqueHessian, DynTrace, LinkParameter, LoadError, WrongJointCount, WrongLength,
 };
 // The Python package has arms of any number of joints.
 #[doc(hidden)]

@@ -6,9 +6,9 @@ use std::process::Command;
 use rne::testing::{self, GoldenState, RobotFile};
 use rne::{
     Actuation, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives, BatchMassMatrix,
-    CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics,
-    InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian, JacobianDerivatives, JointWrenches,
-    Kinematics, MassMatrix, MomentumObserver, MovingBase, Payload, Pose, Regressor, Scalar, Wrench,
+    CentreOfMass, CoriolisMatrix, Energy, EulerStep, EulerStepDerivatives, ForwardDynamics, ForwardDynamicsDerivatives,
+    InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian, JacobianDerivatives,
+    JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, Payload, Pose, Regressor, Scalar, Wrench,
 };
 
 #[derive(
@@ -30,6 +30,8 @@ use rne::{
     ForwardDynamicsDerivatives,
     JacobianDerivatives,
     InverseDynamicsHessian,
+    EulerStep,
+    EulerStepDerivatives,
     BatchMassMatrix,
     BatchForwardDynamics,
     BatchInverseDynamicsDerivatives,
@@ -51,6 +53,8 @@ struct Puma560Reduced;
     InverseDynamicsGradient,
     ForwardDynamicsDerivatives,
     InverseDynamicsHessian,
+    EulerStep,
+    EulerStepDerivatives,
 )]
 #[robot(builtin = "panda", form = "reduced", tests)]
 struct Panda;

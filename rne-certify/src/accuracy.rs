@@ -63,6 +63,8 @@ pub const BASE_ROTATION: [[f32; 3]; 3] = [[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], 
 
 /// The velocity of the origin of frame 0 in each state, m/s, for functions that take it.
 pub const VELOCITY: [f32; 3] = [0.4, 1.1, -0.9];
+/// The duration of a step, s.
+pub const STEP: f32 = 0.01;
 
 /// The ranges of the joints: the limits of the robot file, and defaults where it has none.
 #[must_use]
@@ -171,6 +173,7 @@ pub(crate) fn enclosed(
         wrenches: &wrenches,
         base: BASE.map(|triple| triple.map(exactly)),
         velocity: VELOCITY.map(exactly),
+        step: exactly(STEP),
         base_rotation: std::array::from_fn(|at| exactly(BASE_ROTATION[at / 3][at % 3])),
         passive: &passive,
         ..Arguments::of_joints(&q, &qd, &last, zero)
@@ -199,6 +202,7 @@ pub fn single_precision(
         wrenches: &wrenches,
         base: BASE,
         velocity: VELOCITY,
+        step: STEP,
         base_rotation: std::array::from_fn(|at| BASE_ROTATION[at / 3][at % 3]),
         passive,
         ..Arguments::of_joints(q, qd, last, 0.0)

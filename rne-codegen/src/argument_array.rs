@@ -13,14 +13,17 @@ pub struct ArgumentArray {
     pub elements: Vec<Option<Name>>,
     /// How many elements each of its rows has, if it is an array of rows.
     pub row: Option<usize>,
+    /// Whether it is one number, which is passed by itself.
+    pub is_number: bool,
 }
 
 impl ArgumentArray {
-    /// The lengths of the arrays that it is made of, the outer one first.
+    /// The lengths of the arrays that it is made of, the outer one first; none for a number.
     #[must_use]
     pub fn lengths(&self) -> Vec<usize> {
         match self.row {
             Some(row) => vec![self.elements.len() / row, row],
+            None if self.is_number => Vec::new(),
             None => vec![self.elements.len()],
         }
     }
@@ -30,6 +33,7 @@ impl ArgumentArray {
     pub fn places(&self, element: usize) -> Vec<usize> {
         match self.row {
             Some(row) => vec![element / row, element % row],
+            None if self.is_number => Vec::new(),
             None => vec![element],
         }
     }
@@ -66,6 +70,7 @@ fn arguments(program: &Program) -> Vec<ArgumentArray> {
             program.coordinates.iter().map(|&joint| used(Name::scalar(part.quantity, joint))).collect()
         }
         (Length::Passive, _) => program.passive.iter().map(|&joint| used(Name::scalar(part.quantity, joint))).collect(),
+        (_, Argument::Step) => vec![used(Name::scalar(part.quantity, 0))],
         (_, Argument::Payload) => Name::of_payload(tip).map(used).into(),
         (_, Argument::BaseTwist) => Name::of_twist().map(used).into(),
         (_, Argument::BasePose) => Name::of_pose().map(used).into(),
@@ -77,8 +82,12 @@ fn arguments(program: &Program) -> Vec<ArgumentArray> {
         }
     };
     let parts = program.function.arguments().iter().flat_map(|argument| argument.parts());
-    let array =
-        |part: &ArgumentPart| ArgumentArray { name: part.name, elements: elements(part), row: part.argument.row() };
+    let array = |part: &ArgumentPart| ArgumentArray {
+        name: part.name,
+        elements: elements(part),
+        row: part.argument.row(),
+        is_number: part.argument.is_number(),
+    };
     parts.map(array).collect()
 }
 
@@ -86,5 +95,5 @@ fn arguments(program: &Program) -> Vec<ArgumentArray> {
 fn parameters(program: &Program) -> Option<ArgumentArray> {
     let names = (1..=program.parameters).map(|index| Name::scalar(Quantity::Parameter, index));
     let elements = names.map(|name| program.arguments().any(|used| used == name).then_some(name)).collect();
-    (program.parameters > 0).then_some(ArgumentArray { name: "parameters", elements, row: None })
+    (program.parameters > 0).then_some(ArgumentArray { name: "parameters", elements, row: None, is_number: false })
 }

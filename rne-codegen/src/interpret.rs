@@ -36,6 +36,8 @@ pub struct Arguments<'a, T> {
     pub pose: [T; 12],
     /// The rotation of the base, by rows: its columns are the axes of frame 0 in the world.
     pub base_rotation: [T; 9],
+    /// The duration of a step, s.
+    pub step: T,
     /// Parameters that are known at run time only.
     pub parameters: &'a [T],
 }
@@ -59,6 +61,7 @@ impl<'a, T: Copy> Arguments<'a, T> {
             velocity: zeros,
             pose: [zero; 12],
             base_rotation: [zero; 9],
+            step: zero,
             parameters: &[],
         }
     }
@@ -205,6 +208,7 @@ impl<T: Copy> Arguments<'_, T> {
                 Quantity::Rate => self.qd,
                 // no function has both
                 Quantity::AppliedTorque | Quantity::Multiplier => self.tau,
+                Quantity::Duration => return Some(self.step),
                 Quantity::Parameter => return self.parameters.get(name.joint.checked_sub(1)?).copied(),
                 _ => self.qdd,
             };

@@ -209,6 +209,7 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Sam
         velocity: vector(Quantity::OriginVelocity, 0),
         pose: Name::of_pose().map(|name| argument(point, name)),
         base_rotation: Name::of_base_rotation().map(|name| argument(point, name)),
+        step: argument(point, Name::scalar(Quantity::Duration, 0)),
         parameters: &parameters,
         passive: &passive,
         ..Arguments::of_joints(&q, &qd, &qdd, Value::number(Residue::ZERO))
@@ -357,6 +358,7 @@ fn state<'a, T: Copy>(
         velocity: vector,
         pose: [x, y, z, y, z, x, z, x, y, x, y, z],
         base_rotation: [x, y, z, z, x, y, y, z, x],
+        step: z,
         parameters,
         passive,
         ..Arguments::of_joints(q, qd, qdd, x)

@@ -412,6 +412,11 @@ quantities! {
         "rate of the angular velocity of the tip per rate of joint i, world axes";
     WeightedByPosition:         "lt_q",      Joint,     8, true,  "", "", "its derivative by the position of joint i";
     WeightedByRate:             "lt_qd",     Joint,     8, true,  "", "", "its derivative by the rate of joint i";
+
+    // Of the step of an integrator.
+    Duration:                   "h",         Alone,     0, false, "", "s", "duration of the step";
+    NextPosition:               "next_q",    Joint,     8, true,  "", "rad|m", "position after the step";
+    NextRate:                   "next_qd",   Joint,     8, true,  "", "rad/s|m/s", "velocity after the step";
 }
 
 impl Quantity {

@@ -256,6 +256,11 @@ pub(super) fn about_frame(program: &Program) -> Option<String> {
     Some(format!("The frame {frame} stands in the place of the tip, and its link in the place of the last link."))
 }
 
+/// The type of an argument: a number, or a reference to an array.
+fn argument_type(array: &ArgumentArray) -> String {
+    if array.is_number { "T".to_owned() } else { format!("&{}", array_type(&array.lengths())) }
+}
+
 fn function(robot: &Robot, program: &Program) -> String {
     let arrays = program.arrays_without_parameters();
     let mut text = format!("/// {}\n", program.function.summary());
@@ -264,7 +269,7 @@ fn function(robot: &Robot, program: &Program) -> String {
     }
     text.push_str("#[allow(clippy::all, clippy::pedantic)]\n#[must_use]\n");
     let mut parameters: Vec<String> =
-        arrays.iter().map(|array| format!("{}: &{}", array.name, array_type(&array.lengths()))).collect();
+        arrays.iter().map(|array| format!("{}: {}", array.name, argument_type(array))).collect();
     if parameters::are_used(program) {
         parameters.push("parameters: &Parameters<T>".to_owned());
     }
@@ -276,9 +281,11 @@ fn function(robot: &Robot, program: &Program) -> String {
     } else {
         let _ = writeln!(text, "{start}\n    {},\n{end}", parameters.join(",\n    "));
     }
-    for ArgumentArray { name, elements, row } in &arrays {
+    for ArgumentArray { name, elements, row, is_number } in &arrays {
         let _ = if elements.iter().all(Option::is_none) {
             writeln!(text, "    let _ = {name};")
+        } else if *is_number {
+            writeln!(text, "    let {} = {name};", names(elements.iter().copied()))
         } else if let Some(row) = row {
             let rows: Vec<String> =
                 elements.chunks(*row).map(|row| format!("[{}]", names(row.iter().copied()))).collect();

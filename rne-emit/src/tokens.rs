@@ -136,14 +136,14 @@ impl<'a> Body<'a> {
         let arrays = self.program.argument_arrays().into_iter();
         arrays
             .filter(|array| is_asked(array.name))
-            .map(|ArgumentArray { name, elements, .. }| {
+            .map(|ArgumentArray { name, elements, is_number, .. }| {
                 let array = ident(name);
                 let elements: Vec<_> = elements.into_iter().map(|name| name.filter(|name| is_used(*name))).collect();
                 if elements.iter().all(Option::is_none) {
                     return quote!(let _ = #array;);
                 }
                 let elements = elements.into_iter().map(name_or_underscore);
-                quote!(let [#(#elements),*] = *#array;)
+                if is_number { quote!(#(let #elements = #array;)*) } else { quote!(let [#(#elements),*] = *#array;) }
             })
             .collect()
     }

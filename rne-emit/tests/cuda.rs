@@ -33,7 +33,8 @@ fn comparison(program: &Program, prefix: &str, real: &str) -> String {
     let arrays = program.argument_arrays();
     let (name, outputs) = (&program.name, program.outputs.len());
     let is_number = program.layout() == Layout::Number;
-    let pointers = vec![format!("const {real} *"); arrays.len()];
+    let pointers: Vec<_> =
+        arrays.iter().map(|array| if array.is_number { real.to_owned() } else { format!("const {real} *") }).collect();
     let (returned, result) = if is_number { (real, String::new()) } else { ("void", format!("{real} *")) };
     let types = pointers.into_iter().chain((!is_number).then_some(result)).collect::<Vec<_>>().join(", ");
     let mut text = format!("extern \"C\" {returned} c_code_{name}({types});\nstatic void compare_{name}()\n{{\n");
@@ -46,7 +47,7 @@ fn comparison(program: &Program, prefix: &str, real: &str) -> String {
             array.elements.len(),
             array.elements.len()
         );
-        passed.push(variable);
+        passed.push(if array.is_number { format!("{variable}[0]") } else { variable });
     }
     let passed = passed.join(", ");
     let _ = writeln!(text, "    {real} ours[{outputs}], theirs[{outputs}];\n    {prefix}_{name}({passed}, ours);");
@@ -109,6 +110,7 @@ fn the_header_gives_the_bits_of_the_code_in_c() {
         Function::InverseDynamicsFromSinCos,
         Function::MassMatrix,
         Function::ForwardDynamics,
+        Function::EulerStep,
         Function::ForwardKinematics,
         Function::KineticEnergy,
         Function::JointWrenches,

@@ -47,6 +47,7 @@ macro_rules! taken {
     (BaseTwist) => { &BaseTwist<T> };
     (BasePose) => { &Pose<T> };
     (BaseRotation) => { &[[T; 3]; 3] };
+    (Step) => { T };
     ($of_joints:ident) => { &[T] };
 }
 
@@ -57,6 +58,9 @@ macro_rules! read {
     };
     (Wrenches $wrenches:ident) => {
         $wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment]).flatten().collect::<Vec<_>>()
+    };
+    (Step $step:ident) => {
+        [$step]
     };
     (BaseTwist $twist:ident) => {
         [$twist.linear, $twist.angular].concat()
@@ -92,6 +96,9 @@ macro_rules! with {
     };
     ($others:ident, BaseTwist $twist:ident) => {
         $others.twist(Array::Same(&$twist))
+    };
+    ($others:ident, Step $step:ident) => {
+        $others.step(Array::Same(&$step))
     };
     ($others:ident, BasePose $pose:ident) => {
         $others.pose(Array::Same(&$pose))

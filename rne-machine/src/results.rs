@@ -130,6 +130,35 @@ pub struct TorqueHessian<T> {
     pub dq_dqdd: Matrix<T>,
 }
 
+/// Positions and velocities after a step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NextState<T> {
+    /// Positions, rad or m.
+    pub q: Vec<T>,
+    /// Velocities, rad/s or m/s.
+    pub qd: Vec<T>,
+}
+
+/// Derivatives of positions or velocities after a step; row i is position or velocity i.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepDerivatives<T> {
+    /// By position j.
+    pub dq: Matrix<T>,
+    /// By velocity j.
+    pub dqd: Matrix<T>,
+    /// By torque j.
+    pub dtau: Matrix<T>,
+}
+
+/// Derivatives of the state after a step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NextStateDerivatives<T> {
+    /// Of the positions.
+    pub q: StepDerivatives<T>,
+    /// Of the velocities.
+    pub qd: StepDerivatives<T>,
+}
+
 /// A result that is made of the numbers of a function, in the order of its layout.
 pub(crate) trait Shaped<T> {
     /// Takes as many numbers as the layout has.
@@ -186,4 +215,5 @@ records! {
     AccelerationsAndWrenches { accelerations, wrenches_on_robot } FloatingTorqueDerivatives { dq, dqd, domega }
     ClosureStep { passive, residual } TorqueGradient { dq, dqd, dqdd }
     AccelerationDerivatives { dq, dqd, dtau } TorqueHessian { dq_dq, dq_dqd, dqd_dqd, dq_dqdd }
+    NextState { q, qd } StepDerivatives { dq, dqd, dtau } NextStateDerivatives { q, qd }
 }

@@ -333,6 +333,7 @@ impl Target<'_> {
                 Argument::Accelerations => ("qdd", quote!([T; #dof])),
                 Argument::Torques => ("tau", quote!([T; #dof])),
                 Argument::Multipliers => ("multipliers", quote!([T; #dof])),
+                Argument::Step => return (format_ident!("step"), quote!(T)),
                 Argument::Wrench => ("wrench", quote!(#krate::Wrench<T>)),
                 Argument::Payload => ("payload", quote!(#krate::Payload<T>)),
                 Argument::Base => ("base", quote!(#krate::BaseMotion<T>)),
@@ -422,6 +423,9 @@ impl Target<'_> {
                     | Record::TorqueGradient
                     | Record::AccelerationDerivatives
                     | Record::TorqueHessian
+                    | Record::NextState
+                    | Record::StepDerivatives
+                    | Record::NextStateDerivatives
                     | Record::MomentumAndRate
                     | Record::FloatingTorques
                     | Record::FloatingAccelerations => quote!(#krate::#name<#dof, T>),

@@ -372,6 +372,27 @@ pub fn derive_inverse_dynamics_hessian(input: TokenStream) -> TokenStream {
     expand::capability(Capability::InverseDynamicsHessian, input.into()).into()
 }
 
+/// Implements the trait `EulerStep` for a struct: a step of the semi-implicit Euler method, in the operations of the
+/// accelerations and four more for each joint.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations, `EULER_STEP_OPERATIONS`; `DOF`, names and limits come with `InverseDynamics`.
+#[proc_macro_derive(EulerStep, attributes(robot))]
+pub fn derive_euler_step(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::EulerStep, input.into()).into()
+}
+
+/// Implements the trait `EulerStepDerivatives` for a struct: the derivatives of a step of the semi-implicit Euler method
+/// by positions, velocities and torques.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations, `EULER_STEP_DERIVATIVES_OPERATIONS`; `DOF`, names and limits come with
+/// `InverseDynamics`.
+#[proc_macro_derive(EulerStepDerivatives, attributes(robot))]
+pub fn derive_euler_step_derivatives(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::EulerStepDerivatives, input.into()).into()
+}
+
 /// Implements the trait `ClosedLoops` for a struct: a robot whose file has `loops` with a cut joint.
 ///
 /// The tips are the frames of the list `tips` of the robot file in its order, or the tip frame alone. Other derives

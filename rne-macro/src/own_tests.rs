@@ -35,6 +35,8 @@ pub(crate) fn of_capability(capability: Capability) -> &'static [&'static str] {
         Capability::ForwardDynamicsDerivatives => &["derivatives_of_accelerations_are_those_of_the_runtime"],
         Capability::JacobianDerivatives => &["derivatives_of_the_jacobian_are_those_of_the_runtime"],
         Capability::InverseDynamicsHessian => &["hessian_is_that_of_the_runtime"],
+        Capability::EulerStep => &["euler_step_is_that_of_the_runtime"],
+        Capability::EulerStepDerivatives => &["derivatives_of_the_euler_step_are_those_of_the_runtime"],
         Capability::JointWrenches => &["joint_wrenches_are_those_of_the_runtime"],
         Capability::MomentumObserver => &["momenta_are_those_of_the_runtime", "momentum_is_that_of_the_mass_matrix"],
         Capability::MovingBase => &["torques_on_a_moving_base_are_those_of_the_runtime"],

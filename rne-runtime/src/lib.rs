@@ -47,6 +47,9 @@ mod floating_kinematics;
 mod forward_dynamics;
 mod hessian;
 mod integrator;
+#[cfg(feature = "std")]
+#[doc(hidden)]
+pub mod integrator_of_lists;
 mod jacobian_derivatives;
 #[cfg(feature = "arm")]
 mod joint;
@@ -92,6 +95,7 @@ mod quaternion;
 mod registers;
 #[cfg(feature = "arm")]
 mod regressor;
+mod runge_kutta;
 mod scalar;
 #[cfg(feature = "arm")]
 mod seven_steps;
@@ -143,7 +147,9 @@ pub use floating_integrator::{
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use hessian::DynTorqueHessian;
 pub use hessian::{InverseDynamicsHessian, TorqueHessian};
-pub use integrator::{IntegratorStep, IntegratorStepDerivatives, NextState, NextStateDerivatives, StepDerivatives};
+pub use integrator::{EulerStep, EulerStepDerivatives, NextState, NextStateDerivatives, StepDerivatives};
+#[cfg(all(feature = "arm", feature = "std"))]
+pub use integrator_of_lists::{DynNextState, DynNextStateDerivatives, DynStepDerivatives};
 pub use jacobian_derivatives::JacobianDerivatives;
 pub use joint_order::{JointOrderError, joint_order};
 #[doc(hidden)]
@@ -161,6 +167,7 @@ pub use optimisation::{DynAccelerationDerivatives, DynTorqueGradient};
 pub use payload::{NegativeMass, Payload};
 pub use pose::Pose;
 pub use quaternion::Quaternion;
+pub use runge_kutta::{RungeKuttaStep, RungeKuttaStepDerivatives};
 pub use scalar::{Constant, RunTimeParameter, Scalar};
 #[cfg(feature = "arm")]
 pub use trace::{LinkTrace, Trace};

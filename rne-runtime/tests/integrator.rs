@@ -9,8 +9,8 @@ use common::{Numbers, assert_close, link, model, one_link, row, six_joints, two_
 use rne_model::Convention::{Modified, Standard};
 use rne_model::JointKind;
 use rne_runtime::{
-    Arm, Dual, Energy, ForwardDynamics, IntegratorStep, IntegratorStepDerivatives, NextState, NextStateDerivatives,
-    Scalar,
+    Arm, Dual, DynArm, Energy, EulerStep, EulerStepDerivatives, ForwardDynamics, NextState, NextStateDerivatives,
+    RungeKuttaStep, RungeKuttaStepDerivatives, Scalar,
 };
 
 /// The classical method as textbooks write it: slopes of the whole state.

@@ -86,6 +86,7 @@ pub(crate) fn stubs() -> String {
                 | Argument::BaseTwist
                 | Argument::BasePose
                 | Argument::BaseRotation => format!("{name}: ArrayLike, "),
+                Argument::Step => format!("{name}: ArrayLike, "),
                 Argument::Wrenches if function.is_of_floating_base() => {
                     format!("{name}: ArrayLike | dict[str, ArrayLike] | None = ..., ")
                 }
@@ -101,6 +102,8 @@ pub(crate) fn stubs() -> String {
             | Returned::MomentumAndRate
             | Returned::FloatingTorques
             | Returned::FloatingAccelerations
+            | Returned::NextState
+            | Returned::NextStateDerivatives
             | Returned::ClosureStep => "tuple[Floats, Floats]",
             Returned::AccelerationsAndWrenches
             | Returned::FloatingTorqueDerivatives

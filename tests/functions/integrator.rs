@@ -2,8 +2,8 @@
 //! the runtime, and dual numbers through that.
 
 use rne::{
-    AccelerationDerivatives, Dual, ForwardDynamics, ForwardDynamicsDerivatives, IntegratorStep,
-    IntegratorStepDerivatives, Scalar,
+    AccelerationDerivatives, Dual, ForwardDynamics, ForwardDynamicsDerivatives, RungeKuttaStep,
+    RungeKuttaStepDerivatives, Scalar,
 };
 use rne_codegen::{Form, Function};
 use rne_model::Robot;

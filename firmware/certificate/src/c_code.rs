@@ -193,6 +193,7 @@ fn case(prefix: &str, dof: usize, function: Function) -> Result<String> {
         Argument::Passive => "passive",
         Argument::Rates => "s.qd",
         Argument::Accelerations | Argument::Torques | Argument::Multipliers => "s.qdd",
+        Argument::Step => "0.01f",
         Argument::Wrench => "force, moment",
         Argument::Payload => "payload",
         Argument::BaseVelocity => "base_omega",

@@ -210,6 +210,9 @@ fn fixed(function: Function) -> String {
     if function.takes(Argument::Passive) {
         words.push_str(" At each state the dependent joints close the loops.");
     }
+    if function.takes(Argument::Step) {
+        let _ = write!(words, " The step takes {} s.", accuracy::STEP);
+    }
     if function.takes(Argument::BaseTwist) {
         let [velocity, omega] = [accuracy::VELOCITY, accuracy::BASE[0]].map(|triple| list(&triple));
         let _ = write!(
@@ -237,9 +240,13 @@ fn named(program: &Program, robot: &Robot, name: Name) -> (String, Option<usize>
         // a distance of two places, or a product of axes
         (Quantity::Residual, _) => "m or 1",
         (Quantity::BaseForce, _) | (_, None) => "N",
-        (Quantity::ClosedPosition, Some(joint)) => match robot.joints[joint].row.kind {
+        (Quantity::ClosedPosition | Quantity::NextPosition, Some(joint)) => match robot.joints[joint].row.kind {
             JointKind::Revolute => "rad",
             JointKind::Prismatic => "m",
+        },
+        (Quantity::NextRate, Some(joint)) => match robot.joints[joint].row.kind {
+            JointKind::Revolute => "rad/s",
+            JointKind::Prismatic => "m/s",
         },
         (Quantity::LoopBias, Some(joint)) => match robot.joints[joint].row.kind {
             JointKind::Revolute => "rad/s²",
@@ -286,6 +293,10 @@ fn program_call(program: &Program, prefix: &str, passive: &[f32]) -> Result<Call
             }
             Argument::Rates => ("const float *", "s->qd"),
             Argument::Accelerations | Argument::Torques | Argument::Multipliers => ("const float *", "s->qdd"),
+            Argument::Step => {
+                call.before.push(format!("const float step = {:?}f;", accuracy::STEP));
+                ("float", "step")
+            }
             Argument::Payload => {
                 call.before.push(format!("const float payload[10] = {{{}}};", numbers(&accuracy::PAYLOAD)));
                 ("const float *", "payload")
@@ -339,7 +350,7 @@ fn program_call(program: &Program, prefix: &str, passive: &[f32]) -> Result<Call
     }
     match program.layout() {
         Layout::Array(_, of) if matches!(*of, Layout::Number) => Ok(call),
-        Layout::Record(record @ (Record::FloatingTorques | Record::ClosureStep), _) => {
+        Layout::Record(record @ (Record::FloatingTorques | Record::ClosureStep | Record::NextState), _) => {
             Ok(Call { record: Some(rne_emit::record_name(prefix, record)), ..call })
         }
         _ => Err(not_called(program)),
@@ -349,7 +360,7 @@ fn program_call(program: &Program, prefix: &str, passive: &[f32]) -> Result<Call
 fn not_called(program: &Program) -> Failure {
     Failure::usage(format_args!(
         "rne certify cannot call {}: it takes functions that return one number per joint, such as inverse_dynamics, \
-         gravity_torques, bias_torques and forward_dynamics, also with a payload and wrenches, \
+         gravity_torques, bias_torques and forward_dynamics, also with a payload and wrenches, euler_step, \
          inverse_dynamics_of_floating_base and closure_step. {TYPED}--observer{TYPED:#} certifies the momentum \
          observer",
         program.function

@@ -59,6 +59,9 @@ pub(crate) struct Arguments {
     /// Joint torques for forward_dynamics, N m or N
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     tau: Option<List>,
+    /// Duration of the step for euler_step, s
+    #[arg(long, value_name = "H", allow_hyphen_values = true)]
+    duration: Option<List>,
     /// Multipliers for torque_gradient, torque_hessian
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     multipliers: Option<List>,
@@ -94,14 +97,14 @@ pub(crate) struct Arguments {
     base_rotation: Option<List>,
     /// Print a golden file of torques at N random states
     #[arg(long, value_name = "N", value_parser = golden::states, allow_negative_numbers = true, conflicts_with_all = [
-        "function", "q", "passive", "qd", "qdd", "tau", "multipliers", "wrench", "tip_wrench", "payload", "base_omega",
+        "function", "q", "passive", "qd", "qdd", "tau", "duration", "multipliers", "wrench", "tip_wrench", "payload", "base_omega",
         "base_omega_dot", "base_acceleration", "base_velocity", "base_pose", "gravity", "base_rotation", "trace",
         "json", "csv", "compare", "frame",
     ])]
     golden: Option<u16>,
     /// Compute it at each state of a table; - is stdin
     #[arg(long, value_name = "TABLE", conflicts_with_all = [
-        "q", "passive", "qd", "qdd", "tau", "multipliers", "wrench", "tip_wrench", "payload", "base_omega",
+        "q", "passive", "qd", "qdd", "tau", "duration", "multipliers", "wrench", "tip_wrench", "payload", "base_omega",
         "base_omega_dot", "base_acceleration", "base_velocity", "base_pose", "gravity", "base_rotation", "golden",
         "trace", "axes",
         "joint", "step", "json", "csv", "compare", "digits",
@@ -334,6 +337,7 @@ impl Arguments {
             qd: self.qd.as_ref(),
             qdd: self.qdd.as_ref(),
             tau: self.tau.as_ref(),
+            duration: self.duration.as_ref(),
             multipliers: self.multipliers.as_ref(),
             wrench: self.wrench.as_ref(),
             tip_wrenches: &self.tip_wrench,

@@ -247,7 +247,7 @@ payload if --wrench or --payload is given.";
 
 /// The table of functions and the options of `rne eval` that each takes.
 fn of_eval() -> String {
-    use Argument::{Accelerations, Multipliers, Positions, Rates, Torques};
+    use Argument::{Accelerations, Multipliers, Positions, Rates, Step, Torques};
     let mut text = String::new();
     let mut row = |options: &str, functions: &str| {
         let indent = " ".repeat(18);
@@ -264,6 +264,7 @@ fn of_eval() -> String {
     );
     row("--q --tau", &functions_of(&[Positions, Torques]));
     row("--q --qd --tau", &functions_of(&[Positions, Rates, Torques]));
+    row("--q --qd --tau --duration", &functions_of(&[Positions, Rates, Torques, Step]));
     row("--q --qd --qdd --multipliers", &functions_of(&[Positions, Rates, Accelerations, Multipliers]));
     row("--qd --qdd", "actuator_torques (zero for a joint without a motor)");
     text + &entries(of_base_and_tips()) + "\n" + &wrap(OF_EVAL, terminal::width(PAGE), "") + "\n"
@@ -277,6 +278,7 @@ fn of_base_and_tips() -> impl Iterator<Item = (&'static str, String)> {
         Argument::Accelerations => "--qdd",
         Argument::Torques => "--tau",
         Argument::Multipliers => "--multipliers",
+        Argument::Step => "--duration",
         Argument::Wrenches => "--tip-wrench",
         Argument::Base => "--base-omega --base-omega-dot --base-acceleration --gravity",
         Argument::BaseVelocity => "--base-omega",

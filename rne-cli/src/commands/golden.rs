@@ -111,6 +111,7 @@ fn arguments(state: &State, parameters: Vec<f64>) -> Vec<(&'static str, Vec<f64>
         ("qd", state.qd.clone()),
         ("qdd", state.qdd.clone()),
         ("tau", state.tau.clone()),
+        ("step", vec![state.step]),
         ("multipliers", state.multipliers.clone()),
         ("force", wrench.force.to_vec()),
         ("moment", wrench.moment.to_vec()),

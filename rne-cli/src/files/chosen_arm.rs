@@ -120,7 +120,7 @@ impl FromStr for Setting {
 /// A body that the arm carries at its tip.
 #[derive(Args, Clone)]
 pub(crate) struct Carried {
-    /// Payload at the tip, in its axes: mass, com, inertia about it, m,cx,cy,cz[,xx,yy,zz,xy,xz,yz]
+    /// Payload: m,cx,cy,cz[,xx,yy,zz,xy,xz,yz], tip axes
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub(crate) payload: Option<List>,
     /// Frame or joint with --payload, not the tip

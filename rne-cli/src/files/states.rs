@@ -52,6 +52,7 @@ fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
             "base_rotation" => {
                 axes.into_iter().flat_map(|row| axes.map(|column| format!("{name}_{row}{column}"))).collect()
             }
+            "step" => vec![name.to_owned()],
             "q" | "passive" | "qd" | "qdd" | "tau" | "multipliers" | "sin" | "cos" => {
                 (1..=elements).map(|joint| format!("{name}{joint}")).collect()
             }

@@ -128,6 +128,9 @@ fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
         let named = named.collect::<Vec<_>>().join(", ");
         let _ = writeln!(text, "{QUIET}the dependent joints of the loops are at {named} (rad, prismatic: m){QUIET:#}");
     }
+    if takes(Argument::Step) {
+        let _ = writeln!(text, "{QUIET}the step takes {} s{QUIET:#}", exact_digits(state.step));
+    }
     if takes(Argument::BaseVelocity) {
         let omega = list(&state.base.omega);
         let _ = writeln!(text, "{QUIET}the base turns with ({omega}) rad/s, in frame 0{QUIET:#}");

@@ -49,6 +49,22 @@ pub(crate) fn state(random: &Random, robot: &Robot) -> State {
     let base_rotation = BASE_ROTATION.map(|row| row.map(|x| (f64::from(x) * 100.0).round() / 100.0));
     // last, so that the other numbers stay what they were
     let multipliers = (0..dof).map(|_| random.number(1.0)).collect();
+    let step = random.number(0.1);
     let function = Function::InverseDynamics;
-    State { function, q, passive, qd, qdd, tau, multipliers, wrench, wrenches, payload, base, pose, base_rotation }
+    State {
+        function,
+        q,
+        passive,
+        qd,
+        qdd,
+        tau,
+        step,
+        multipliers,
+        wrench,
+        wrenches,
+        payload,
+        base,
+        pose,
+        base_rotation,
+    }
 }

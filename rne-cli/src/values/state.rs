@@ -4,7 +4,8 @@ use std::str::FromStr;
 
 use rne::{
     BaseAcceleration, BaseMotion, BaseTwist, DynAccelerationDerivatives, DynArm, DynFloatingTorqueDerivatives,
-    DynTorqueDerivatives, DynTorqueGradient, DynTorqueHessian, Payload, Pose, Quaternion, Wrench, WrongLength,
+    DynNextState, DynNextStateDerivatives, DynStepDerivatives, DynTorqueDerivatives, DynTorqueGradient,
+    DynTorqueHessian, Payload, Pose, Quaternion, Wrench, WrongLength,
 };
 use rne_codegen::{Argument, Capability, Function};
 use rne_model::{Robot, nearest_name};
@@ -23,6 +24,7 @@ pub(crate) struct Given<'a> {
     pub(crate) qd: Option<&'a List>,
     pub(crate) qdd: Option<&'a List>,
     pub(crate) tau: Option<&'a List>,
+    pub(crate) duration: Option<&'a List>,
     pub(crate) multipliers: Option<&'a List>,
     pub(crate) wrench: Option<&'a List>,
     pub(crate) tip_wrenches: &'a [TipWrench],
@@ -83,6 +85,8 @@ pub(crate) struct State {
     pub(crate) qd: Vec<f64>,
     pub(crate) qdd: Vec<f64>,
     pub(crate) tau: Vec<f64>,
+    /// The duration of a step.
+    pub(crate) step: f64,
     pub(crate) multipliers: Vec<f64>,
     pub(crate) wrench: Option<Wrench<f64>>,
     /// One for each tip.
@@ -108,6 +112,9 @@ impl State {
         let qd = of_joints("--qd", given.qd, Rates)?;
         let qdd = of_joints("--qdd", given.qdd, Accelerations)?;
         let tau = of_joints("--tau", given.tau, Torques)?;
+        let seconds = "the duration of the step in seconds, one number";
+        let step = argument(function, "--duration", given.duration, Argument::Step, 1, seconds)?;
+        let step = step.and_then(|list| list.first().copied()).unwrap_or_default();
         let multipliers = of_joints("--multipliers", given.multipliers, Argument::Multipliers)?;
         let wrench = "three forces and three moments: fx,fy,fz,nx,ny,nz";
         let wrench = argument(function, "--wrench", given.wrench, Argument::Wrench, 6, wrench)?;
@@ -155,6 +162,7 @@ impl State {
             qd,
             qdd,
             tau,
+            step,
             multipliers,
             wrench,
             wrenches,
@@ -203,6 +211,9 @@ impl State {
             };
             (tau) => {
                 tau
+            };
+            (step) => {
+                self.step
             };
             (multipliers) => {
                 multipliers
@@ -306,7 +317,8 @@ records! {
     Pose { rotation, translation } Wrench { force, moment } DynTorqueDerivatives { dq, dqd }
     BaseAcceleration { linear, angular } DynFloatingTorqueDerivatives { dq, dqd, domega }
     DynTorqueGradient { dq, dqd, dqdd } DynAccelerationDerivatives { dq, dqd, dtau }
-    DynTorqueHessian { dq_dq, dq_dqd, dqd_dqd, dq_dqdd }
+    DynTorqueHessian { dq_dq, dq_dqd, dqd_dqd, dq_dqdd } DynNextState { q, qd }
+    DynStepDerivatives { dq, dqd, dtau } DynNextStateDerivatives { q, qd }
 }
 
 /// Positions of the dependent joints of closed loops: those that close the loops, from the given ones. A Newton step

@@ -116,6 +116,7 @@ fn single(robot: &str, function: Function, columns: &[String], state: &[f64]) ->
     {
         give(option, list(prefix));
     }
+    give("--duration", list("step"));
     give("--wrench", list("force").zip(list("moment")).map(|(force, moment)| format!("{force},{moment}")));
     give("--base-omega", list("base_omega").or_else(|| list("omega")));
     give("--base-omega-dot", list("base_omega_dot"));

@@ -6,7 +6,8 @@
 
 use crate::coordinates::Coordinates;
 use crate::formulate::ldlt::{Factors, System};
-use crate::formulate::{Outputs, inverse_by, square};
+use crate::formulate::{Outputs, integrator, inverse_by, square};
+use crate::function::Function;
 use crate::ir::{Builder, Name, Quantity, Symbol, WithRespectTo};
 
 /// λᵀτ of the torques of the coordinates.
@@ -97,10 +98,20 @@ pub(crate) struct Inverse<'s, 'a> {
 }
 
 impl<'s, 'a> Inverse<'s, 'a> {
+    /// Whether the derivatives are those of a step, so that its duration h is a factor of all.
+    fn is_of_step(builder: &Builder) -> bool {
+        builder.function == Function::EulerStepDerivatives
+    }
+
     /// Row i of `upper` holds the elements (i, i) to (i, n) of the matrix.
     pub(crate) fn of(builder: &'s Builder, system: &'a System<'a>, upper: &[Vec<Symbol<'s>>]) -> Self {
         let factors = Factors::of(builder, system, upper);
-        let elements = inverse_by(builder, system, &factors);
+        let elements = if Self::is_of_step(builder) {
+            // the duration is a factor of D⁻¹, not of every element
+            inverse_by(builder, system, &factors.divided_by(integrator::duration(builder)), Quantity::NextRate)
+        } else {
+            inverse_by(builder, system, &factors, Quantity::RateDot)
+        };
         Self { builder, system, factors, elements }
     }
 
@@ -114,19 +125,26 @@ impl<'s, 'a> Inverse<'s, 'a> {
         self.builder.keep_accelerations(joints.iter().copied().zip(solved.into_iter().flatten()));
     }
 
-    /// -M⁻¹ ∂τ/∂q and -M⁻¹ ∂τ/∂q̇, given ∂τ/∂q and ∂τ/∂q̇ by rows, and M⁻¹.
+    /// -M⁻¹ ∂τ/∂q and -M⁻¹ ∂τ/∂q̇, given ∂τ/∂q and ∂τ/∂q̇ by rows, and M⁻¹; of a step, what follows from them.
     pub(crate) fn derivatives(self, by_state: &[Vec<Vec<Symbol<'s>>>; 2]) -> Outputs<'s> {
         let joints = self.system.coordinates.joints();
         let dof = joints.len();
+        let change = |torques: &[Vec<Symbol<'s>>], row: usize, column: usize| {
+            let terms = (0..dof).map(|at| self.elements[row * dof + at].1 * torques[at][column]);
+            -terms.reduce(|sum, term| sum + term).unwrap_or_else(|| self.builder.zero())
+        };
+        if Self::is_of_step(self.builder) {
+            let changes = |torques| (0..dof * dof).map(|at| change(torques, at / dof, at % dof)).collect();
+            let changes = by_state.each_ref().map(|torques| changes(torques));
+            return integrator::derivatives(self.builder, self.system.coordinates, changes, self.elements);
+        }
         let kinds: [fn(usize) -> WithRespectTo; 2] = [WithRespectTo::Position, WithRespectTo::Rate];
         let mut found = Vec::new();
         for (torques, kind) in by_state.iter().zip(kinds) {
             found.extend(square(dof, |row, column| {
-                let terms = (0..dof).map(|at| self.elements[row * dof + at].1 * torques[at][column]);
-                let sum = terms.reduce(|sum, term| sum + term).unwrap_or_else(|| self.builder.zero());
                 let name =
                     Name { by: Some(kind(joints[column] + 1)), ..Name::scalar(Quantity::RateDot, joints[row] + 1) };
-                (name, self.builder.name(name, -sum))
+                (name, self.builder.name(name, change(torques, row, column)))
             }));
         }
         found.extend(self.elements);

@@ -178,6 +178,12 @@ impl<'s> Factors<'s> {
         Self { builder, order, rows, inverses }
     }
 
+    /// The factors of the matrix divided by a number.
+    pub(crate) fn divided_by(&self, divisor: Symbol<'s>) -> Self {
+        let inverses = self.inverses.iter().map(|&inverse| inverse * divisor).collect();
+        Self { builder: self.builder, order: self.order.clone(), rows: self.rows.clone(), inverses }
+    }
+
     /// The place of a joint in the order of elimination.
     pub(crate) fn place(&self, joint: usize) -> usize {
         self.order.iter().position(|other| *other == joint).unwrap_or_default()

@@ -9,6 +9,7 @@ pub(crate) mod closure;
 pub(crate) mod contact;
 pub(crate) mod energy;
 pub(crate) mod floating;
+pub(crate) mod integrator;
 pub(crate) mod joint;
 pub(crate) mod kinematics;
 pub(crate) mod ldlt;
@@ -71,6 +72,11 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         | Function::ForwardDynamicsOfLoops => {
             forward_dynamics(builder, &derivation.system(), &derivation.upper_half(), &derivation.tau())
         }
+        Function::EulerStep => {
+            let accelerations =
+                forward_dynamics(builder, &derivation.system(), &derivation.upper_half(), &derivation.tau());
+            integrator::euler_step(builder, derivation.coordinates(), &accelerations)
+        }
         Function::ForwardKinematics => derivation.tip_pose(),
         Function::LinkPoses => derivation.link_poses(),
         Function::Jacobian => derivation.jacobian(),
@@ -126,7 +132,8 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::TorqueHessian => adjoint::hessian(builder, derivation.coordinates(), &derivation.tau()),
         Function::ForwardDynamicsDerivatives
         | Function::ForwardDynamicsDerivativesWithWrenches
-        | Function::ForwardDynamicsDerivativesWithPayload => {
+        | Function::ForwardDynamicsDerivativesWithPayload
+        | Function::EulerStepDerivatives => {
             let system = derivation.system();
             let inverse = adjoint::Inverse::of(builder, &system, &derivation.upper_half());
             // the same quantities come again, at these accelerations
@@ -574,15 +581,23 @@ pub(crate) fn inverse_mass_matrix<'s>(
     system: &System<'_>,
     upper: &[Vec<Symbol<'s>>],
 ) -> Outputs<'s> {
-    inverse_by(builder, system, &ldlt::Factors::of(builder, system, upper))
+    inverse_by(builder, system, &ldlt::Factors::of(builder, system, upper), Quantity::RateDot)
 }
 
-/// The inverse by the factors of the matrix.
-fn inverse_by<'s>(builder: &'s Builder, system: &System<'_>, factors: &ldlt::Factors<'s>) -> Outputs<'s> {
+/// The inverse by the factors of the matrix; its elements are of the quantity `element`.
+fn inverse_by<'s>(
+    builder: &'s Builder,
+    system: &System<'_>,
+    factors: &ldlt::Factors<'s>,
+    element: Quantity,
+) -> Outputs<'s> {
     let joints = system.coordinates.joints();
     let dof = joints.len();
     let (zero, one) = (builder.constant(0.0, Cause::Arithmetic), builder.constant(1.0, Cause::Arithmetic));
-    let name = |quantity, row: usize, column: usize| Name::indexed(quantity, joints[row] + 1, joints[column] + 1);
+    let name = |quantity, row: usize, column: usize| {
+        let quantity = if quantity == Quantity::RateDot { element } else { quantity };
+        Name::indexed(quantity, joints[row] + 1, joints[column] + 1)
+    };
     let columns: Vec<Vec<Option<Symbol<'s>>>> = (0..dof)
         .map(|column| {
             let unit: Vec<_> = (0..dof).map(|row| if row == column { one } else { zero }).collect();

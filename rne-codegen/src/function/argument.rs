@@ -38,6 +38,8 @@ pub enum Argument {
     Passive,
     /// Multipliers of the joint torques.
     Multipliers,
+    /// Duration of a step: one number, which is passed by value.
+    Step,
 }
 
 /// An array that an argument, or a part of it, is passed in.
@@ -65,6 +67,7 @@ macro_rules! argument_parts {
             "Positions of the dependent joints of the closed loops, rad or m, in the order of the joints.";
         tau: Torques, Joints, AppliedTorque, "Joint torques, N m or N.";
         multipliers: Multipliers, Joints, Multiplier, "Multipliers of the joint torques, in any unit.";
+        step: Step, Fixed(1), Duration, "Duration of the step, s: one number.";
         sin: Sines, Joints, Sine, "Sines of the joint positions.";
         cos: Cosines, Joints, Cosine, "Cosines of the joint positions.";
         force: Wrench, Fixed(3), JointForce,
@@ -122,6 +125,12 @@ impl Argument {
     #[must_use]
     pub const fn is_of_each_tip(self) -> bool {
         matches!(self, Self::Wrenches)
+    }
+
+    /// Whether it is one number, which is passed by itself and not in an array.
+    #[must_use]
+    pub const fn is_number(self) -> bool {
+        matches!(self, Self::Step)
     }
 
     /// How many elements each row of its array has, if that is an array of rows.

@@ -62,6 +62,10 @@ named! {
         JacobianDerivatives = "JacobianDerivatives",
         /// Second derivatives of a weighted sum of the torques.
         InverseDynamicsHessian = "InverseDynamicsHessian",
+        /// A step of the semi-implicit Euler method.
+        EulerStep = "EulerStep",
+        /// Its derivatives.
+        EulerStepDerivatives = "EulerStepDerivatives",
     }
 }
 

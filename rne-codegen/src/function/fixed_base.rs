@@ -105,6 +105,28 @@ const ACCELERATION_DERIVATIVES: Entry = Entry {
     ..Entry::of(Function::ForwardDynamicsDerivatives, Capability::ForwardDynamicsDerivatives)
 };
 
+/// The state after a step in a listing.
+const NEXT: &[Own] = &[
+    Own::of(Quantity::NextRate, |joint| format!("velocity of joint {joint} after the step")),
+    Own::of(Quantity::NextPosition, |joint| format!("position of joint {joint} after the step")),
+];
+
+/// Of a step of an integrator.
+const STEP: Entry = Entry {
+    inverts_mass: true,
+    feels_rotors: true,
+    divides: Some(
+        "the result of the step is not finite: the mass matrix is singular \
+         (a joint moves no mass), or the state is too large",
+    ),
+    ..Entry::of(Function::EulerStep, Capability::EulerStep)
+};
+
+/// A block of the derivatives of a step.
+const fn of_step(about: &'static str) -> AnswerTable {
+    AnswerTable::of(about, Labels::Joints, Labels::Joints)
+}
+
 /// The functions.
 pub(super) const FIXED_BASE: &[Entry] = &[
     Entry { ..Entry::torques(Function::InverseDynamics, Capability::InverseDynamics) },
@@ -389,5 +411,32 @@ pub(super) const FIXED_BASE: &[Entry] = &[
         is_of_motion: true,
         feels_rotors: true,
         ..Entry::of(Function::TorqueHessian, Capability::InverseDynamicsHessian)
+    },
+    Entry {
+        output: "next",
+        listed: "returned: the positions after the step, then the velocities",
+        own: NEXT,
+        answer: Answer::Tables(&[AnswerTable::of(
+            "position (rad, prismatic: m) and velocity (rad/s, prismatic: m/s) of each joint after the step",
+            Labels::Names(&["q", "qd"]),
+            Labels::Joints,
+        )]),
+        ..STEP
+    },
+    Entry {
+        function: Function::EulerStepDerivatives,
+        capability: Capability::EulerStepDerivatives,
+        own: NEXT,
+        output: "derivatives",
+        listed: "returned: the rows of ∂q'/∂q, ∂q'/∂q̇ and ∂q'/∂τ, then those of ∂q̇'/∂q, ∂q̇'/∂q̇ and ∂q̇'/∂τ",
+        answer: Answer::Tables(&[
+            of_step("∂q'/∂q (rows in rad or m after the step, columns per rad or m)"),
+            of_step("∂q'/∂q̇ (s)"),
+            of_step("∂q'/∂τ (rad or m, per N m or N)"),
+            of_step("∂q̇'/∂q (1/s)"),
+            of_step("∂q̇'/∂q̇"),
+            of_step("∂q̇'/∂τ (rad/s or m/s, per N m or N)"),
+        ]),
+        ..STEP
     },
 ];

@@ -16,6 +16,7 @@ pub enum Shape {
 const VECTOR: Shape = Shape::Array(Length::Joints, &Shape::Number);
 const MATRIX: Shape = Shape::Array(Length::Joints, &VECTOR);
 const TRIPLE: Shape = Shape::Array(Length::Fixed(3), &Shape::Number);
+const BY_STATE_AND_TORQUES: Shape = Shape::Record(Record::StepDerivatives, &[MATRIX, MATRIX, MATRIX]);
 const WRENCH: Shape = Shape::Record(Record::Wrench, &[TRIPLE, TRIPLE]);
 const VELOCITIES: Shape = Shape::Array(Length::Velocities, &Shape::Number);
 const PARAMETERS: Shape = Shape::Array(Length::Fixed(10), &Shape::Number);
@@ -90,6 +91,10 @@ pub enum Returned {
     SpatialMatrices,
     /// Four matrices.
     TorqueHessian,
+    /// Two vectors.
+    NextState,
+    /// Twice three matrices.
+    NextStateDerivatives,
 }
 
 impl Returned {
@@ -131,6 +136,10 @@ impl Returned {
             Self::AccelerationDerivatives => &Shape::Record(Record::AccelerationDerivatives, &[MATRIX, MATRIX, MATRIX]),
             Self::SpatialMatrices => &Shape::Array(Length::Fixed(6), &MATRIX),
             Self::TorqueHessian => &Shape::Record(Record::TorqueHessian, &[MATRIX, MATRIX, MATRIX, MATRIX]),
+            Self::NextState => &Shape::Record(Record::NextState, &[VECTOR, VECTOR]),
+            Self::NextStateDerivatives => {
+                &Shape::Record(Record::NextStateDerivatives, &[BY_STATE_AND_TORQUES, BY_STATE_AND_TORQUES])
+            }
             Self::AccelerationsAndWrenches => {
                 &Shape::Record(Record::AccelerationsAndWrenches, &[ACCELERATIONS, Shape::Array(Length::Tips, &WRENCH)])
             }
@@ -262,6 +271,12 @@ pub enum Record {
     AccelerationDerivatives,
     /// By q twice, by q and q̇, by q̇ twice, by q and q̈.
     TorqueHessian,
+    /// Positions and velocities after a step.
+    NextState,
+    /// By q, by q̇ and by τ.
+    StepDerivatives,
+    /// Those of the positions and of the velocities after a step.
+    NextStateDerivatives,
 }
 
 impl Record {
@@ -282,6 +297,9 @@ impl Record {
             Self::TorqueGradient => "TorqueGradient",
             Self::AccelerationDerivatives => "AccelerationDerivatives",
             Self::TorqueHessian => "TorqueHessian",
+            Self::NextState => "NextState",
+            Self::StepDerivatives => "StepDerivatives",
+            Self::NextStateDerivatives => "NextStateDerivatives",
         }
     }
 
@@ -300,7 +318,8 @@ impl Record {
             Self::FloatingTorqueDerivatives => &["dq", "dqd", "domega"],
             Self::ClosureStep => &["passive", "residual"],
             Self::TorqueGradient => &["dq", "dqd", "dqdd"],
-            Self::AccelerationDerivatives => &["dq", "dqd", "dtau"],
+            Self::AccelerationDerivatives | Self::StepDerivatives => &["dq", "dqd", "dtau"],
+            Self::NextState | Self::NextStateDerivatives => &["q", "qd"],
             Self::TorqueHessian => &["dq_dq", "dq_dqd", "dqd_dqd", "dq_dqdd"],
         }
     }

@@ -4,7 +4,7 @@ use rne_model::Robot;
 
 use crate::formulate::ldlt::System;
 use crate::formulate::mass_matrix::OfBase;
-use crate::formulate::{self, Closure, Contacts, Outputs, adjoint, centroid, contact, square, torque_by};
+use crate::formulate::{self, Closure, Contacts, Outputs, adjoint, centroid, contact, integrator, square, torque_by};
 use crate::function::{Argument, Function};
 use crate::ir::{Name, Number, Quantity, Symbol, WithRespectTo};
 use crate::reduced::backward::{torques, torques_of_floating_base};
@@ -98,14 +98,15 @@ impl Algorithm {
             | Function::ForwardDynamicsDerivatives
             | Function::InverseDynamicsDerivativesWithWrenches
             | Function::ForwardDynamicsDerivativesWithWrenches
-            | Function::ForwardDynamicsDerivativesWithPayload => &[BY_GROUPS, BY_JOINTS],
+            | Function::ForwardDynamicsDerivativesWithPayload
+            | Function::EulerStepDerivatives => &[BY_GROUPS, BY_JOINTS],
             Function::ForwardDynamicsWithPayload | Function::FloatingForwardDynamics => &[
                 BY_GROUPS,
                 BY_JOINTS,
                 Algorithm::Aba(ExpressedIn::GroupFrame),
                 Algorithm::Aba(ExpressedIn::JointFrame),
             ],
-            Function::ForwardDynamics | Function::InverseMassMatrixTimesTorques => &[
+            Function::ForwardDynamics | Function::InverseMassMatrixTimesTorques | Function::EulerStep => &[
                 BY_GROUPS,
                 BY_JOINTS,
                 Algorithm::UnitColumns,
@@ -228,6 +229,14 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
         (Function::ForwardDynamics | Function::ForwardDynamicsWithPayload, Algorithm::Aba(_)) => {
             by_joint(Quantity::RateDot, aba::forward_dynamics(arm).1)
         }
+        (Function::EulerStep, Algorithm::Aba(_)) => {
+            integrator::euler_step(builder, coordinates, &by_joint(Quantity::RateDot, aba::forward_dynamics(arm).1))
+        }
+        (Function::EulerStep, _) => {
+            let (upper, bias) = (upper_half(), coordinates.torques(&recursion(arm, algorithm)));
+            let accelerations = formulate::forward_dynamics(builder, &system(), &upper, &bias);
+            integrator::euler_step(builder, coordinates, &accelerations)
+        }
         (
             Function::ForwardDynamics
             | Function::ForwardDynamicsWithPayload
@@ -278,7 +287,8 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
         (
             Function::ForwardDynamicsDerivatives
             | Function::ForwardDynamicsDerivativesWithWrenches
-            | Function::ForwardDynamicsDerivativesWithPayload,
+            | Function::ForwardDynamicsDerivativesWithPayload
+            | Function::EulerStepDerivatives,
             _,
         ) => {
             // the same quantities come again, at the accelerations that are solved for

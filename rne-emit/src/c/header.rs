@@ -256,6 +256,12 @@ const fn about(record: Record) -> &'static str {
             "Second derivatives of the torques, each times its multiplier and added up: element (i, j) is by joint i \
              and by joint j."
         }
+        Record::NextState => "Positions, rad or m, and velocities, rad/s or m/s, after a step.",
+        Record::StepDerivatives => {
+            "Positions or velocities after a step by positions, by velocities and by torques; row i is position or \
+             velocity i, column j is joint j."
+        }
+        Record::NextStateDerivatives => "Derivatives of the positions and of the velocities after a step.",
         Record::TorqueDerivatives => "Torques by positions and by velocities; row i is torque i, column j is joint j.",
     }
 }

@@ -112,6 +112,9 @@ pub fn record_name(prefix: &str, record: Record) -> String {
         Record::TorqueGradient => "gradient",
         Record::AccelerationDerivatives => "acceleration_derivatives",
         Record::TorqueHessian => "hessian",
+        Record::NextState => "next_state",
+        Record::StepDerivatives => "step_derivatives",
+        Record::NextStateDerivatives => "next_state_derivatives",
     };
     format!("{prefix}_{name}")
 }

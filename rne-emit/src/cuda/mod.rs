@@ -88,21 +88,25 @@ fn function(file: &File<'_>, program: &Program) -> Result<String, ConstantTooLar
     let syntax = Syntax::Cuda { prefix: file.prefix };
     let arrays = program.argument_arrays();
     let output = Some(program.function.entry().output).filter(|name| !name.is_empty()).unwrap_or("result");
-    let parameters = arrays.iter().map(|array| format!("const T *{}", array_name(array.name)));
+    let parameters = arrays.iter().map(|array| {
+        let name = array_name(array.name);
+        if array.is_number { format!("T {name}") } else { format!("const T *{name}") }
+    });
     let parameters: Vec<String> = parameters.chain([format!("T *{output}")]).collect();
     let parameters = fill(&parameters.join(", "), WIDTH, "    ", "    ");
     let mut text = format!(
         "template <typename T>\nRNE_HOST_DEVICE inline void {}_{}(\n{parameters})\n{{\n",
         file.prefix, program.name
     );
-    for ArgumentArray { name: array, elements, .. } in &arrays {
+    for ArgumentArray { name: array, elements, is_number, .. } in &arrays {
         let array = array_name(array);
         if elements.iter().all(Option::is_none) {
             let _ = writeln!(text, "    (void){array};");
         }
         for (index, name) in elements.iter().enumerate() {
             if let Some(name) = name {
-                let _ = writeln!(text, "    const T {name} = {array}[{index}];");
+                let place = if *is_number { String::new() } else { format!("[{index}]") };
+                let _ = writeln!(text, "    const T {name} = {array}{place};");
             }
         }
     }

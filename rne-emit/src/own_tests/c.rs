@@ -163,7 +163,9 @@ impl Tests<'_> {
             .map(|input| {
                 let other = others.iter().find(|(name, _)| *name == input.name);
                 let rows = input.row.map_or_else(String::new, |row| format!("(const {real} (*)[{row}])"));
-                other.map_or_else(|| format!("{rows}{}[state]", array(input.name)), |(_, other)| (*other).to_owned())
+                let only = if input.is_number { "[0]" } else { "" };
+                let given = || format!("{rows}{}[state]{only}", array(input.name));
+                other.map_or_else(given, |(_, other)| (*other).to_owned())
             })
             .collect();
         if parameters::are_used(program) {

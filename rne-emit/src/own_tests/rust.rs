@@ -175,6 +175,7 @@ impl Tests<'_> {
                             "&core::array::from_fn(|i| core::array::from_fn(|j| Number(state.{}[{row} * i + j])))",
                             array.name
                         ),
+                        None if array.is_number => format!("Number(state.{}[0])", array.name),
                         None => format!("&state.{}.map(Number)", array.name),
                     },
                     |(_, it)| format!("&{it}.map(Number)"),

@@ -36,7 +36,8 @@ pub use golden::{GoldenState, torques_are_those_of_the_golden_file};
 pub use motion::{
     accelerations_are_those_of_the_runtime, accelerations_need_the_torques_that_cause_them,
     coriolis_matrix_is_that_of_the_runtime, derivatives_of_accelerations_are_those_of_the_runtime,
-    energies_are_those_of_the_runtime, kinetic_energy_is_that_of_the_mass_matrix, mass_matrix_is_symmetric,
+    derivatives_of_the_euler_step_are_those_of_the_runtime, energies_are_those_of_the_runtime,
+    euler_step_is_that_of_the_runtime, kinetic_energy_is_that_of_the_mass_matrix, mass_matrix_is_symmetric,
     mass_matrix_is_that_of_the_runtime, momenta_are_those_of_the_runtime, momentum_is_that_of_the_mass_matrix,
 };
 #[cfg(all(feature = "arm", feature = "std"))]

@@ -5,8 +5,9 @@ use super::comparison::{Allowed, are_finite, compare, largest, product};
 use super::state::{State, states};
 use super::torques::scale;
 use crate::{
-    CoriolisMatrix, Energy, ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics, InverseDynamicsDerivatives,
-    MassMatrix, MomentumObserver,
+    AccelerationDerivatives, CoriolisMatrix, Energy, EulerStep, EulerStepDerivatives, ForwardDynamics,
+    ForwardDynamicsDerivatives, InverseDynamics, InverseDynamicsDerivatives, MassMatrix, MomentumObserver,
+    TorqueDerivatives,
 };
 
 /// Masses times heights that cancel are measured by this part of them.
@@ -98,16 +99,88 @@ pub fn derivatives_of_accelerations_are_those_of_the_runtime<const DOF: usize, R
         }
         let (mass, torques) = (arm.mass_matrix(q), arm.inverse_dynamics_derivatives(q, qd, &accelerations));
         let found = robot.forward_dynamics_derivatives(q, qd, tau);
-        let one = core::array::from_fn(|i| core::array::from_fn(|j| if i == j { -1.0 } else { 0.0 }));
-        for (what, found, expected) in
-            [("M ∂q̈/∂q", found.dq, torques.dq), ("M ∂q̈/∂q̇", found.dqd, torques.dqd), ("M ∂q̈/∂τ", found.dtau, one)]
-        {
-            let column = |j: usize| product(&mass, &core::array::from_fn(|i| found[i][j]));
-            let columns: [[f64; DOF]; DOF] = core::array::from_fn(column);
-            let expected: [[f64; DOF]; DOF] = core::array::from_fn(|j| core::array::from_fn(|i| -expected[i][j]));
-            // of the terms: of an arm that is nearly singular they are larger than their sum
-            let scale = largest(mass.as_flattened()) * largest(found.as_flattened());
-            compare(what, &state, Allowed::Rounding { scale }, columns.as_flattened(), expected.as_flattened());
+        belong_to(&state, &found, &mass, &torques);
+    }
+}
+
+/// M ∂q̈/∂q = -∂τ/∂q, in the same way ∂q̈/∂q̇, and M ∂q̈/∂τ = 1.
+#[track_caller]
+fn belong_to<const DOF: usize>(
+    state: &State<DOF>,
+    found: &AccelerationDerivatives<DOF, f64>,
+    mass: &[[f64; DOF]; DOF],
+    torques: &TorqueDerivatives<DOF, f64>,
+) {
+    let one = core::array::from_fn(|i| core::array::from_fn(|j| if i == j { -1.0 } else { 0.0 }));
+    for (what, found, expected) in
+        [("M ∂q̈/∂q", found.dq, torques.dq), ("M ∂q̈/∂q̇", found.dqd, torques.dqd), ("M ∂q̈/∂τ", found.dtau, one)]
+    {
+        let column = |j: usize| product(mass, &core::array::from_fn(|i| found[i][j]));
+        let columns: [[f64; DOF]; DOF] = core::array::from_fn(column);
+        let expected: [[f64; DOF]; DOF] = core::array::from_fn(|j| core::array::from_fn(|i| -expected[i][j]));
+        // of the terms: of an arm that is nearly singular they are larger than their sum
+        let scale = largest(mass.as_flattened()) * largest(found.as_flattened());
+        compare(what, state, Allowed::Rounding { scale }, columns.as_flattened(), expected.as_flattened());
+    }
+}
+
+/// The duration of a step, s.
+const STEP: f64 = 0.5;
+
+/// A step of the semi-implicit Euler method, where the accelerations are finite.
+pub fn euler_step_is_that_of_the_runtime<const DOF: usize, R: EulerStep<DOF>>(robot: &R, file: &RobotFile) {
+    let arm = file.arm::<DOF>();
+    for state in states() {
+        let State { q, qd, tau, .. } = &state;
+        let accelerations = arm.forward_dynamics(q, qd, tau);
+        if !are_finite(&accelerations) {
+            continue;
+        }
+        let (found, expected) = (robot.euler_step(q, qd, tau, STEP), arm.euler_step(q, qd, tau, STEP));
+        // as the torques that cause the accelerations (q̇' - q̇) / h, for which the mass matrix need not be regular
+        let accelerations = core::array::from_fn(|i| (found.qd[i] - qd[i]) / STEP);
+        let torques = arm.inverse_dynamics(q, qd, &accelerations);
+        let terms = largest(arm.mass_matrix(q).as_flattened()) * (largest(&accelerations) + largest(qd) / STEP);
+        let scale = terms.max(largest(&arm.bias_torques(q, qd))).max(scale(&arm, &state));
+        compare("torques of euler_step", &state, Allowed::Rounding { scale }, &torques, tau);
+        let moved: [f64; DOF] = core::array::from_fn(|i| q[i] + STEP * found.qd[i]);
+        let allowed = Allowed::Rounding { scale: largest(q).max(largest(&expected.q)) };
+        compare("positions of euler_step", &state, allowed, &found.q, &moved);
+    }
+}
+
+/// Derivatives of this step: those of the velocities are 1 + h times those of the accelerations, with the mass matrix
+/// and the derivatives of the torques of the runtime, and those of the positions 1 + h times those of the velocities.
+pub fn derivatives_of_the_euler_step_are_those_of_the_runtime<const DOF: usize, R: EulerStepDerivatives<DOF>>(
+    robot: &R,
+    file: &RobotFile,
+) {
+    let arm = file.arm::<DOF>();
+    for state in states() {
+        let State { q, qd, tau, .. } = &state;
+        let accelerations = arm.forward_dynamics(q, qd, tau);
+        if !are_finite(&accelerations) {
+            continue;
+        }
+        let found = robot.euler_step_derivatives(q, qd, tau, STEP);
+        let matrix = |element: &dyn Fn(usize, usize) -> f64| -> [[f64; DOF]; DOF] {
+            core::array::from_fn(|i| core::array::from_fn(|j| element(i, j)))
+        };
+        let one = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
+        let of_accelerations = AccelerationDerivatives {
+            dq: matrix(&|i, j| found.qd.dq[i][j] / STEP),
+            dqd: matrix(&|i, j| (found.qd.dqd[i][j] - one(i, j)) / STEP),
+            dtau: matrix(&|i, j| found.qd.dtau[i][j] / STEP),
+        };
+        let (mass, torques) = (arm.mass_matrix(q), arm.inverse_dynamics_derivatives(q, qd, &accelerations));
+        belong_to(&state, &of_accelerations, &mass, &torques);
+        for (what, found, expected) in [
+            ("∂q'/∂q", found.q.dq, matrix(&|i, j| one(i, j) + STEP * found.qd.dq[i][j])),
+            ("∂q'/∂q̇", found.q.dqd, matrix(&|i, j| STEP * found.qd.dqd[i][j])),
+            ("∂q'/∂τ", found.q.dtau, matrix(&|i, j| STEP * found.qd.dtau[i][j])),
+        ] {
+            let allowed = Allowed::Rounding { scale: 1.0 };
+            compare(what, &state, allowed, found.as_flattened(), expected.as_flattened());
         }
     }
 }
