@@ -87,6 +87,8 @@ impl State {
             base: [base.omega, base.omega_dot, base.acceleration, base.gravity],
             velocity: base.velocity,
             pose: [base.omega, base.omega_dot, base.acceleration, base.velocity].as_flattened().try_into().unwrap(),
+            // so that the changes of a step are those of a second
+            step: 1.0,
             base_rotation: std::array::from_fn(|at| base_rotation(base)[at / 3][at % 3]),
             ..Arguments::of_joints(q, qd, qdd, 0.0)
         }
@@ -138,6 +140,14 @@ fn compare(u: &mut Unstructured<'_>) -> Result<()> {
         | Function::FloatingForwardDynamics
         | Function::InverseMassMatrixTimesTorques => {
             accelerate(&arm, function, &state, &interpreted).expect("arrays of the right length")
+        }
+        Function::EulerStep => {
+            let rates = interpreted[robot.dof()..].iter().zip(&state.qd).map(|(next, qd)| next - qd);
+            accelerate(&arm, Function::ForwardDynamics, &state, &rates.collect::<Vec<_>>())
+                .expect("arrays of the right length")
+        }
+        Function::EulerStepDerivatives => {
+            inverts(&arm, &state, &interpreted[5 * robot.dof() * robot.dof()..]).expect("arrays of the right length")
         }
         Function::InverseMassMatrix => inverts(&arm, &state, &interpreted).expect("arrays of the right length"),
         // the others are products with it, and of accelerations that are as far from those of the runtime
@@ -289,6 +299,14 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
         Function::ForwardDynamicsDerivativesWithPayload => {
             let by = arm.forward_dynamics_derivatives_with_payload(q, qd, tau, &Payload::from_array(*payload))?;
             [by.dq, by.dqd, by.dtau].concat().concat()
+        }
+        Function::EulerStep => {
+            let next = arm.euler_step(q, qd, tau, 1.0)?;
+            [next.q, next.qd].concat()
+        }
+        Function::EulerStepDerivatives => {
+            let by = arm.euler_step_derivatives(q, qd, tau, 1.0)?;
+            [by.q, by.qd].into_iter().flat_map(|by| [by.dq, by.dqd, by.dtau].concat().concat()).collect()
         }
         Function::TorqueHessian => {
             let hessian = arm.torque_hessian(q, qd, qdd, tau)?;

@@ -34,6 +34,7 @@ fn widths(dof: usize) -> [(&'static str, usize); 19] {
         ("pose", 12),
         ("base_rotation", 9),
         ("multipliers", dof),
+        ("step", 1),
     ]
 }
 
@@ -98,6 +99,7 @@ impl States {
             base: [9, 11, 12, 13].map(triple),
             velocity: of(15, 6)[..3].try_into().expect("three"),
             pose: of(16, 12).try_into().expect("twelve"),
+            step: of(19, 1)[0],
             base_rotation: of(17, 9).try_into().expect("nine"),
             ..Numbers::of_joints(joints(0), joints(1), joints(2), 0.0)
         };

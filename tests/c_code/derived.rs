@@ -2,10 +2,11 @@
 
 use rne::{
     Actuation, BaseMotion, BaseTwist, CentreOfMass, CentroidalMomentum, ContactDynamics, CoriolisMatrix, Energy,
-    FloatingBase, FloatingEnergy, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor,
-    ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient,
-    InverseDynamicsHessian, JacobianDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase,
-    PayloadDynamics, Pose, Regressor, Scalar, TipWrenches, Wrench,
+    EulerStep, EulerStepDerivatives, FloatingBase, FloatingEnergy, FloatingInverseDynamicsDerivatives,
+    FloatingKinematics, FloatingRegressor, ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics,
+    InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian, JacobianDerivatives, JointWrenches,
+    Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Pose, Regressor, Scalar, TipWrenches,
+    Wrench,
 };
 use rne_codegen::Form;
 pub(crate) use rne_codegen::Function;
@@ -49,6 +50,8 @@ pub(crate) trait Everything<const DOF: usize, const NV: usize, const BODIES: usi
     + ForwardDynamicsDerivatives<DOF>
     + JacobianDerivatives<DOF>
     + InverseDynamicsHessian<DOF>
+    + EulerStep<DOF>
+    + EulerStepDerivatives<DOF>
 {
 }
 
@@ -137,6 +140,14 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, const BODIES: usize, T:
         Function::TorqueHessian => {
             let hessian = robot.torque_hessian(q, qd, qdd, tau);
             [hessian.dq_dq, hessian.dq_dqd, hessian.dqd_dqd, hessian.dq_dqdd].map(flat).concat()
+        }
+        Function::EulerStep => {
+            let next = robot.euler_step(q, qd, tau, T::from_f64(0.03125));
+            [next.q, next.qd].concat()
+        }
+        Function::EulerStepDerivatives => {
+            let by = robot.euler_step_derivatives(q, qd, tau, T::from_f64(0.03125));
+            [by.q, by.qd].into_iter().flat_map(|by| [by.dq, by.dqd, by.dtau].map(flat).concat()).collect()
         }
         Function::JointWrenches => {
             let wrenches = robot.joint_wrenches(q, qd, qdd);
@@ -229,6 +240,8 @@ macro_rules! robot {
                 rne::ForwardDynamicsDerivatives,
                 rne::JacobianDerivatives,
                 rne::InverseDynamicsHessian,
+                rne::EulerStep,
+                rne::EulerStepDerivatives,
             )]
             #[robot(path = $path, form = $form, inline)]
             pub(crate) struct Robot;

@@ -173,6 +173,7 @@ impl Driver<'_> {
                 Function::ForwardDynamics | Function::MomentumAndRate | Function::ForwardDynamicsDerivatives => {
                     "q, qd, tau"
                 }
+                Function::EulerStep | Function::EulerStepDerivatives => "q, qd, tau, 0.03125f",
                 Function::TorqueGradient | Function::TorqueHessian => "q, qd, qdd, tau",
                 Function::InverseDynamicsOnMovingBase | Function::FloatingRegressor => {
                     "q, qd, qdd, omega, omega_dot, acceleration, gravity"
@@ -221,6 +222,8 @@ impl Driver<'_> {
                 | Function::InverseDynamicsDerivativesWithWrenches => (format!("{prefix}_torque_derivatives x"), "&x"),
                 Function::TorqueGradient => (format!("{prefix}_gradient x"), "&x"),
                 Function::TorqueHessian => (format!("{prefix}_hessian x"), "&x"),
+                Function::EulerStep => (format!("{prefix}_next_state x"), "&x"),
+                Function::EulerStepDerivatives => (format!("{prefix}_next_state_derivatives x"), "&x"),
                 Function::ForwardDynamicsDerivatives
                 | Function::ForwardDynamicsDerivativesWithWrenches
                 | Function::ForwardDynamicsDerivativesWithPayload => {

@@ -58,6 +58,7 @@ impl States {
             ("qd", rows(&|state| state.joints[1].clone())),
             ("qdd", rows(&|state| state.joints[2].clone())),
             ("tau", rows(&|state| state.joints[3].clone())),
+            ("step", rows(&|_| vec![0.03125])),
             ("multipliers", rows(&|state| state.joints[3].clone())),
             ("sin", turns(|turn| turn.0)),
             ("cos", turns(|turn| turn.1)),
@@ -103,6 +104,7 @@ fn interpreted(interpreter: &Interpreter, state: &State) -> Vec<f64> {
         base,
         velocity: moment,
         pose: state.vectors[2..6].as_flattened().try_into().expect("twelve"),
+        step: 0.03125,
         base_rotation: state.rotation.as_flattened().try_into().expect("nine"),
         ..of_joints
     };

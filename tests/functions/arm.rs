@@ -80,6 +80,9 @@ pub(crate) fn base_rotation<T: Scalar>() -> [[T; 3]; 3] {
     [[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]].map(|row| row.map(T::from_f64))
 }
 
+/// The duration of a step, s: exact in single precision.
+pub(crate) const STEP: f64 = 0.03125;
+
 /// A scalar of the runtime as a number of the interpreter.
 #[derive(Clone, Copy)]
 struct Number<T>(T);
@@ -210,6 +213,7 @@ impl Arm {
             base: [omega, omega_dot, acceleration, gravity].map(|vector| vector.map(Number)),
             velocity: velocity.map(Number),
             pose: pose.collect::<Vec<_>>().try_into().unwrap_or_else(|_| unreachable!("twelve")),
+            step: Number(T::from_f64(STEP)),
             base_rotation: std::array::from_fn(|at| Number(given.base_rotation[at / 3][at % 3])),
             ..Arguments::of_joints(&q, &qd, &qdd, Number(T::zero()))
         };
@@ -430,6 +434,10 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
         Function::TorqueHessian => {
             arm.torque_hessian(q, qd, qdd, tau).map(|by| flat([by.dq_dq, by.dq_dqd, by.dqd_dqd, by.dq_dqdd].concat()))
         }
+        Function::EulerStep => arm.euler_step(q, qd, tau, T::from_f64(STEP)).map(|next| [next.q, next.qd].concat()),
+        Function::EulerStepDerivatives => arm
+            .euler_step_derivatives(q, qd, tau, T::from_f64(STEP))
+            .map(|by| [by.q, by.qd].into_iter().flat_map(|by| flat([by.dq, by.dqd, by.dtau].concat())).collect()),
         Function::JointWrenches => arm
             .joint_wrenches(q, qd, qdd)
             .map(|wrenches| wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment].concat()).collect()),

@@ -3,7 +3,7 @@
 use rne::compiled::{Arguments, Array, CompiledArm, Destination, Form, Function};
 use rne_model::Robot;
 
-use crate::arm::{Arm, Maker, at_tips, base_rotation};
+use crate::arm::{Arm, Maker, STEP, at_tips, base_rotation};
 use crate::check::Worst;
 use crate::equality::{error, is_compared};
 use crate::trees::{State, robot};
@@ -23,6 +23,7 @@ fn of_state(robot: &Robot, state: &State) -> Vec<(&'static str, Vec<f64>)> {
         ("qd", qd.clone()),
         ("qdd", qdd.clone()),
         ("tau", tau.clone()),
+        ("step", vec![STEP]),
         // as the other tests have them
         ("multipliers", tau.clone()),
         ("sin", sin),

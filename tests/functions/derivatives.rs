@@ -37,21 +37,24 @@ use By::{Omega, Q, Qd, Qdd, Tau};
 enum Kind {
     /// A matrix for each that is varied, by rows: a row for each number of the function.
     Rows,
+    /// The same for the first half of the numbers of the function, then for the others.
+    HalvesOfRows,
     /// The torques of the state times each of these matrices.
     Weighted,
     /// The matrix times these numbers.
     Times(By),
 }
-use Kind::{Rows, Times, Weighted};
+use Kind::{HalvesOfRows, Rows, Times, Weighted};
 
 /// Each function, the function that it is a derivative of, what that is varied by, and what is made of it.
-const DERIVATIVES: [(Function, Function, &[By], Kind); 10] = [
+const DERIVATIVES: [(Function, Function, &[By], Kind); 11] = [
     (Function::InverseDynamicsDerivatives, Function::InverseDynamics, &[Q, Qd], Rows),
     (Function::InverseDynamicsDerivativesWithPayload, Function::InverseDynamicsWithPayload, &[Q, Qd], Rows),
     (Function::InverseDynamicsDerivativesWithWrenches, Function::InverseDynamicsWithWrenches, &[Q, Qd], Rows),
     (Function::ForwardDynamicsDerivatives, Function::ForwardDynamics, &[Q, Qd, Tau], Rows),
     (Function::ForwardDynamicsDerivativesWithPayload, Function::ForwardDynamicsWithPayload, &[Q, Qd, Tau], Rows),
     (Function::ForwardDynamicsDerivativesWithWrenches, Function::ForwardDynamicsWithWrenches, &[Q, Qd, Tau], Rows),
+    (Function::EulerStepDerivatives, Function::EulerStep, &[Q, Qd, Tau], HalvesOfRows),
     (Function::InverseMassMatrixTimesTorques, Function::ForwardDynamics, &[Tau], Times(Tau)),
     (Function::TorqueGradient, Function::InverseDynamics, &[Q, Qd, Qdd], Weighted),
     (Function::JacobianRate, Function::Jacobian, &[Q], Times(Qd)),
@@ -97,7 +100,7 @@ fn expected(arm: &Arm, of: Function, by: &[By], kind: Kind, state: &State) -> Ve
             (0..if *by == Omega { 3 } else { dof }).map(|at| column(arm, of, state, *by, at)).collect();
         let rows = (0..columns.first().map_or(0, Vec::len)).map(|row| columns.iter().map(move |column| column[row]));
         match kind {
-            Rows => rows.flatten().collect::<Vec<_>>(),
+            Rows | HalvesOfRows => rows.flatten().collect::<Vec<_>>(),
             Times(by) => {
                 let x = if by == Tau { &state.tau } else { &state.qd };
                 rows.map(|row| row.zip(x).map(|(a, b)| a * b).sum()).collect()
@@ -105,7 +108,16 @@ fn expected(arm: &Arm, of: Function, by: &[By], kind: Kind, state: &State) -> Ve
             Weighted => columns.iter().map(|column| column.iter().zip(&state.tau).map(|(a, b)| a * b).sum()).collect(),
         }
     };
-    by.iter().map(matrix).collect()
+    let matrices: Vec<Vec<f64>> = by.iter().map(matrix).collect();
+    match kind {
+        HalvesOfRows => {
+            let half = |half: usize| {
+                matrices.iter().map(move |matrix| matrix[half * matrix.len() / 2..][..matrix.len() / 2].to_vec())
+            };
+            half(0).chain(half(1)).collect()
+        }
+        _ => matrices,
+    }
 }
 
 /// Every derivative of a robot in both forms.

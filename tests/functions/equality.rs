@@ -8,14 +8,14 @@ use rne::{BaseMotion, Payload, Wrench};
 use rne_codegen::{Argument, Capability, Form, Function};
 use rne_model::{Dh, Robot};
 
-use crate::arm::{Arm, Given, Maker, base_rotation, of_runtime};
+use crate::arm::{Arm, Given, Maker, STEP, base_rotation, of_runtime};
 use crate::case::{cases, largest, payload};
 use crate::check::{Conditioning, Worst, conditioning, error_on_scale};
 use crate::golden::ROBOTS;
 use crate::trees::contact_condition;
 
 /// Functions whose seven steps are the runtime's operations, in its order.
-const SAME_BITS: [Function; 35] = [
+const SAME_BITS: [Function; 36] = [
     Function::InverseDynamics,
     Function::InverseDynamicsWithWrench,
     Function::InverseDynamicsWithPayload,
@@ -24,6 +24,7 @@ const SAME_BITS: [Function; 35] = [
     Function::BiasTorques,
     Function::MassMatrix,
     Function::ForwardDynamics,
+    Function::EulerStep,
     Function::JacobianRateTimesVelocity,
     Function::KineticEnergy,
     Function::InverseDynamicsDerivatives,
@@ -214,6 +215,28 @@ pub(crate) fn error(
             let given = &Given { qdd: &qdd, ..*given };
             let of_torques = largest(&of_runtime(&arm.runtime, torques, given)).max(scale(arm, torques, given));
             error_of_accelerations(found, &expected, of_torques, &Conditioning { number, largest: of_matrix })
+        }
+        // those of the accelerations (q̇' - q̇) / h
+        Function::EulerStep => {
+            let (positions, rates) = found.split_at(given.q.len());
+            let accelerations: Vec<f64> = rates.iter().zip(given.qd).map(|(next, qd)| (next - qd) / STEP).collect();
+            let moved: Vec<f64> = given.q.iter().zip(rates).map(|(q, rate)| q + STEP * rate).collect();
+            error(arm, maker, Function::ForwardDynamics, given, &accelerations, tolerance).max(error_on_scale(
+                positions,
+                &moved,
+                largest(given.q),
+            ))
+        }
+        Function::EulerStepDerivatives => {
+            let dof = given.q.len();
+            let (positions, rates) = found.split_at(3 * dof * dof);
+            let one = |kind: usize, at: usize| {
+                if at / (dof * dof) == kind && at % (dof * dof) % (dof + 1) == 0 { 1.0 } else { 0.0 }
+            };
+            let by: Vec<f64> = rates.iter().enumerate().map(|(at, x)| (x - one(1, at)) / STEP).collect();
+            let moved: Vec<f64> = rates.iter().enumerate().map(|(at, x)| one(0, at) + STEP * x).collect();
+            error(arm, maker, Function::ForwardDynamicsDerivatives, given, &by, tolerance)
+                .max(error_on_scale(positions, &moved, 1.0))
         }
         Function::ForwardDynamics
         | Function::InverseMassMatrix

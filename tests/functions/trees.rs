@@ -12,7 +12,7 @@ use rne::{BaseMotion, DynObserverState, Payload, Wrench};
 use rne_codegen::{Algorithm, Argument, Compiler, Form, Function, Reason, Refusal};
 use rne_model::{Contact, Convention, FixedFrame, FrameId, Reader, Robot};
 
-use crate::arm::{Arm, Given, Maker, at_tips, base_rotation};
+use crate::arm::{Arm, Given, Maker, STEP, at_tips, base_rotation};
 use crate::case::payload;
 use crate::check::{Worst, conditioning, error_on_scale, flat};
 use crate::equality::compare_at_states;
@@ -351,6 +351,25 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
             let dqd_dqd: Vec<_> = (0..dof).map(|joint| oracle::by_rate(qd, joint, by_qd)).collect();
             let dq_dqdd: Vec<_> = (0..dof).map(|joint| oracle::by_position(robot, q, joint, momenta)).collect();
             [flat(dq_dq), transposed(dq_dqd), flat(dqd_dqd), flat(dq_dqdd)].concat()
+        }
+        Function::EulerStep => {
+            let qdd = self::expected(robot, Function::ForwardDynamics, state);
+            let moved = |x: &[f64], by: &[f64]| x.iter().zip(by).map(|(x, by)| x + STEP * by).collect::<Vec<_>>();
+            let rates = moved(qd, &qdd);
+            [moved(q, &rates), rates].concat()
+        }
+        Function::EulerStepDerivatives => {
+            let found = self::expected(robot, Function::ForwardDynamicsDerivatives, state);
+            let moved = |place: usize, by: &[f64]| {
+                let one = |at: usize| if at % (dof + 1) == 0 { 1.0 } else { 0.0 };
+                let blocks = by.chunks(dof * dof).enumerate();
+                let moved = blocks.flat_map(|(kind, block)| {
+                    block.iter().enumerate().map(move |(at, x)| STEP * x + if kind == place { one(at) } else { 0.0 })
+                });
+                moved.collect::<Vec<f64>>()
+            };
+            let rates = moved(1, &found);
+            [moved(0, &rates), rates].concat()
         }
         Function::ForwardDynamicsDerivatives
         | Function::ForwardDynamicsDerivativesWithWrenches

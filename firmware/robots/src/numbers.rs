@@ -1,6 +1,9 @@
 //! What a function returns, number by number.
 
-use rne::{AccelerationDerivatives, MomentumAndRate, Pose, TorqueDerivatives, TorqueGradient, TorqueHessian, Wrench};
+use rne::{
+    AccelerationDerivatives, MomentumAndRate, NextState, NextStateDerivatives, Pose, TorqueDerivatives, TorqueGradient,
+    TorqueHessian, Wrench,
+};
 
 /// Numbers in a shape.
 pub trait Numbers {
@@ -72,5 +75,22 @@ impl<const DOF: usize> Numbers for TorqueHessian<DOF, f32> {
         self.dq_dqd.each(act);
         self.dqd_dqd.each(act);
         self.dq_dqdd.each(act);
+    }
+}
+
+impl<const DOF: usize> Numbers for NextState<DOF, f32> {
+    fn each(&self, act: &mut impl FnMut(f32)) {
+        self.q.each(act);
+        self.qd.each(act);
+    }
+}
+
+impl<const DOF: usize> Numbers for NextStateDerivatives<DOF, f32> {
+    fn each(&self, act: &mut impl FnMut(f32)) {
+        for by in [&self.q, &self.qd] {
+            by.dq.each(act);
+            by.dqd.each(act);
+            by.dtau.each(act);
+        }
     }
 }

@@ -1,8 +1,8 @@
 //! All that the PUMA 560 can compute besides `inverse_dynamics`.
 
 use rne::{
-    AccelerationDerivatives, BaseMotion, MomentumAndRate, ObserverState, Payload, Pose, Scalar, TorqueDerivatives,
-    TorqueGradient, TorqueHessian, Wrench,
+    AccelerationDerivatives, BaseMotion, MomentumAndRate, NextState, NextStateDerivatives, ObserverState, Payload,
+    Pose, Scalar, TorqueDerivatives, TorqueGradient, TorqueHessian, Wrench,
 };
 
 use crate::numbers::Numbers;
@@ -27,6 +27,7 @@ pub struct Arguments {
     wrench: Wrench<f32>,
     payload: Payload<f32>,
     base: BaseMotion<f32>,
+    step: f32,
 }
 
 impl Arguments {
@@ -38,7 +39,7 @@ impl Arguments {
         let payload = Payload::from_array([0.5, 0.01, -0.02, 0.1, 0.002, 0.003, 0.001, 0.0001, -0.0002, 0.0003]);
         let mut base = BaseMotion::fixed([0.0, 0.0, -9.81]);
         base.omega = [0.1, -0.2, 0.3];
-        Self { q, qd, qdd, sin, cos, tau: qdd, multipliers: qdd, wrench, payload, base }
+        Self { q, qd, qdd, sin, cos, tau: qdd, multipliers: qdd, wrench, payload, base, step: 0.01 }
     }
 }
 
@@ -53,6 +54,16 @@ impl Arguments {
         let _ = (update(&mut observer, q, qd, tau), update(&mut observer, sin, cos, tau));
         update(&mut observer, cos, sin, qd)
     }
+}
+
+/// An argument as a method takes it: a number by its value.
+macro_rules! passed {
+    (step of $argument:ident) => {
+        *$argument
+    };
+    ($name:ident of $argument:ident) => {
+        $argument
+    };
 }
 
 /// A module per form with a function per method, and [`each`].
@@ -78,7 +89,7 @@ macro_rules! methods {
         #[doc = concat!("The form `", $name, "`.")]
         pub mod $form {
             use super::{
-                AccelerationDerivatives, BaseMotion, MomentumAndRate, ObserverState, Payload, Pose, TorqueDerivatives,
+                AccelerationDerivatives, BaseMotion, MomentumAndRate, NextState, NextStateDerivatives, ObserverState, Payload, Pose, TorqueDerivatives,
                 TorqueGradient, TorqueHessian, Wrench,
             };
 
@@ -87,7 +98,8 @@ macro_rules! methods {
                 rne::Energy, rne::CentreOfMass, rne::Regressor, rne::InverseDynamicsDerivatives, rne::JointWrenches,
                 rne::MomentumObserver, rne::MovingBase, rne::Actuation, rne::PayloadDynamics,
                 rne::InverseDynamicsGradient, rne::ForwardDynamicsDerivatives, rne::JacobianDerivatives,
-                rne::InverseDynamicsHessian,
+                rne::InverseDynamicsHessian, rne::EulerStep,
+                rne::EulerStepDerivatives,
             )]
             #[robot(path = "../../../robots/puma560.yaml", form = $name)]
             struct Robot;
@@ -97,7 +109,7 @@ macro_rules! methods {
                 #[inline(never)]
                 #[must_use]
                 pub fn $function($($argument: &$type),*) -> $returned {
-                    rne::$capability::$function(&Robot, $($argument),*)
+                    rne::$capability::$function(&Robot, $(passed!($argument of $argument)),*)
                 }
             )*
 
@@ -178,4 +190,7 @@ methods! {
     InverseDynamicsHessian: torque_hessian(
         q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], multipliers: [f32; 6]
     ) -> TorqueHessian<6, f32>;
+    EulerStep: euler_step(q: [f32; 6], qd: [f32; 6], tau: [f32; 6], step: f32) -> NextState<6, f32>;
+    EulerStepDerivatives: euler_step_derivatives(q: [f32; 6], qd: [f32; 6], tau: [f32; 6], step: f32)
+        -> NextStateDerivatives<6, f32>;
 }
