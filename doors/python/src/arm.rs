@@ -162,6 +162,13 @@ impl Arm {
         Ok(Given { name, parts: &[], elements, value })
     }
 
+    /// The duration of a step: a number, or an array of shape (N,).
+    pub(crate) fn of_step<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
+        let elements = Argument::Step.elements(Sizes::of(self.robot()));
+        let value = value.py().import("rne.names")?.call_method1("of_number", (value, name))?;
+        Ok(Given { name, parts: &[], elements, value })
+    }
+
     /// A rotation matrix: an array of shape (3, 3) or (N, 3, 3).
     pub(crate) fn of_rotation<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
         let elements = Argument::BaseRotation.elements(Sizes::of(self.robot()));

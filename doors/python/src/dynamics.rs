@@ -17,6 +17,9 @@ macro_rules! about {
         "`wrenches`: force, then moment, of each tip; a dict from names of tips to six numbers, or to arrays of shape \
          (N, 6), where a tip without an entry exerts nothing; or an array of shape (tips, 6) or (N, tips, 6).\n\n"
     };
+    (Step) => {
+        "`step`: a number, or shape (N,).\n\n"
+    };
     (BaseVelocity) => {
         "`omega`: shape (3,) or (N, 3).\n\n"
     };
@@ -141,6 +144,14 @@ macro_rules! returned {
     (TorqueHessian) => {
         "dq_dq, dq_dqd, dqd_dqd and dq_dqdd, four arrays of shape (n, n) or (N, n, n); `out` is one array of shape \
          (4, n, n) or (N, 4, n, n)."
+    };
+    (NextState) => {
+        "the positions and the velocities after the step, two arrays of shape (n,) or (N, n); `out` is one array of \
+         shape (2, n) or (N, 2, n)."
+    };
+    (NextStateDerivatives) => {
+        "A and B, of shape (2 n, 2 n) and (2 n, n), or (N, 2 n, 2 n) and (N, 2 n, n). `out` has their blocks: shape \
+         (2, 3, n, n) or (N, 2, 3, n, n), of the positions and of the velocities, by q, by qd and by tau."
     };
     (MomentumAndRate) => {
         "momentum and rate, two arrays of shape (n,) or (N, n); `out` is one array of shape (2, n) or (N, 2, n)."
@@ -437,6 +448,9 @@ macro_rules! loaded {
 macro_rules! given {
     ($arm:ident, $argument:ident: Wrench) => {
         given!($arm, $argument: Wrench, &["force", "moment"])
+    };
+    ($arm:ident, $argument:ident: Step) => {
+        $arm.of_step(stringify!($argument), $argument)?
     };
     ($arm:ident, $argument:ident: BaseVelocity) => {
         given!($arm, $argument: BaseVelocity, &[])

@@ -33,6 +33,9 @@ fn shape(function: Function, arm: &CompiledArm) -> Vec<usize> {
                 | Record::TorqueGradient
                 | Record::AccelerationDerivatives
                 | Record::TorqueHessian
+                | Record::NextState
+                | Record::StepDerivatives
+                | Record::NextStateDerivatives
                 | Record::ClosureStep,
                 parts,
             ) => {
@@ -132,7 +135,8 @@ fn evaluate_in<'py, T: Element + Number>(
             | Record::MomentumAndRate
             | Record::TorqueGradient
             | Record::AccelerationDerivatives
-            | Record::TorqueHessian,
+            | Record::TorqueHessian
+            | Record::NextState,
             parts,
         ) => {
             let all = vec![PySlice::full(py).into_any(); of_state.len() - 1];
@@ -162,6 +166,18 @@ fn evaluate_in<'py, T: Element + Number>(
             let rows: Vec<usize> = many.into_iter().chain([tips, 6]).collect();
             let wrenches = of(joints, joints + 6 * tips)?.call_method1("reshape", (rows,))?;
             Ok(PyTuple::new(py, [of(0, 6)?, of(6, joints)?, wrenches])?.into_any())
+        }
+        // A and B, of the blocks by q, by q̇ and by τ of the positions, then of the velocities
+        Layout::Record(Record::NextStateDerivatives, _) => {
+            let (dof, lead) = (arm.dof(), many.is_some().into());
+            let axes: Vec<usize> = (0..lead).chain([0, 2, 1, 3].map(|axis| lead + axis)).collect();
+            let rows: Vec<usize> = many.into_iter().chain([2 * dof, 3 * dof]).collect();
+            let matrix = result.call_method1("transpose", (axes,))?.call_method1("reshape", (rows,))?;
+            let of = |from: usize, to: usize| {
+                let part = PySlice::new(py, isize::try_from(from)?, isize::try_from(to)?, 1).into_any();
+                matrix.get_item(PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), part])?)
+            };
+            Ok(PyTuple::new(py, [of(0, 2 * dof)?, of(2 * dof, 3 * dof)?])?.into_any())
         }
         Layout::Record(Record::FloatingTorqueDerivatives, parts) => {
             let mut from = 0;

@@ -46,6 +46,7 @@ fn operands(arm: &CompiledArm, function: Function) -> Vec<Operand> {
                 let shape = match name {
                     // homogeneous matrices are those of Python
                     "pose" => vec![12],
+                    _ if argument.is_number() => Vec::new(),
                     _ => row.map_or_else(|| vec![elements], |row| vec![elements / row, row]),
                 };
                 all.push(Operand { name, shape, parts: vec![(name, elements)] });

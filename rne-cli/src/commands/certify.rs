@@ -193,6 +193,7 @@ impl Arguments {
         let request = Request {
             casadi: false,
             acados: false,
+            runge_kutta: false,
             file: &self.file,
             bytes,
             prefix: self.prefix.as_ref(),

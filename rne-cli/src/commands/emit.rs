@@ -73,6 +73,9 @@ pub(crate) struct Arguments {
     /// Add effort limits to C code: limit_torques
     #[arg(long)]
     limits: bool,
+    /// Add a step of Runge-Kutta to C code: runge_kutta_step
+    #[arg(long)]
+    runge_kutta: bool,
     /// Add functions for CasADi, in double precision; docs/optimal-control.md lists those with derivatives
     #[arg(long, conflicts_with = "run_time")]
     casadi: bool,
@@ -234,6 +237,7 @@ fn emitted(
         precision,
         friction: arguments.friction,
         limits: arguments.limits,
+        runge_kutta: arguments.runge_kutta,
         names: arguments.names_joints(robot),
         casadi: arguments.casadi,
         acados: arguments.acados,
@@ -301,7 +305,7 @@ fn is_named_once(run_time: &[String]) -> Result<(), Failure> {
 
 fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
     use Language::{C, Cuda, Ptx, Rust};
-    let options: [(&str, bool, &[Language], &str); 8] = [
+    let options: [(&str, bool, &[Language], &str); 9] = [
         (
             "--with-sin-cos",
             arguments.with_sin_cos,
@@ -312,6 +316,7 @@ fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
         ("--prefix", arguments.prefix.is_some(), &[C, Cuda, Ptx], "a file of Rust is a module with a name of its own"),
         ("--friction", arguments.friction, &[C], "in Rust, the derive `Actuation` computes friction"),
         ("--limits", arguments.limits, &[C], "in Rust, `f64::clamp` limits a torque"),
+        ("--runge-kutta", arguments.runge_kutta, &[C], "in Rust, every type with `ForwardDynamics` has the step"),
         ("--names", arguments.names, &[Rust, C], "code for processors of graphics has functions alone"),
         ("--tests", arguments.tests, &[Rust, C], "code for processors of graphics has functions alone"),
         ("--casadi", arguments.casadi, &[C], "CasADi calls functions of C"),
@@ -348,6 +353,9 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
     }
     let is_asked = |function: &Function| match asked.as_slice() {
         _ if arguments.acados && matches!(function, Function::ForwardDynamics | Function::TorqueHessian) => true,
+        _ if arguments.runge_kutta && *function == Function::ForwardDynamics => true,
+        // with its derivatives
+        [] if arguments.runge_kutta => *function == Function::ForwardDynamicsDerivatives,
         [] if arguments.casadi && robot.closed.is_empty() => {
             matches!(function, Function::InverseDynamics | Function::ForwardDynamics)
         }
@@ -535,6 +543,7 @@ fn command(arguments: &Arguments, out: &Path) -> String {
     for (option, is_given) in [
         (" --friction", arguments.friction),
         (" --limits", arguments.limits),
+        (" --runge-kutta", arguments.runge_kutta),
         (" --names", arguments.names),
         (" --with-sin-cos", arguments.with_sin_cos),
     ] {

@@ -52,17 +52,19 @@ pub(super) struct Request<'a> {
     pub(super) names: bool,
     pub(super) casadi: bool,
     pub(super) acados: bool,
+    pub(super) runge_kutta: bool,
     pub(super) tests: bool,
     pub(super) ascii: bool,
 }
 
 /// The code, with the tests that are asked for.
 pub(super) fn c_code(request: &Request<'_>, robot: &Robot, programs: &[Program]) -> Result<CCode, Failure> {
-    let &Request { file, precision, limits, names, casadi, acados, .. } = request;
+    let &Request { file, precision, limits, names, casadi, acados, runge_kutta, .. } = request;
     let prefix = request.prefix.cloned().unwrap_or_else(|| Prefix::of(robot));
     let origin = origin(request);
     let friction = if request.friction { Some(friction(file, robot)?) } else { None };
-    let additions = Additions { origin: Some(&origin), friction: friction.as_deref(), limits, names, casadi, acados };
+    let friction = friction.as_deref();
+    let additions = Additions { origin: Some(&origin), friction, limits, names, casadi, acados, runge_kutta };
     if limits && robot.independent_joints().all(|joint| joint.limits.effort.is_none()) {
         let has_follower = robot.joints.iter().any(|joint| joint.limits.effort.is_some());
         let follower =

@@ -6,7 +6,7 @@ use rne_codegen::{Argument, Function, Name, Program, Quantity, Record};
 use rne_model::{Joint, JointIdentifier};
 
 use super::signature::{fields, head, parameters_type, record_type, records};
-use super::{ConstantTooLarge, File, comment, joint_functions, motors, observer};
+use super::{ConstantTooLarge, File, comment, joint_functions, motors, observer, runge_kutta};
 use crate::evidence::{evidence, refusals};
 use crate::heading::Heading;
 use crate::parameters::{self, Parameter};
@@ -61,6 +61,7 @@ pub(super) fn header(file: &File) -> Result<String, ConstantTooLarge> {
         }
         let _ = writeln!(text, "{};", head(file, program));
     }
+    text.push_str(&runge_kutta::declarations(file));
     text.push_str(&observer::declarations(file));
     text.push_str(&joint_functions::declarations(file));
     text.push_str(&motors::declarations(file));

@@ -6,6 +6,7 @@ mod joint_functions;
 mod motors;
 mod observer;
 mod prefix;
+mod runge_kutta;
 mod signature;
 mod source;
 
@@ -100,6 +101,9 @@ pub struct Additions<'a> {
     /// Whether acados can integrate the robot, too: the functions of an explicit differential equation. Needs `casadi`,
     /// and among the programs `forward_dynamics` and `forward_dynamics_derivatives`.
     pub acados: bool,
+    /// Whether there is a function `runge_kutta_step`, and one for its derivatives where `forward_dynamics_derivatives`
+    /// is among the programs. Needs `forward_dynamics`.
+    pub runge_kutta: bool,
 }
 
 /// The code of [`c_code`], with additions.

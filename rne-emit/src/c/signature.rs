@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use rne_codegen::{ArgumentArray, Layout, Program, Record};
 
-use super::File;
+use super::{File, runge_kutta};
 use crate::parameters;
 use crate::syntax::Precision;
 use crate::wrap::{TIED, WIDTH, fill};
@@ -141,8 +141,8 @@ pub(super) fn records(file: &File) -> Vec<(Record, Vec<Layout>)> {
         }
     }
     let mut records = Vec::new();
-    for program in file.programs {
-        put(&program.layout(), &mut records);
+    for layout in file.programs.iter().map(Program::layout).chain(runge_kutta::layouts(file)) {
+        put(&layout, &mut records);
     }
     records
 }

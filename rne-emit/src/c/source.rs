@@ -6,7 +6,7 @@ use rne_codegen::{ArgumentArray, Layout, Program};
 
 use super::header::columns;
 use super::signature::{head, inputs, places, subscript};
-use super::{ConstantTooLarge, File, casadi, joint_functions, motors, observer};
+use super::{ConstantTooLarge, File, casadi, joint_functions, motors, observer, runge_kutta};
 use crate::expression::line;
 use crate::line_breaks::statement;
 use crate::listing::{Line, Selection, listing};
@@ -43,6 +43,7 @@ pub(super) fn body(file: &File) -> Result<String, ConstantTooLarge> {
     for program in file.programs {
         let _ = write!(text, "\n{}", function(file, program)?);
     }
+    text.push_str(&runge_kutta::definitions(file));
     text.push_str(&observer::definitions(file));
     text.push_str(&joint_functions::definitions(file)?);
     text.push_str(&motors::definitions(file)?);

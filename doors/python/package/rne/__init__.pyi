@@ -426,7 +426,27 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats, Floats, Floats]:
         """The Hessian of λᵀτ: of the torques of `inverse_dynamics`, each times its multiplier λ and added up."""
+    def euler_step(
+        self, q: Joints, qd: Joints, tau: Joints, step: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats]:
+        """A step of the semi-implicit Euler method under torques `tau`: positions and velocities after it."""
+    def euler_step_derivatives(
+        self, q: Joints, qd: Joints, tau: Joints, step: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats]:
+        """Derivatives of `euler_step` by q, by q̇ and by τ: the linear model of a step."""
     # <!-- end -->
+    def runge_kutta_step(
+        self, q: Joints, qd: Joints, tau: Joints, step: ArrayLike, *, steps: int = ...,
+        payload: ArrayLike | None = ..., parameters: Parameters = ...,
+    ) -> tuple[Floats, Floats]:
+        """The state after steps of the classical Runge-Kutta method of duration `step` (s) under torques `tau`."""
+    def runge_kutta_step_derivatives(
+        self, q: Joints, qd: Joints, tau: Joints, step: ArrayLike, *, steps: int = ...,
+        payload: ArrayLike | None = ..., parameters: Parameters = ...,
+    ) -> tuple[Floats, Floats]:
+        """Derivatives of `runge_kutta_step` by q, by q̇ and by τ: the linear model δx' = A δx + B δτ with x = (q, q̇)."""
     @property
     def passive_joints(self) -> list[str]:
         """The names of the dependent joints of closed loops, in the order of `passive`."""

@@ -80,6 +80,20 @@ def of_rotation(rotation, argument):
     return rows(numpy.ma.asanyarray(rotation), (3, 3), argument, "", not hasattr(rotation, "dtype"))
 
 
+def of_number(number, argument):
+    """A number, or one for each of N states, as an array of shape (1,) or (N, 1)."""
+    array = numpy.ma.asanyarray(number)
+    if array.dtype.kind not in "fiub":
+        raise TypeError(f"`{argument}` is not a real number")
+    if numpy.ma.is_masked(array):
+        raise ValueError(f"`{argument}`: there are masked elements, which are not numbers: drop or fill them before")
+    if array.ndim > 1:
+        raise ValueError(f"`{argument}` has the shape {array.shape}; it is a number for all states or (N,) for many")
+    array = numpy.asarray(array).reshape(*array.shape, 1)
+    # a number follows the precision of the arrays
+    return array if array.ndim == 2 and hasattr(number, "dtype") else array.tolist()
+
+
 def rows(array, shape, argument, known, follows):
     """Rows of numbers, or those of N states, one after the other; lists follow the precision of other arguments."""
     if array.dtype.kind not in "fiub":

@@ -1,0 +1,115 @@
+//! The step of the classical Runge-Kutta method and its derivatives, which call the accelerations and their derivatives
+//! of the same file four times.
+//!
+//! As `RungeKuttaStep` and `RungeKuttaStepDerivatives` of the runtime, with the same operations in the same order. Four
+//! copies of the accelerations in one function would be four times the code.
+
+use rne_codegen::{Function, Layout, Program, Sizes};
+
+use super::signature::{parameters_type, record_type, wrapped};
+use super::{File, comment};
+use crate::parameters;
+
+/// The functions in C after the programs, with words in capitals for what differs from file to file.
+const TEMPLATE: &str = include_str!("runge_kutta.c");
+
+/// What stands between the step and its derivatives.
+const DERIVATIVES: &str = "// the derivatives\n";
+
+/// The program of the accelerations, where the file is to have the step.
+fn accelerations<'a>(file: &'a File) -> Option<&'a Program> {
+    file.programs.iter().find(|program| file.additions.runge_kutta && program.function == Function::ForwardDynamics)
+}
+
+/// Whether the file has the derivatives of the step, too.
+fn has_derivatives(file: &File) -> bool {
+    file.programs.iter().any(|program| program.function == Function::ForwardDynamicsDerivatives)
+}
+
+/// The layouts of the results.
+pub(super) fn layouts(file: &File) -> Vec<Layout> {
+    let sizes = Sizes::of(file.robot);
+    let is_there = accelerations(file).is_some();
+    let step = is_there.then_some(Function::EulerStep);
+    let derivatives = (is_there && has_derivatives(file)).then_some(Function::EulerStepDerivatives);
+    step.into_iter().chain(derivatives).map(|function| function.layout(sizes)).collect()
+}
+
+/// The head of a function whose result is that of a step of another method.
+fn head(file: &File, program: &Program, name: &str, of: Function) -> String {
+    let (real, dof) = (file.precision.c_type(), program.dof);
+    let mut arguments: Vec<_> = ["q", "qd", "tau"].map(|name| format!("const {real} {name}[{dof}]")).into();
+    arguments.push(format!("const {real} step"));
+    if parameters::are_used(program) {
+        arguments.push(format!("const {} *parameters", parameters_type(file)));
+    }
+    if let Layout::Record(record, _) = of.layout(Sizes::of(file.robot)) {
+        arguments.push(format!("{} *{}", record_type(file, record), of.entry().output));
+    }
+    wrapped(&format!("void {}_{name}(", file.prefix), &arguments)
+}
+
+/// The heads of the step and of its derivatives.
+fn heads(file: &File, program: &Program) -> [String; 2] {
+    [
+        head(file, program, "runge_kutta_step", Function::EulerStep),
+        head(file, program, "runge_kutta_step_derivatives", Function::EulerStepDerivatives),
+    ]
+}
+
+/// The declarations for the header.
+pub(super) fn declarations(file: &File) -> String {
+    let Some(program) = accelerations(file) else { return String::new() };
+    let [step, derivatives] = heads(file, program);
+    let mut text = "\n".to_owned();
+    text.push_str(&comment(
+        "///",
+        "A step of the classical Runge-Kutta method under torques tau that do not change during the step: positions and \
+         velocities after it. It calls forward_dynamics four times. step: its duration h (s). The error of a motion is \
+         of order h^4.",
+    ));
+    text += &format!("{step};\n");
+    if has_derivatives(file) {
+        text.push('\n');
+        text.push_str(&comment(
+            "///",
+            "Derivatives of runge_kutta_step by q, by qd and by tau: the linear model of a step, exact up to rounding. \
+             It calls forward_dynamics three times and forward_dynamics_derivatives four times. derivatives: as those \
+             of euler_step_derivatives.",
+        ));
+        text += &format!("{derivatives};\n");
+    }
+    text
+}
+
+/// The functions.
+pub(super) fn definitions(file: &File) -> String {
+    let Some(program) = accelerations(file) else { return String::new() };
+    let (step, derivatives) = TEMPLATE.split_once(DERIVATIVES).unwrap_or((TEMPLATE, ""));
+    let template = if has_derivatives(file) { format!("{step}\n{derivatives}") } else { step.to_owned() };
+    let number = |value: f64| file.precision.literal(value).unwrap_or_default();
+    let (taken, passed, given) = if parameters::are_used(program) {
+        (format!("const {} *parameters, ", parameters_type(file)), "parameters, ", ", parameters")
+    } else {
+        (String::new(), "", "")
+    };
+    let [of_step, of_derivatives] = heads(file, program);
+    let dof = program.dof.to_string();
+    let words = [
+        ("PASSED", passed),
+        ("GIVEN", given),
+        ("ZERO", &number(0.0)),
+        ("HALF", &number(0.5)),
+        ("ONE", &number(1.0)),
+        ("SIX", &number(6.0)),
+        ("REAL", file.precision.c_type()),
+        ("DOF", &dof),
+        // what has the prefix in it comes last
+        ("PREFIX", file.prefix),
+        ("TAKEN", &taken),
+        ("HEAD_OF_STEP", &of_step),
+        ("HEAD_OF_DERIVATIVES", &of_derivatives),
+    ];
+    let code = words.into_iter().fold(template, |code, (word, by)| code.replace(word, by));
+    format!("\n{code}")
+}
