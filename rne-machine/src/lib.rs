@@ -29,6 +29,7 @@ mod compiled_arm;
 mod compiled_function;
 mod dataflow;
 mod error;
+mod integrator;
 #[cfg(feature = "native")]
 mod native;
 mod number;

@@ -8,7 +8,7 @@ use std::array::from_fn;
 use common::{Numbers, assert_close, link, six_joints};
 use rne_model::Convention::{Modified, Standard};
 use rne_runtime::{
-    Arm, BaseMotion, BaseTwist, Dual, FloatingAccelerations, FloatingBase, FloatingIntegratorStep,
+    Arm, BaseAcceleration, BaseMotion, BaseTwist, Dual, FloatingAccelerations, FloatingBase, FloatingIntegratorStep,
     FloatingIntegratorStepDerivatives, FloatingInverseDynamicsDerivatives, FloatingState, FloatingStepDerivatives,
     FloatingTorqueDerivatives, FloatingTorques, Quaternion, Scalar, Wrench,
 };
@@ -250,5 +250,119 @@ fn momentum_is_conserved_to_the_order_of_the_method() {
         let order = (error(200) / error(400)).log2();
         println!("order {order:.3}");
         assert!((order - 1.0).abs() < 0.1, "{order}");
+    }
+}
+
+/// The error of all numbers of a state falls by 16 where the step halves.
+#[test]
+fn the_runge_kutta_step_is_of_fourth_order() {
+    let mut numbers = Numbers::new(84);
+    for arm in arms() {
+        let start = state(&mut numbers);
+        let tau: [f64; DOF] = numbers.array(1.0);
+        let after = |steps: u32| {
+            (0..steps).fold(start, |state, _| {
+                let step = 0.1 / f64::from(steps);
+                FloatingIntegratorStep::<DOF, NV, 0>::floating_runge_kutta_step(
+                    &arm, &state, &tau, &[], &GRAVITY, step,
+                )
+            })
+        };
+        let all = |state: &State<f64>| {
+            let twist = [state.twist.linear, state.twist.angular].concat();
+            [&state.orientation.to_wxyz()[..], &state.position, &twist, &state.q, &state.qd].concat()
+        };
+        let exact = all(&after(400));
+        let error = |steps: u32| {
+            all(&after(steps)).iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        };
+        let order = (error(10) / error(20)).log2();
+        println!("order {order:.3}, error {:.1e}", error(20));
+        assert!((order - 4.0).abs() < 0.3, "{order}");
+        // semi-implicit Euler tends to the same motion
+        let euler = (0..20_000).fold(start, |state, _| {
+            FloatingIntegratorStep::<DOF, NV, 0>::floating_euler_step(&arm, &state, &tau, &[], &GRAVITY, 0.1 / 20_000.0)
+        });
+        let difference = all(&euler).iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(difference < 2e-3, "{difference}");
+    }
+}
+
+/// A symmetric top without torques: its axis and its angular velocity turn about the momentum at constant rates.
+#[test]
+fn a_free_symmetric_top_precesses() {
+    let (across, along) = (0.08, 0.05);
+    let top = Top { across, along };
+    let spin = [0.6, 0.0, 4.0];
+    let start = FloatingState {
+        orientation: Quaternion::identity(),
+        position: [0.0; 3],
+        twist: BaseTwist { linear: [0.3, -0.2, 0.1], angular: spin },
+        q: [],
+        qd: [],
+    };
+    let (time, steps) = (1.0, 200);
+    let end = (0..steps).fold(start, |state, _| {
+        let step = time / f64::from(steps);
+        FloatingIntegratorStep::<0, 6, 0>::floating_runge_kutta_step(&top, &state, &[], &[], &GRAVITY, step)
+    });
+    // Euler's equations: ω turns about z of the body
+    let rate = spin[2] * (along - across) / across;
+    let expected = [spin[0] * (rate * time).cos(), spin[0] * (rate * time).sin(), spin[2]];
+    for (found, expected) in end.twist.angular.iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-8, "{found} {expected}");
+    }
+    // the body turns about its momentum, then about its own axis
+    let momentum = [across * spin[0], 0.0, along * spin[2]];
+    let about_momentum = momentum.map(|x| x / across * time);
+    let turned = Quaternion::identity().turned_by(about_momentum).turned_by([0.0, 0.0, -rate * time]);
+    for (found, expected) in end.orientation.to_wxyz().iter().zip(turned.to_wxyz()) {
+        assert!((found - expected).abs() < 1e-8, "{found} {expected}");
+    }
+    let fallen: [f64; 3] = from_fn(|axis| [0.3, -0.2, 0.1][axis] * time + GRAVITY[axis] * time * time / 2.0);
+    for (found, expected) in end.position.iter().zip(fallen) {
+        assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+    }
+}
+
+/// A rigid body with its origin at its centre of mass, 5 kg.
+struct Top {
+    across: f64,
+    along: f64,
+}
+
+impl FloatingBase<0, 6, 0> for Top {
+    fn inverse_dynamics_of_floating_base<T: Scalar>(
+        &self,
+        _: &[T; 0],
+        _: &[T; 0],
+        _: &[T; 0],
+        _: &BaseMotion<T>,
+        _: &[Wrench<T>; 0],
+    ) -> FloatingTorques<0, T> {
+        unreachable!("no step needs it")
+    }
+
+    fn floating_mass_matrix<T: Scalar>(&self, _: &[T; 0]) -> [[T; 6]; 6] {
+        unreachable!("no step needs it")
+    }
+
+    fn floating_bias<T: Scalar>(&self, _: &[T; 0], _: &[T; 0], _: &[T; 3], _: &[Wrench<T>; 0]) -> [T; 6] {
+        unreachable!("no step needs it")
+    }
+
+    /// Euler's equations. The acceleration of the origin less gravity is zero.
+    fn floating_forward_dynamics<T: Scalar>(
+        &self,
+        _: &[T; 0],
+        _: &[T; 0],
+        _: &[T; 0],
+        omega: &[T; 3],
+        _: &[Wrench<T>; 0],
+    ) -> FloatingAccelerations<0, T> {
+        let ratio = T::from_f64((self.across - self.along) / self.across);
+        let [x, y, z] = *omega;
+        let angular = [ratio * y * z, -(ratio * x * z), T::zero()];
+        FloatingAccelerations { base: BaseAcceleration { linear: [T::zero(); 3], angular }, qdd: [] }
     }
 }

@@ -95,6 +95,35 @@ fn steps_and_their_derivatives_are_those_of_the_textbook() {
     }
 }
 
+/// An arm whose number of joints is known at run time only computes the same bits.
+#[test]
+fn steps_of_lists_are_those_of_arrays() {
+    let (arm, lists) = (Arm::new(six_joints(Standard)), DynArm::new(&six_joints(Standard)));
+    let mut numbers = Numbers::new(72);
+    for _ in 0..4 {
+        let [q, qd, tau]: [[f64; 6]; 3] = [numbers.array(3.0), numbers.array(2.0), numbers.array(3.0)];
+        let euler = lists.euler_step(&q, &qd, &tau, 0.02).expect("six");
+        let expected = arm.euler_step(&q, &qd, &tau, 0.02);
+        assert_eq!((&euler.q[..], &euler.qd[..]), (&expected.q[..], &expected.qd[..]));
+        let next = lists.runge_kutta_step(&q, &qd, &tau, 0.02).expect("six");
+        let expected = arm.runge_kutta_step(&q, &qd, &tau, 0.02);
+        assert_eq!((&next.q[..], &next.qd[..]), (&expected.q[..], &expected.qd[..]));
+        for (found, expected) in [
+            (lists.euler_step_derivatives(&q, &qd, &tau, 0.02), arm.euler_step_derivatives(&q, &qd, &tau, 0.02)),
+            (
+                lists.runge_kutta_step_derivatives(&q, &qd, &tau, 0.02),
+                arm.runge_kutta_step_derivatives(&q, &qd, &tau, 0.02),
+            ),
+        ] {
+            let by = found.expect("six");
+            let found = [by.q.dq, by.q.dqd, by.q.dtau, by.qd.dq, by.qd.dqd, by.qd.dtau];
+            let expected = blocks(&expected).map(|block| block.map(Vec::from).to_vec());
+            assert_eq!(found, expected);
+        }
+    }
+    assert!(lists.runge_kutta_step(&[0.0; 5], &[0.0; 6], &[0.0; 6], 0.02).is_err());
+}
+
 /// The state after a time, in so many steps.
 fn after<const DOF: usize>(
     arm: &Arm<DOF>,

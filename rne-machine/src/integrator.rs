@@ -1,0 +1,46 @@
+//! The step of the classical Runge-Kutta method, by calls of the accelerations and of their derivatives.
+
+use rne_runtime::integrator_of_lists;
+
+use crate::results::{NextState, NextStateDerivatives, StepDerivatives};
+use crate::{CompiledArm, EvaluationError, Number};
+
+impl CompiledArm {
+    /// A step of the classical Runge-Kutta method of the duration `step`, s, under torques that do not change during
+    /// the step. It computes the accelerations at four states; the error of a motion is of order h⁴.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or when the function cannot be compiled for this robot.
+    pub fn runge_kutta_step<T: Number>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        tau: &[T],
+        step: T,
+    ) -> Result<NextState<T>, EvaluationError> {
+        let accelerations = |q: &[T], qd: &[T]| self.forward_dynamics(q, qd, tau);
+        let [q, qd] = integrator_of_lists::runge_kutta_step(accelerations, q, qd, step)?;
+        Ok(NextState { q, qd })
+    }
+
+    /// The derivatives of [`runge_kutta_step`](Self::runge_kutta_step) by q, q̇ and τ, exact up to rounding. It computes
+    /// the accelerations three times and their derivatives four times.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or when a function cannot be compiled for this robot.
+    pub fn runge_kutta_step_derivatives<T: Number>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        tau: &[T],
+        step: T,
+    ) -> Result<NextStateDerivatives<T>, EvaluationError> {
+        let accelerations = |q: &[T], qd: &[T]| self.forward_dynamics(q, qd, tau);
+        let derivatives = |q: &[T], qd: &[T]| {
+            self.forward_dynamics_derivatives(q, qd, tau).map(|by| [by.dq, by.dqd, by.dtau])
+        };
+        let found = integrator_of_lists::runge_kutta_step_derivatives(accelerations, derivatives, q, qd, step)?;
+        let [q, qd] = found.map(|[dq, dqd, dtau]| StepDerivatives { dq, dqd, dtau });
+        Ok(NextStateDerivatives { q, qd })
+    }
+}
