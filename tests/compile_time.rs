@@ -180,6 +180,8 @@ fn all_derives_of_seven_joints_build() {
                         | Capability::ForwardDynamicsDerivatives
                         | Capability::JacobianDerivatives
                         | Capability::InverseDynamicsHessian
+                        | Capability::EulerStep
+                        | Capability::EulerStepDerivatives
                 )
         };
         let functions = Function::OF_TREES.into_iter().filter(|&function| !is_left_out(function));

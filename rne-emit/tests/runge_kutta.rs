@@ -131,8 +131,7 @@ fn printed<const DOF: usize>(robot: &Robot, programs: &[Program], states: &[[[f6
 fn compare<const DOF: usize>(name: &str) {
     let robot = Robot::from_yaml(rne_robots::find(name).expect("a robot").yaml).expect("a robot");
     let mut random = fastrand::Rng::with_seed(4);
-    let states: Vec<[[f64; DOF]; 3]> =
-        (0..4).map(|_| from_fn(|_| from_fn(|_| 2.0 * random.f64() - 1.0))).collect();
+    let states: Vec<[[f64; DOF]; 3]> = (0..4).map(|_| from_fn(|_| from_fn(|_| 2.0 * random.f64() - 1.0))).collect();
     for form in Form::ALL {
         let compiler = Compiler::new(&robot);
         let programs = [Function::ForwardDynamics, Function::ForwardDynamicsDerivatives]

@@ -36,9 +36,8 @@ impl CompiledArm {
         step: T,
     ) -> Result<NextStateDerivatives<T>, EvaluationError> {
         let accelerations = |q: &[T], qd: &[T]| self.forward_dynamics(q, qd, tau);
-        let derivatives = |q: &[T], qd: &[T]| {
-            self.forward_dynamics_derivatives(q, qd, tau).map(|by| [by.dq, by.dqd, by.dtau])
-        };
+        let derivatives =
+            |q: &[T], qd: &[T]| self.forward_dynamics_derivatives(q, qd, tau).map(|by| [by.dq, by.dqd, by.dtau]);
         let found = integrator_of_lists::runge_kutta_step_derivatives(accelerations, derivatives, q, qd, step)?;
         let [q, qd] = found.map(|[dq, dqd, dtau]| StepDerivatives { dq, dqd, dtau });
         Ok(NextStateDerivatives { q, qd })

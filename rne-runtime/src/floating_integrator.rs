@@ -139,10 +139,7 @@ pub trait FloatingIntegratorStep<const DOF: usize, const NV: usize, const TIPS: 
         FloatingState {
             orientation,
             position: moved(&state.position, &mean, step),
-            twist: BaseTwist {
-                linear: times(&transposed(&orientation.rotation()), &next.linear),
-                angular: next.omega,
-            },
+            twist: BaseTwist { linear: times(&transposed(&orientation.rotation()), &next.linear), angular: next.omega },
             q: next.q,
             qd: next.qd,
         }

@@ -263,9 +263,7 @@ fn the_runge_kutta_step_is_of_fourth_order() {
         let after = |steps: u32| {
             (0..steps).fold(start, |state, _| {
                 let step = 0.1 / f64::from(steps);
-                FloatingIntegratorStep::<DOF, NV, 0>::floating_runge_kutta_step(
-                    &arm, &state, &tau, &[], &GRAVITY, step,
-                )
+                FloatingIntegratorStep::<DOF, NV, 0>::floating_runge_kutta_step(&arm, &state, &tau, &[], &GRAVITY, step)
             })
         };
         let all = |state: &State<f64>| {
@@ -273,9 +271,7 @@ fn the_runge_kutta_step_is_of_fourth_order() {
             [&state.orientation.to_wxyz()[..], &state.position, &twist, &state.q, &state.qd].concat()
         };
         let exact = all(&after(400));
-        let error = |steps: u32| {
-            all(&after(steps)).iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-        };
+        let error = |steps: u32| all(&after(steps)).iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let order = (error(10) / error(20)).log2();
         println!("order {order:.3}, error {:.1e}", error(20));
         assert!((order - 4.0).abs() < 0.3, "{order}");

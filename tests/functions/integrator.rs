@@ -1,5 +1,5 @@
-//! Steps of integrators of random arms and trees, with code of both forms: beside the classical method of a textbook on
-//! the runtime, and dual numbers through that.
+//! Runge-Kutta steps of random arms and trees, with code of both forms: beside the method of a textbook on the runtime,
+//! and dual numbers through that. The compiled Euler step is among the functions of the other tests.
 
 use rne::{
     AccelerationDerivatives, Dual, ForwardDynamics, ForwardDynamicsDerivatives, RungeKuttaStep,
@@ -62,11 +62,6 @@ fn textbook<T: Scalar>(arm: &Arm, [q, qd, tau]: [&[T]; 3], step: T) -> Vec<T> {
     moved(&state, &sum, step / number(6.0))
 }
 
-fn euler<T: Scalar>(arm: &Arm, [q, qd, tau]: [&[T]; 3], step: T) -> Vec<T> {
-    let rates = moved(qd, &arm.numbers(Function::ForwardDynamics, &given([q, qd, tau])), step);
-    [moved(q, &rates, step), rates].concat()
-}
-
 /// The blocks of the derivatives of a step by dual numbers.
 fn by_dual_numbers(state: [&[f64]; 3], step: impl Fn([&[Dual<f64>]; 3]) -> Vec<Dual<f64>>) -> Vec<f64> {
     let dof = state[0].len();
@@ -92,29 +87,18 @@ fn compare<const DOF: usize>(robot: &Robot, seed: u64, worst: &mut Worst) -> boo
     // a step after which the velocities are others, not numbers without measure
     let step = 0.5 / accelerations.iter().fold(10.0_f64, |largest, x| largest.max(x.abs()));
     let state: [&[f64]; 3] = [&q, &qd, &tau];
-    let expected = [
-        [euler(&runtime, state, step), by_dual_numbers(state, |x| euler(&runtime, x, Dual::constant(step)))],
-        [textbook(&runtime, state, step), by_dual_numbers(state, |x| textbook(&runtime, x, Dual::constant(step)))],
-    ];
+    let expected = textbook(&runtime, state, step);
+    let of_derivatives = by_dual_numbers(state, |x| textbook(&runtime, x, Dual::constant(step)));
     let [q, qd, tau]: [[f64; DOF]; 3] = state.map(|x| x.try_into().expect("one per joint"));
     for form in Form::ALL {
         let arm = Arm::by_no_choice(robot, Maker::Code(form));
         let robot = Joints::<DOF>(&arm);
-        let next = [robot.euler_step(&q, &qd, &tau, step), robot.runge_kutta_step(&q, &qd, &tau, step)];
-        let by = [
-            robot.euler_step_derivatives(&q, &qd, &tau, step),
-            robot.runge_kutta_step_derivatives(&q, &qd, &tau, step),
-        ];
-        for (method, names) in
-            [["euler_step", "its derivatives"], ["runge_kutta_step", "their derivatives"]].into_iter().enumerate()
-        {
-            let found = [next[method].q, next[method].qd].concat();
-            worst.see(names[0], error_on_scale(&found, &expected[method][0], 0.0));
-            let (positions, rates) = (&by[method].q, &by[method].qd);
-            let blocks = [positions.dq, positions.dqd, positions.dtau, rates.dq, rates.dqd, rates.dtau];
-            for (found, expected) in blocks.iter().zip(expected[method][1].chunks(DOF * DOF)) {
-                worst.see(names[1], error_on_scale(found.as_flattened(), expected, 0.0));
-            }
+        let next = robot.runge_kutta_step(&q, &qd, &tau, step);
+        worst.see("runge_kutta_step", error_on_scale(&[next.q, next.qd].concat(), &expected, 0.0));
+        let by = robot.runge_kutta_step_derivatives(&q, &qd, &tau, step);
+        let blocks = [by.q.dq, by.q.dqd, by.q.dtau, by.qd.dq, by.qd.dqd, by.qd.dtau];
+        for (found, expected) in blocks.iter().zip(of_derivatives.chunks(DOF * DOF)) {
+            worst.see("its derivatives", error_on_scale(found.as_flattened(), expected, 0.0));
         }
     }
     true

@@ -364,7 +364,7 @@ fn functions_are_chosen() {
     assert_eq!(twice.matches("pub fn ").count(), 1);
     let others = fine(&["emit", ROBOT, "--function", "mass_matrix,jacobian"]);
     assert!(others.contains("pub fn mass_matrix") && others.contains("pub fn jacobian"), "{others}");
-    assert_eq!(fine(&["emit", ROBOT, "--function", "all"]).matches("pub fn ").count(), 37, "no motors");
+    assert_eq!(fine(&["emit", ROBOT, "--function", "all"]).matches("pub fn ").count(), 39, "no motors");
     for lang in ["rust", "c"] {
         let zeros = fine(&["emit", ROBOT, "--function", "actuator_torques", "--lang", lang]);
         assert!(zeros.contains("actuator_torques"), "{zeros}");

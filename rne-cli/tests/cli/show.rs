@@ -219,7 +219,7 @@ fn counts_as_json() {
     let json = fine(&["ops", "robots/planar1.yaml", "robots/puma560.yaml", "--json"]);
     let json: Value = serde_json::from_str(&json).expect("JSON");
     let entries = json.as_array().expect("a list");
-    assert_eq!(entries.len(), 2 * 75, "37 functions, 38 with motors, two forms");
+    assert_eq!(entries.len(), 2 * 79, "39 functions, 40 with motors, two forms");
     for entry in entries {
         let keys: Vec<&str> = entry.as_object().expect("an object").keys().map(String::as_str).collect();
         let mut expected = ["robot", "function", "form", "mul", "add", "div", "sincos", "statements"];
@@ -240,7 +240,7 @@ fn counts_as_a_table() {
     let all = fine(&["ops", "robots/planar1.yaml", "robots/puma560.yaml"]);
     let rows = all.lines().filter(|line| line.contains("seven_steps"));
     let widths: Vec<usize> = rows.map(|line| line.chars().count()).collect();
-    assert_eq!(widths.len(), 37 + 38);
+    assert_eq!(widths.len(), 39 + 40);
     assert!(widths.iter().all(|width| *width == widths[0]), "aligned: {all}");
 }
 
