@@ -37,7 +37,7 @@ use By::{Omega, Q, Qd, Qdd, Tau};
 enum Kind {
     /// A matrix for each that is varied, by rows: a row for each number of the function.
     Rows,
-    /// The same for the first half of the numbers of the function, then for the others.
+    /// These matrices for the first half of the numbers of the function, then those for the others.
     HalvesOfRows,
     /// The torques of the state times each of these matrices.
     Weighted,
