@@ -44,6 +44,7 @@ fn needed(argument: &str, robot: &Robot) -> (usize, String) {
         "q" | "qd" | "qdd" | "tau" | "multipliers" => {
             (robot.dof(), format!("{} has {} joints", robot.name, robot.dof()))
         }
+        "step" => (1, "`step` is one number".to_owned()),
         "wrenches" => {
             let tips = robot.wrench_frames().len();
             (6 * tips, format!("`wrenches` has force and moment of each tip, and {} has {tips} tips", robot.name))
