@@ -17,6 +17,7 @@ mod couplings;
 mod derivatives;
 #[path = "../c_code/driver.rs"]
 mod driver;
+mod dual_numbers;
 mod energy;
 mod equality;
 mod first_moments;
