@@ -82,7 +82,7 @@ pub(crate) fn base_rotation<T: Scalar>() -> [[T; 3]; 3] {
 
 /// A scalar of the runtime as a number of the interpreter.
 #[derive(Clone, Copy)]
-struct Number<T>(T);
+pub(crate) struct Number<T>(pub(crate) T);
 
 impl<T: Scalar> Neg for Number<T> {
     type Output = Self;

@@ -41,6 +41,7 @@ mod random_motors;
 #[path = "../random/trees.rs"]
 mod random_trees;
 mod real_trees;
+mod regressor_product;
 #[path = "../random/robots.rs"]
 mod robots;
 mod rotors;
