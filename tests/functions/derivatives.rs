@@ -18,6 +18,7 @@ use crate::case::largest;
 use crate::check::{Conditioning, ROOT, Worst, conditioning, error_on_scale, product};
 use crate::dual_numbers::By::{Omega, Q, Qd, Qdd, Tau};
 use crate::dual_numbers::{Derivative, Kind};
+use crate::equality;
 use crate::integrator;
 use crate::random_arms::of_each;
 use crate::trees::{self, State};
@@ -66,14 +67,16 @@ const ELSEWHERE: [(&str, &str); 2] = [
 ];
 
 /// What rounding of the numbers of a function is relative to, if they are smaller: they are sums of larger terms.
-fn scale(function: Function, robot: &Robot, state: &State) -> f64 {
-    let torques = || trees::scale(robot, Function::InverseDynamics, state);
+fn scale(arm: &Arm, function: Function, state: &State) -> f64 {
+    let of = |function| equality::scale(arm, function, &state.given());
     match function {
-        F::JacobianRate => largest(&state.qd),
-        F::JacobianRateTimesVelocity => largest(&state.qd).powi(2),
-        F::JacobianDerivatives | F::CentreOfMassJacobian => 1.0,
-        F::TorqueGradient | F::TorqueHessian => torques() * largest(&state.tau),
-        _ => torques(),
+        F::JacobianRateTimesVelocity => of(F::JacobianRate) * largest(&state.qd),
+        F::MomentumAndRate | F::ForwardDynamicsDerivatives => of(F::InverseDynamicsDerivatives),
+        F::MomentumAndRateWithPayload | F::ForwardDynamicsDerivativesWithPayload => {
+            of(F::InverseDynamicsDerivativesWithPayload)
+        }
+        F::ForwardDynamicsDerivativesWithWrenches => of(F::InverseDynamicsDerivativesWithWrenches),
+        _ => of(function),
     }
 }
 
@@ -116,7 +119,7 @@ fn compare(robot: &Robot, seed: u64, worst: &mut Worst) {
             for (index, part) in parts.iter().enumerate() {
                 let found = &found[place..place + part.len()];
                 let error = match &condition {
-                    None => error_on_scale(found, part, scale(function, robot, &state)),
+                    None => error_on_scale(found, part, scale(&runtime, function, &state)),
                     // columns of M⁻¹
                     Some(of)
                         if derivative.by.get(index) == Some(&Tau) && function != F::InverseMassMatrixTimesTorques =>
@@ -124,7 +127,7 @@ fn compare(robot: &Robot, seed: u64, worst: &mut Worst) {
                         error_of_accelerations(found, part, 1.0, of)
                     }
                     Some(of) => {
-                        let terms = if derivative.by == [Tau] { 0.0 } else { scale(function, robot, &state) };
+                        let terms = if derivative.by == [Tau] { 0.0 } else { scale(&runtime, function, &state) };
                         error_of_accelerations(found, part, largest_torques(&mass, part).max(terms), of)
                     }
                 };

@@ -67,7 +67,7 @@ fn reach(arm: &Arm, given: &Given<'_, f64>) -> f64 {
 }
 
 /// What the numbers of a function are small against, if they are.
-fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
+pub(crate) fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
     let of = |function| largest(&of_runtime(&arm.runtime, function, given));
     match function {
         Function::InverseDynamics

@@ -19,7 +19,7 @@ fn robot(convention: &str, kinds: &[&str]) -> Robot {
     for (index, kind) in kinds.iter().enumerate() {
         let link = index + 1;
         let [m, hx, hy, hz, jxx, jxy, jxz, jyy, jyz, jzz] = NAMES.map(|name| format!("{name}{link}"));
-        let values = [2.0, 0.1, -0.2, 0.3, 0.9, 0.02, -0.01, 0.8, 0.03, 0.7];
+        let values = [2.0, 0.1, -0.2, 0.3, 0.9, 0.02, -0.01, 0.8, 0.05, 0.7];
         parameters.extend(NAMES.iter().zip(values).map(|(name, value)| format!("{name}{link}: {value}")));
         joints.push(format!(
             "{{type: {kind}, dh: {{theta: 0.{link}, d: 0.2, a: 0.3, alpha: 1.{link}}}, link: {{mass: {m}, \
@@ -84,7 +84,9 @@ fn derivatives_of_the_regressor_times_parameters_are_those_of_code_with_run_time
             assert_eq!(robot.run_time.names.len(), 10 * dof);
             let mut numbers = |count: usize| -> Vec<f64> { (0..count).map(|_| 4.0 * rng.f64() - 2.0).collect() };
             // parameters that no body has: nothing in the product asks for a body
-            let (state, parameters) = ([(); 4].map(|()| numbers(dof)), numbers(10 * dof));
+            let (state, mut parameters) = ([(); 4].map(|()| numbers(dof)), numbers(10 * dof));
+            // the centre of mass is the first moment by the mass
+            parameters.iter_mut().step_by(10).for_each(|mass| *mass = mass.abs() + 1.0);
             let [q, qd, qdd, multipliers] = &state;
             let joints: [&[f64]; 3] = [q, qd, qdd];
             // of each torque, by each joint
