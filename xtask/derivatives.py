@@ -84,7 +84,9 @@ class Pair:
         answer = subprocess.run([self.second], input=numbers, check=True, capture_output=True, text=True).stdout
         nv = self.model.nv
         matrices = np.array(answer.split(), float).reshape(4, nv, nv)
-        return [matrix[np.ix_(self.rows, self.rows)] for matrix in matrices]
+        by_q_q, by_q_qd, by_qd_qd, by_q_qdd = (matrix[np.ix_(self.rows, self.rows)] for matrix in matrices)
+        # the order of the keys in JSON
+        return [by_q_q, by_q_qd, by_q_qdd, by_qd_qd]
 
     def pairs(self, q, qd, qdd, tau):
         """Function, what rne says, what Pinocchio says, and the condition of the mass matrix where it is inverted."""
