@@ -13,6 +13,7 @@ pub use floating_base::{
     FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor, FloatingTorques,
 };
 
+use crate::jacobian_derivatives::{derivatives_of_rows, rate_of_rows};
 use crate::ldlt::{factor, inverse_of, solve};
 use crate::optimisation::{rows_by, still};
 use crate::smooth_sign::SmoothSign;
@@ -194,14 +195,20 @@ pub trait AtFrame<const DOF: usize, const FRAME: usize> {
     fn wrench_torques_at_frame<T: Scalar>(&self, q: &[T; DOF], wrench: &Wrench<T>) -> [T; DOF];
 
     /// The rate J̇ of the Jacobian of the frame, as
-    /// [`JacobianDerivatives::jacobian_rate`](crate::JacobianDerivatives::jacobian_rate).
+    /// [`JacobianDerivatives::jacobian_rate`](crate::JacobianDerivatives::jacobian_rate). Without code of its own, by
+    /// dual numbers through the Jacobian of the frame.
     #[must_use]
-    fn jacobian_rate_at_frame<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> [[T; DOF]; 6];
+    fn jacobian_rate_at_frame<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> [[T; DOF]; 6] {
+        rate_of_rows(q, qd, |q| self.jacobian_at_frame(q))
+    }
 
     /// ∂J/∂q of the frame, as
-    /// [`JacobianDerivatives::jacobian_derivatives`](crate::JacobianDerivatives::jacobian_derivatives).
+    /// [`JacobianDerivatives::jacobian_derivatives`](crate::JacobianDerivatives::jacobian_derivatives). Without code of
+    /// its own, by dual numbers.
     #[must_use]
-    fn jacobian_derivatives_at_frame<T: Scalar>(&self, q: &[T; DOF]) -> [[[T; DOF]; DOF]; 6];
+    fn jacobian_derivatives_at_frame<T: Scalar>(&self, q: &[T; DOF]) -> [[[T; DOF]; DOF]; 6] {
+        derivatives_of_rows(q, |q| self.jacobian_at_frame(q))
+    }
 }
 
 /// The place of a name in a list: the function `frame` of `#[derive(FrameKinematics)]`.
