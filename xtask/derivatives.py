@@ -44,6 +44,8 @@ def second_order(folder):
         run("g++", "-std=c++17", "-O1", "-w", *definitions, *headers, str(source), "-o", str(program))
     except FileNotFoundError:
         sys.exit("The compiler g++ is missing.")
+    except subprocess.CalledProcessError as error:
+        sys.exit(f"g++ cannot compile {source.name} with the headers in {packages}:\n{error.stderr[:2000]}")
     return program
 
 
@@ -74,14 +76,15 @@ class Pair:
             motion = pin.computeJointJacobian(model, data, at, joint)[:, model.joints[joint].idx_v]
             slides = not motion[3:].any()
             place, body = model.jointPlacements[joint], model.inertias[joint]
-            numbers += [model.parents[joint], int(slides), *(motion[:3] if slides else motion[3:])]
+            numbers += [int(model.parents[joint]), int(slides), *(motion[:3] if slides else motion[3:])]
             numbers += [*place.rotation.flat, *place.translation, body.mass, *body.lever, *body.inertia.flat]
         return numbers
 
     def hessian(self, *state):
         """Second derivatives of the torques times multipliers, for a state in the order of Pinocchio."""
-        numbers = " ".join(repr(float(x)) if x != int(x) else str(int(x)) for x in [*self.described(), *np.concatenate(state)])
-        answer = subprocess.run([self.second], input=numbers, check=True, capture_output=True, text=True).stdout
+        numbers = [*self.described(), *np.concatenate(state)]
+        text = " ".join(str(x) if isinstance(x, int) else repr(float(x)) for x in numbers)
+        answer = subprocess.run([self.second], input=text, check=True, capture_output=True, text=True).stdout
         nv = self.model.nv
         matrices = np.array(answer.split(), float).reshape(4, nv, nv)
         by_q_q, by_q_qd, by_qd_qd, by_q_qdd = (matrix[np.ix_(self.rows, self.rows)] for matrix in matrices)
@@ -130,9 +133,8 @@ class Pair:
         yield "jacobian_rate", self.eval("jacobian_rate", q=q, qd=qd), [rate(v)], None
         # at the velocity one of a joint alone, the rate is the derivative by its position
         derivatives = np.stack([rate(own(unit)) for unit in np.eye(model.nv)], axis=2)
-        yield "jacobian_derivatives", [np.array(self.eval("jacobian_derivatives", q=q)).reshape(derivatives.shape)], [
-            derivatives
-        ], None
+        found = np.array(self.eval("jacobian_derivatives", q=q)).reshape(derivatives.shape)
+        yield "jacobian_derivatives", [found], [derivatives], None
 
 
 def main(program, *files):

@@ -1,6 +1,6 @@
 // Second derivatives of the torques by Pinocchio, whose Python has none: `xtask/derivatives.py` compiles and calls it.
 //
-// The headers of Pinocchio do all; its library is not linked. The standard input has the robot, then states, as numbers:
+// The headers of Pinocchio do all; its library is not linked. The standard input has the robot and states, as numbers:
 //
 //   joints n, gravity (3)
 //   for each joint: parent (0: the world), 1 if it slides, axis (3), rotation by rows and origin of its frame in that
