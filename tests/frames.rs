@@ -40,6 +40,12 @@ fn same<const FRAME: usize>(arm: &impl AtFrame<3, FRAME>, name: &str) {
     let rate = runtime.jacobian_rate_times_velocity(&Q, &QD).expect("lengths");
     near(&arm.jacobian_rate_times_velocity_at_frame(&Q, &QD), &rate);
     near(&arm.wrench_torques_at_frame(&Q, &WRENCH), &runtime.wrench_torques(&Q, &WRENCH).expect("lengths"));
+    near(
+        arm.jacobian_rate_at_frame(&Q, &QD).as_flattened(),
+        &runtime.jacobian_rate(&Q, &QD).expect("lengths").concat(),
+    );
+    let derivatives = runtime.jacobian_derivatives(&Q).expect("lengths").concat().concat();
+    near(arm.jacobian_derivatives_at_frame(&Q).as_flattened().as_flattened(), &derivatives);
 }
 
 macro_rules! every_frame {

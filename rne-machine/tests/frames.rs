@@ -34,6 +34,9 @@ fn every_frame_is_the_runtime() {
                 runtime.jacobian_rate_times_velocity(&Q, &QD).unwrap(),
             );
             near(at.wrench_torques(&Q, &WRENCH).unwrap(), runtime.wrench_torques(&Q, &WRENCH).unwrap());
+            near(at.jacobian_rate(&Q, &QD).unwrap().concat(), runtime.jacobian_rate(&Q, &QD).unwrap().concat());
+            let (found, expected) = (at.jacobian_derivatives(&Q).unwrap(), runtime.jacobian_derivatives(&Q).unwrap());
+            near(found.concat().concat(), expected.concat().concat());
             // other functions are those of the tip
             assert_eq!(at.mass_matrix(&Q).unwrap(), arm.mass_matrix(&Q).unwrap());
         }

@@ -13,6 +13,7 @@ pub use floating_base::{
     FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor, FloatingTorques,
 };
 
+use crate::jacobian_derivatives::{derivatives_of_rows, rate_of_rows};
 use crate::ldlt::{factor, inverse_of, solve};
 use crate::optimisation::{rows_by, still};
 use crate::smooth_sign::SmoothSign;
@@ -169,7 +170,8 @@ pub trait Kinematics<const DOF: usize> {
     }
 }
 
-/// The functions of [`Kinematics`] at one frame of the robot file, or at the link frame of a joint, instead of the tip.
+/// The functions of [`Kinematics`] and [`JacobianDerivatives`](crate::JacobianDerivatives) at one frame of the robot
+/// file, or at the link frame of a joint, instead of the tip.
 ///
 /// `#[derive(FrameKinematics)]` implements this trait for every frame. `FRAME` is the place of the frame: first the
 /// list `frames` in the order of the file, then the link frames from base to tip. [`FrameKinematics`] has methods that
@@ -191,6 +193,22 @@ pub trait AtFrame<const DOF: usize, const FRAME: usize> {
     /// Jᵀ w of a wrench at the frame, as [`Kinematics::wrench_torques`].
     #[must_use]
     fn wrench_torques_at_frame<T: Scalar>(&self, q: &[T; DOF], wrench: &Wrench<T>) -> [T; DOF];
+
+    /// The rate J̇ of the Jacobian of the frame, as
+    /// [`JacobianDerivatives::jacobian_rate`](crate::JacobianDerivatives::jacobian_rate). Without code of its own, by
+    /// dual numbers through the Jacobian of the frame.
+    #[must_use]
+    fn jacobian_rate_at_frame<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> [[T; DOF]; 6] {
+        rate_of_rows(q, qd, |q| self.jacobian_at_frame(q))
+    }
+
+    /// ∂J/∂q of the frame, as
+    /// [`JacobianDerivatives::jacobian_derivatives`](crate::JacobianDerivatives::jacobian_derivatives). Without code of
+    /// its own, by dual numbers.
+    #[must_use]
+    fn jacobian_derivatives_at_frame<T: Scalar>(&self, q: &[T; DOF]) -> [[[T; DOF]; DOF]; 6] {
+        derivatives_of_rows(q, |q| self.jacobian_at_frame(q))
+    }
 }
 
 /// The place of a name in a list: the function `frame` of `#[derive(FrameKinematics)]`.
@@ -212,8 +230,8 @@ pub const fn frame_index(names: &[&str], name: &str) -> Option<usize> {
     None
 }
 
-/// Pose, Jacobian, J̇q̇ and torques of a wrench at the named frames of the robot file and at the link frames.
-/// World axes, as in [`Kinematics`].
+/// Pose, Jacobian, its rate and derivatives, J̇q̇ and torques of a wrench at the named frames of the robot file and at
+/// the link frames. World axes, as in [`Kinematics`].
 ///
 /// The frame is a constant, so that each call is straight-line code of this frame. `#[derive(FrameKinematics)]` also
 /// gives the function `frame`, which turns a name into this constant while the program is compiled; a name that the
@@ -264,6 +282,26 @@ pub trait FrameKinematics<const DOF: usize, const FRAMES: usize> {
         Self: AtFrame<DOF, FRAME>,
     {
         self.wrench_torques_at_frame(q, wrench)
+    }
+
+    /// The rate J̇ of the geometric Jacobian of a frame at velocities `qd`, in world axes; zero columns for joints that
+    /// do not move the frame.
+    #[must_use]
+    fn jacobian_rate_of<const FRAME: usize, T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> [[T; DOF]; 6]
+    where
+        Self: AtFrame<DOF, FRAME>,
+    {
+        self.jacobian_rate_at_frame(q, qd)
+    }
+
+    /// ∂J/∂q of the geometric Jacobian of a frame, in world axes: element (r, i, j) is that of element (r, i) by the
+    /// position of joint j.
+    #[must_use]
+    fn jacobian_derivatives_of<const FRAME: usize, T: Scalar>(&self, q: &[T; DOF]) -> [[[T; DOF]; DOF]; 6]
+    where
+        Self: AtFrame<DOF, FRAME>,
+    {
+        self.jacobian_derivatives_at_frame(q)
     }
 }
 

@@ -1,15 +1,13 @@
 //! How the Jacobian of the tip changes; of an [`Arm`] by dual numbers through its Jacobian, exact up to rounding.
 
-#[cfg(feature = "arm")]
 use core::array::from_fn;
 
-use crate::Scalar;
-#[cfg(feature = "arm")]
 use crate::optimisation::along;
 #[cfg(all(feature = "arm", feature = "std"))]
 use crate::optimisation::moving;
 #[cfg(feature = "arm")]
-use crate::{Arm, Constant, Dual, Kinematics};
+use crate::{Arm, Constant, Kinematics};
+use crate::{Dual, Scalar};
 #[cfg(all(feature = "arm", feature = "std"))]
 use crate::{DynArm, WrongLength};
 
@@ -31,16 +29,33 @@ pub trait JacobianDerivatives<const DOF: usize> {
     fn jacobian_derivatives<T: Scalar>(&self, q: &[T; DOF]) -> [[[T; DOF]; DOF]; 6];
 }
 
+/// The rate of the rows of a Jacobian at velocities.
+pub(crate) fn rate_of_rows<T: Scalar, const DOF: usize>(
+    q: &[T; DOF],
+    qd: &[T; DOF],
+    jacobian: impl Fn(&[Dual<T>; DOF]) -> [[Dual<T>; DOF]; 6],
+) -> [[T; DOF]; 6] {
+    let moving = from_fn(|i| Dual { value: q[i], derivative: qd[i] });
+    jacobian(&moving).map(|row| row.map(|element| element.derivative))
+}
+
+/// The derivatives of the rows of a Jacobian by the position of each joint.
+pub(crate) fn derivatives_of_rows<T: Scalar, const DOF: usize>(
+    q: &[T; DOF],
+    jacobian: impl Fn(&[Dual<T>; DOF]) -> [[Dual<T>; DOF]; 6],
+) -> [[[T; DOF]; DOF]; 6] {
+    let by: [_; DOF] = from_fn(|j| jacobian(&from_fn(|i| along(q, i, j))));
+    from_fn(|row| from_fn(|i| from_fn(|j| by[j][row][i].derivative)))
+}
+
 #[cfg(feature = "arm")]
 impl<const DOF: usize, S: Constant> JacobianDerivatives<DOF> for Arm<DOF, S> {
     fn jacobian_rate<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> [[T; DOF]; 6] {
-        let moving = from_fn(|i| Dual { value: q[i], derivative: qd[i] });
-        self.jacobian(&moving).map(|row| row.map(|element| element.derivative))
+        rate_of_rows(q, qd, |q| self.jacobian(q))
     }
 
     fn jacobian_derivatives<T: Scalar>(&self, q: &[T; DOF]) -> [[[T; DOF]; DOF]; 6] {
-        let by: [_; DOF] = from_fn(|j| self.jacobian(&from_fn(|i| along(q, i, j))));
-        from_fn(|row| from_fn(|i| from_fn(|j| by[j][row][i].derivative)))
+        derivatives_of_rows(q, |q| self.jacobian(q))
     }
 }
 

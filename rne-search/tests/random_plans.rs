@@ -114,12 +114,15 @@ fn all_algorithms_under_random_plans_are_the_seven_steps() {
 
 /// Some rounds of random changes, every plan that applies proved for an algorithm in turn; how many applied.
 fn wander_with_all_algorithms(robot: &Robot, rounds: usize, seed: u64) -> usize {
-    const FUNCTIONS: [Function; 5] = [
+    const FUNCTIONS: [Function; 8] = [
         Function::GravityTorques,
         Function::MassMatrix,
         Function::ForwardDynamics,
         Function::CoriolisMatrix,
         Function::InverseDynamicsDerivatives,
+        Function::InverseMassMatrixTimesTorques,
+        Function::TorqueGradient,
+        Function::TorqueHessian,
     ];
     let (neighbourhood, mut steps) = (Neighbourhood::of(robot), SevenSteps::new(robot));
     let mut rng = fastrand::Rng::with_seed(seed);

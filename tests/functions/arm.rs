@@ -85,7 +85,7 @@ pub(crate) const STEP: f64 = 0.03125;
 
 /// A scalar of the runtime as a number of the interpreter.
 #[derive(Clone, Copy)]
-struct Number<T>(T);
+pub(crate) struct Number<T>(pub(crate) T);
 
 impl<T: Scalar> Neg for Number<T> {
     type Output = Self;

@@ -73,17 +73,26 @@ pub(crate) fn conditioning(symmetric: &[Vec<f64>]) -> Option<Conditioning> {
     (smallest > 0.0).then(|| Conditioning { number: largest / smallest, largest })
 }
 
-/// The worst error of each quantity.
+/// The worst error of each quantity, and how many were joined.
 #[derive(Default)]
-pub(crate) struct Worst(Vec<(&'static str, f64)>);
+pub(crate) struct Worst(Vec<(&'static str, f64, usize)>);
 
 impl Worst {
     pub(crate) fn see(&mut self, what: &'static str, error: f64) {
+        self.add(what, error, 0);
+    }
+
+    fn add(&mut self, what: &'static str, error: f64, count: usize) {
         assert!(!error.is_nan(), "{what}");
-        match self.0.iter_mut().find(|(name, _)| *name == what) {
-            Some((_, worst)) => *worst = worst.max(error),
-            None => self.0.push((what, error)),
+        match self.0.iter_mut().find(|(name, ..)| *name == what) {
+            Some((_, worst, of)) => (*worst, *of) = (worst.max(error), *of + count),
+            None => self.0.push((what, error, count.max(1))),
         }
+    }
+
+    /// The name of each quantity, its worst error, and the number of those that saw it and were joined.
+    pub(crate) fn rows(&self) -> &[(&'static str, f64, usize)] {
+        &self.0
     }
 
     /// How many quantities were seen.
@@ -93,13 +102,13 @@ impl Worst {
 
     /// The worse of both.
     pub(crate) fn join(&mut self, other: Self) {
-        other.0.into_iter().for_each(|(what, error)| self.see(what, error));
+        other.0.into_iter().for_each(|(what, error, count)| self.add(what, error, count));
     }
 
     /// Prints all and fails on those above `tolerance`.
     #[track_caller]
     pub(crate) fn at_most(&self, tolerance: f64, of: &str) {
-        for (what, error) in &self.0 {
+        for (what, error, _) in &self.0 {
             println!("{of:40} {what:20} {error:.1e}");
             assert!(*error <= tolerance, "{of}, {what}: {error:e}");
         }

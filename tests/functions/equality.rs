@@ -5,7 +5,7 @@
 
 use fastrand::Rng;
 use rne::{BaseMotion, Payload, Wrench};
-use rne_codegen::{Argument, Capability, Form, Function};
+use rne_codegen::{Argument, Form, Function};
 use rne_model::{Dh, Robot};
 
 use crate::arm::{Arm, Given, Maker, STEP, base_rotation, of_runtime};
@@ -68,7 +68,7 @@ fn reach(arm: &Arm, given: &Given<'_, f64>) -> f64 {
 }
 
 /// What the numbers of a function are small against, if they are.
-fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
+pub(crate) fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
     let of = |function| largest(&of_runtime(&arm.runtime, function, given));
     match function {
         Function::InverseDynamics
@@ -111,11 +111,9 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
     }
 }
 
-/// Whether code and runtime have the same meaning of a function. Seen from a frame, code has the rates of the Jacobian
-/// of the tip, where the runtime has those at the frame.
+/// Whether code and runtime have the same meaning of a function.
 pub(crate) fn is_compared(robot: &Robot, function: Function) -> bool {
-    let is_of_tip = function.capability() == Capability::JacobianDerivatives;
-    !(robot.has_couplings() && function.is_of_every_link() || robot.at.is_some() && is_of_tip)
+    !(robot.has_couplings() && function.is_of_every_link())
 }
 
 /// Compares all functions of an arm at a state.

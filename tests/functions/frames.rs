@@ -107,6 +107,48 @@ fn frames_of_twenty_arms_are_those_of_pinocchio() {
     assert!(compared > 10_000, "{compared}");
 }
 
+/// By difference quotients of the Jacobian at the frame, which are not the runtime's.
+#[test]
+fn the_jacobian_of_a_frame_changes_as_its_derivatives_say() {
+    const STEP: f64 = 1e-5;
+    let mut rng = Rng::with_seed(32);
+    let mut compared = 0;
+    for seed in 0..40 {
+        let robot = robot(&mut rng, seed);
+        let array = |rng: &mut Rng| -> Vec<f64> { (0..robot.dof()).map(|_| 4.0 * rng.f64() - 2.0).collect() };
+        let (q, qd, zeros) = (array(&mut rng), array(&mut rng), vec![0.0; robot.dof()]);
+        for frame in robot.frame_ids().take(4) {
+            let at = robot.clone().at_frame(frame);
+            for maker in Maker::ALL {
+                let arm = Arm::by_no_choice(&at, maker);
+                let of = |function, q: &[f64]| arm.numbers(function, &Given::of_joints(q, &qd, &zeros));
+                let quotient = |direction: &[f64]| -> Vec<f64> {
+                    let [before, after] = [-STEP, STEP].map(|step| {
+                        let moved: Vec<f64> = q.iter().zip(direction).map(|(q, along)| q + step * along).collect();
+                        of(Function::Jacobian, &moved)
+                    });
+                    before.iter().zip(&after).map(|(before, after)| (after - before) / (2.0 * STEP)).collect()
+                };
+                let mut same = |function: Function, found: &[f64], expected: &[f64]| {
+                    assert_eq!(found.len(), expected.len());
+                    let error = found.iter().zip(expected).fold(0.0, |worst, (a, b)| f64::max(worst, (a - b).abs()));
+                    let of = robot.frame_name(frame);
+                    assert!(error < 1e-7, "seed {seed}, {maker}, {function} of {of}: {error:e}");
+                    compared += found.len();
+                };
+                same(Function::JacobianRate, &of(Function::JacobianRate, &q), &quotient(&qd));
+                let derivatives = of(Function::JacobianDerivatives, &q);
+                for joint in 0..robot.dof() {
+                    let unit: Vec<f64> = (0..robot.dof()).map(|other| f64::from(u8::from(other == joint))).collect();
+                    let found: Vec<f64> = derivatives.iter().skip(joint).step_by(robot.dof()).copied().collect();
+                    same(Function::JacobianDerivatives, &found, &quotient(&unit));
+                }
+            }
+        }
+    }
+    assert!(compared > 10_000, "{compared}");
+}
+
 /// How many random arms: with `RNE_EXHAUSTIVE` set, all.
 fn tried(all: u64) -> u64 {
     if shipped::is_exhaustive() { all } else { all / 4 }

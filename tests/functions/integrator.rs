@@ -5,7 +5,7 @@ use rne::{
     AccelerationDerivatives, Dual, ForwardDynamics, ForwardDynamicsDerivatives, RungeKuttaStep,
     RungeKuttaStepDerivatives, Scalar,
 };
-use rne_codegen::{Form, Function};
+use rne_codegen::Function;
 use rne_model::Robot;
 
 use crate::arm::{Arm, Given, Maker};
@@ -77,8 +77,19 @@ fn by_dual_numbers(state: [&[f64]; 3], step: impl Fn([&[Dual<f64>]; 3]) -> Vec<D
     found
 }
 
-fn compare<const DOF: usize>(robot: &Robot, seed: u64, worst: &mut Worst) -> bool {
-    let runtime = Arm::by_no_choice(robot, Maker::Runtime);
+/// Compares the steps of a robot of at most five joints whose mass matrix is not nearly singular.
+pub(crate) fn compare(runtime: &Arm, code: &[Arm], seed: u64, worst: &mut Worst) -> bool {
+    match runtime.robot.dof() {
+        1 => of_joints::<1>(runtime, code, seed, worst),
+        2 => of_joints::<2>(runtime, code, seed, worst),
+        3 => of_joints::<3>(runtime, code, seed, worst),
+        4 => of_joints::<4>(runtime, code, seed, worst),
+        5 => of_joints::<5>(runtime, code, seed, worst),
+        _ => false,
+    }
+}
+
+fn of_joints<const DOF: usize>(runtime: &Arm, code: &[Arm], seed: u64, worst: &mut Worst) -> bool {
     let State { q, qd, tau, .. } = State::random(seed, DOF);
     if conditioning(&runtime.mass_matrix(&q)).is_none_or(|of| of.number > 1e3) {
         return false;
@@ -87,18 +98,17 @@ fn compare<const DOF: usize>(robot: &Robot, seed: u64, worst: &mut Worst) -> boo
     // a step after which the velocities are others, not numbers without measure
     let step = 0.5 / accelerations.iter().fold(10.0_f64, |largest, x| largest.max(x.abs()));
     let state: [&[f64]; 3] = [&q, &qd, &tau];
-    let expected = textbook(&runtime, state, step);
-    let of_derivatives = by_dual_numbers(state, |x| textbook(&runtime, x, Dual::constant(step)));
+    let expected = textbook(runtime, state, step);
+    let of_derivatives = by_dual_numbers(state, |x| textbook(runtime, x, Dual::constant(step)));
     let [q, qd, tau]: [[f64; DOF]; 3] = state.map(|x| x.try_into().expect("one per joint"));
-    for form in Form::ALL {
-        let arm = Arm::by_no_choice(robot, Maker::Code(form));
-        let robot = Joints::<DOF>(&arm);
+    for arm in code {
+        let robot = Joints::<DOF>(arm);
         let next = robot.runge_kutta_step(&q, &qd, &tau, step);
         worst.see("runge_kutta_step", error_on_scale(&[next.q, next.qd].concat(), &expected, 0.0));
         let by = robot.runge_kutta_step_derivatives(&q, &qd, &tau, step);
         let blocks = [by.q.dq, by.q.dqd, by.q.dtau, by.qd.dq, by.qd.dqd, by.qd.dtau];
         for (found, expected) in blocks.iter().zip(of_derivatives.chunks(DOF * DOF)) {
-            worst.see("its derivatives", error_on_scale(found.as_flattened(), expected, 0.0));
+            worst.see("runge_kutta_step_derivatives", error_on_scale(found.as_flattened(), expected, 0.0));
         }
     }
     true
@@ -110,14 +120,8 @@ fn steps_of_random_robots_are_those_of_the_textbook() {
     let arms = (0..260).map(|seed| (seed, Robot::from_yaml(&arms::yaml(seed)).expect("an arm")));
     let trees = (0..90).map(|seed| (seed, trees::random(seed, trees::dof(seed).min(5))));
     for (seed, robot) in arms.chain(trees) {
-        compared += usize::from(match robot.dof() {
-            1 => compare::<1>(&robot, seed, &mut worst),
-            2 => compare::<2>(&robot, seed, &mut worst),
-            3 => compare::<3>(&robot, seed, &mut worst),
-            4 => compare::<4>(&robot, seed, &mut worst),
-            5 => compare::<5>(&robot, seed, &mut worst),
-            _ => false,
-        });
+        let code = Maker::CODE.map(|maker| Arm::by_no_choice(&robot, maker));
+        compared += usize::from(compare(&Arm::by_no_choice(&robot, Maker::Runtime), &code, seed, &mut worst));
     }
     println!("{compared} robots");
     assert!(compared >= 100, "{compared}");

@@ -17,6 +17,7 @@ mod couplings;
 mod derivatives;
 #[path = "../c_code/driver.rs"]
 mod driver;
+mod dual_numbers;
 mod energy;
 mod equality;
 mod first_moments;
@@ -40,6 +41,7 @@ mod random_motors;
 #[path = "../random/trees.rs"]
 mod random_trees;
 mod real_trees;
+mod regressor_product;
 #[path = "../random/robots.rs"]
 mod robots;
 mod rotors;

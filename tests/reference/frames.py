@@ -80,6 +80,16 @@ def by_numpy(robot, on, q):
     return matrix
 
 
+def rate_of(model, q, qd, frame):
+    """The rate of the Jacobian of a frame, in world axes."""
+    data = model.createData()
+    pin.computeJointJacobiansTimeVariation(model, data, q, qd)
+    pin.updateFramePlacements(model, data)
+    # of one joint, Pinocchio gives six numbers instead of a matrix
+    rate = pin.getFrameJacobianTimeVariation(model, data, frame, pin.LOCAL_WORLD_ALIGNED)
+    return np.array(rate).reshape(6, model.nv)
+
+
 def main():
     rng, arms = np.random.default_rng(7), []
     for index in range(ARMS):
@@ -106,11 +116,15 @@ def main():
             world = pin.getFrameJacobian(model, data, at, pin.LOCAL_WORLD_ALIGNED)
             local = pin.getFrameJacobian(model, data, at, pin.LOCAL)
             rate = pin.getFrameClassicalAcceleration(model, data, at, pin.LOCAL_WORLD_ALIGNED)
+            # at the velocity one of a joint alone, the rate is the derivative by its position
+            derivatives = np.array([rate_of(model, q, unit, at) for unit in np.eye(model.nv)])
             results.append({
                 "forward_kinematics": pose.rotation.flatten().tolist() + pose.translation.tolist(),
                 "jacobian": world.flatten().tolist(),
                 "jacobian_rate_times_velocity": rate.vector.tolist(),
                 "wrench_torques": (local.T @ np.array(wrench)).tolist(),
+                "jacobian_rate": rate_of(model, q, qd, at).flatten().tolist(),
+                "jacobian_derivatives": derivatives.transpose(1, 2, 0).flatten().tolist(),
             })
         state = {"q": q.tolist(), "qd": qd.tolist(), "wrench": wrench}
         arms.append({"robot": json.dumps(robot), "state": state, "frames": results})

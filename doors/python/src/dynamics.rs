@@ -192,6 +192,12 @@ macro_rules! method {
     (wrench_torques $($rest:tt)*) => {
         at_frame! { $($rest)* }
     };
+    (jacobian_rate $($rest:tt)*) => {
+        at_frame! { $($rest)* }
+    };
+    (jacobian_derivatives $($rest:tt)*) => {
+        at_frame! { $($rest)* }
+    };
     // `Function::with_payload` is the other one
     (InverseDynamics $($rest:tt)*) => {
         loaded! { InverseDynamics InverseDynamicsWithPayload $($rest)* }

@@ -37,6 +37,10 @@ def test_jacobians_are_derivatives(arm, frame):
     assert np.allclose([turning[2, 1], turning[0, 2], turning[1, 0]], velocity[3:], atol=1e-9)
     before, after = (arm.jacobian(Q + sign * step * QD, frame=frame) @ QD for sign in (-1, 1))
     assert np.allclose((after - before) / (2 * step), arm.jacobian_rate_times_velocity(Q, QD, frame=frame), atol=1e-8)
+    before, after = (arm.jacobian(Q + sign * step * QD, frame=frame) for sign in (-1, 1))
+    rate = arm.jacobian_rate(Q, QD, frame=frame)
+    assert np.allclose((after - before) / (2 * step), rate, atol=1e-8)
+    assert np.allclose(arm.jacobian_derivatives(Q, frame=frame) @ QD, rate, atol=1e-14)
 
 
 @pytest.mark.parametrize("frame", FRAMES)

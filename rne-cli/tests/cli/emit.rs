@@ -497,7 +497,14 @@ fn functions_are_written_at_frames() {
     );
     assert_eq!(
         names(&["--frame", "camera"]),
-        ["pose_of_camera", "jacobian_of_camera", "jacobian_rate_times_velocity_of_camera", "wrench_torques_of_camera"]
+        [
+            "pose_of_camera",
+            "jacobian_of_camera",
+            "jacobian_rate_times_velocity_of_camera",
+            "wrench_torques_of_camera",
+            "jacobian_rate_of_camera",
+            "jacobian_derivatives_of_camera"
+        ]
     );
     assert_eq!(
         names(&["--function", "jacobian,gravity_torques", "--frame", "elbow,table"]),

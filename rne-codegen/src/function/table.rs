@@ -346,10 +346,10 @@ macro_rules! functions {
                 "∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂τ of `forward_dynamics_with_payload`; row i is acceleration i.",
                 "dq[i][j], dqd[i][j], dtau[i][j]: as in forward_dynamics_derivatives. payload: as in \
                  inverse_dynamics_with_payload.";
-            JacobianRate = jacobian_rate(q: Positions, qd: Rates) -> SpatialRows:
+            JacobianRate = jacobian_rate(q: Positions, qd: Rates) -> SpatialRows at jacobian_rate:
                 "The rate J̇ of the geometric Jacobian at velocities `qd`, in world axes.",
                 "rate[r][i]: of element (r, i) of jacobian. Its product with q̇ is jacobian_rate_times_velocity.";
-            JacobianDerivatives = jacobian_derivatives(q: Positions) -> SpatialMatrices:
+            JacobianDerivatives = jacobian_derivatives(q: Positions) -> SpatialMatrices at jacobian_derivatives:
                 "∂J/∂q: the derivatives of the geometric Jacobian by the positions, in world axes.",
                 "derivatives[r][i][j]: of element (r, i) of jacobian, by joint j. The three linear matrices are \
                  symmetric. The sum over j of these times q̇[j] is jacobian_rate.";

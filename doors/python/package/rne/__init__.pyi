@@ -413,12 +413,12 @@ class Arm:
         """∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂τ of `forward_dynamics_with_payload`; row i is acceleration i."""
     def jacobian_rate(
         self, q: Joints, qd: Joints, *,
-        parameters: Parameters = ..., out: Floats | None = ...,
+        frame: str | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The rate J̇ of the geometric Jacobian at velocities `qd`, in world axes."""
     def jacobian_derivatives(
         self, q: Joints, *,
-        parameters: Parameters = ..., out: Floats | None = ...,
+        frame: str | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """∂J/∂q: the derivatives of the geometric Jacobian by the positions, in world axes."""
     def torque_hessian(
