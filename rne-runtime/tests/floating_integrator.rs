@@ -270,17 +270,18 @@ fn the_runge_kutta_step_is_of_fourth_order() {
             let twist = [state.twist.linear, state.twist.angular].concat();
             [&state.orientation.to_wxyz()[..], &state.position, &twist, &state.q, &state.qd].concat()
         };
-        let exact = all(&after(400));
+        let exact = all(&after(100));
         let error = |steps: u32| all(&after(steps)).iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let order = (error(10) / error(20)).log2();
         println!("order {order:.3}, error {:.1e}", error(20));
         assert!((order - 4.0).abs() < 0.3, "{order}");
         // semi-implicit Euler tends to the same motion
-        let euler = (0..20_000).fold(start, |state, _| {
-            FloatingIntegratorStep::<DOF, NV, 0>::floating_euler_step(&arm, &state, &tau, &[], &GRAVITY, 0.1 / 20_000.0)
+        let euler = (0..1000).fold(start, |state, _| {
+            FloatingIntegratorStep::<DOF, NV, 0>::floating_euler_step(&arm, &state, &tau, &[], &GRAVITY, 0.1 / 1000.0)
         });
         let difference = all(&euler).iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(difference < 2e-3, "{difference}");
+        println!("semi-implicit Euler: {difference:.1e}");
+        assert!(difference < 4e-2, "{difference}");
     }
 }
 

@@ -169,7 +169,7 @@ fn evaluate_in<'py, T: Element + Number>(
         }
         // A and B, of the blocks by q, by q̇ and by τ of the positions, then of the velocities
         Layout::Record(Record::NextStateDerivatives, _) => {
-            let (dof, lead) = (arm.dof(), many.is_some().into());
+            let (dof, lead) = (arm.dof(), usize::from(many.is_some()));
             let axes: Vec<usize> = (0..lead).chain([0, 2, 1, 3].map(|axis| lead + axis)).collect();
             let rows: Vec<usize> = many.into_iter().chain([2 * dof, 3 * dof]).collect();
             let matrix = result.call_method1("transpose", (axes,))?.call_method1("reshape", (rows,))?;
