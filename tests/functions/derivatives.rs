@@ -9,7 +9,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rne::Payload;
-use rne_codegen::{Argument, Function};
+use rne_codegen::{Argument, CompileError, Function, Reason, Refusal};
 use rne_model::Robot;
 
 use crate::arm::{Arm, Maker};
@@ -114,6 +114,10 @@ fn compare(robot: &Robot, seed: u64, worst: &mut Worst) {
         }
         for (arm, maker) in code.iter().zip(Maker::CODE) {
             let found = arm.numbers(function, &state.given());
+            // then the numbers would be those of the seven steps
+            let is_refused = |it: &Refusal| matches!(it.reason, Reason::Error(CompileError::NotIdentical { .. }));
+            let refused = arm.program(function).refusals.iter().find(|it| is_refused(it));
+            assert!(refused.is_none(), "{}, {function}: {refused:?}", robot.name);
             assert_eq!(found.len(), parts.iter().map(Vec::len).sum::<usize>(), "{function}");
             let mut place = 0;
             for (index, part) in parts.iter().enumerate() {

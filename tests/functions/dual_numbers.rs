@@ -141,8 +141,8 @@ impl Derivative {
         }
     }
 
-    /// The second derivatives of the torques of the state times the numbers, by rows: a row for each element of `first`,
-    /// a column for each of `second`.
+    /// The second derivatives of the torques of the state times the numbers, by rows: a row for each element of
+    /// `first`, a column for each of `second`.
     fn hessian(&self, arm: &Arm, state: &State, first: By, second: By) -> Vec<f64> {
         let dof = state.q.len();
         let element = |row: usize, column: usize| {
