@@ -35,8 +35,7 @@ Examples:
 Without --function rne writes the functions of the trait InverseDynamics. If the
 file of --check is out of date, rne exits with status 1 and prints the command
 that updates the file. C code needs no library. On standard output, the C header
-and the C source are one file. A C compiler with the option -DRNE_TEST makes a
-program that runs the tests.")]
+and the C source are one file. C compiled with -DRNE_TEST runs the tests.")]
 #[allow(clippy::struct_excessive_bools)] // options of a command
 pub(crate) struct Arguments {
     /// Robot file, or a name from `rne list`
@@ -73,6 +72,9 @@ pub(crate) struct Arguments {
     /// Add effort limits to C code: limit_torques
     #[arg(long)]
     limits: bool,
+    /// Add kernels to PTX that roll out forward dynamics
+    #[arg(long)]
+    rollout: bool,
     /// Add functions for CasADi, in double precision; docs/optimal-control.md lists those with derivatives
     #[arg(long, conflicts_with = "run_time")]
     casadi: bool,
@@ -226,6 +228,12 @@ fn emitted(
              vector or a matrix, such as {TYPED}--function inverse_dynamics,forward_dynamics{TYPED:#}"
         )));
     }
+    if arguments.rollout && !programs.iter().any(|program| rne_emit::is_for_rollouts(program.function)) {
+        return Err(Failure::usage(format_args!(
+            "none of these functions can be rolled out; ask for \
+             {TYPED}--function forward_dynamics,forward_dynamics_with_payload{TYPED:#}, or for one of the two"
+        )));
+    }
     let precision = if arguments.casadi { Real::Double } else { arguments.real.unwrap_or(Real::Float) }.precision();
     let request = Request {
         file: &arguments.file,
@@ -235,6 +243,7 @@ fn emitted(
         friction: arguments.friction,
         limits: arguments.limits,
         names: arguments.names_joints(robot),
+        rollout: arguments.rollout,
         casadi: arguments.casadi,
         acados: arguments.acados,
         tests: arguments.tests,
@@ -301,7 +310,7 @@ fn is_named_once(run_time: &[String]) -> Result<(), Failure> {
 
 fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
     use Language::{C, Cuda, Ptx, Rust};
-    let options: [(&str, bool, &[Language], &str); 8] = [
+    let options: [(&str, bool, &[Language], &str); 9] = [
         (
             "--with-sin-cos",
             arguments.with_sin_cos,
@@ -312,6 +321,7 @@ fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
         ("--prefix", arguments.prefix.is_some(), &[C, Cuda, Ptx], "a file of Rust is a module with a name of its own"),
         ("--friction", arguments.friction, &[C], "in Rust, the derive `Actuation` computes friction"),
         ("--limits", arguments.limits, &[C], "in Rust, `f64::clamp` limits a torque"),
+        ("--rollout", arguments.rollout, &[Ptx], "`CompiledArm::rollout` rolls samples out on the processor"),
         ("--names", arguments.names, &[Rust, C], "code for processors of graphics has functions alone"),
         ("--tests", arguments.tests, &[Rust, C], "code for processors of graphics has functions alone"),
         ("--casadi", arguments.casadi, &[C], "CasADi calls functions of C"),
@@ -348,6 +358,7 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
     }
     let is_asked = |function: &Function| match asked.as_slice() {
         _ if arguments.acados && matches!(function, Function::ForwardDynamics | Function::TorqueHessian) => true,
+        [] if arguments.rollout => *function == Function::ForwardDynamics,
         [] if arguments.casadi && robot.closed.is_empty() => {
             matches!(function, Function::InverseDynamics | Function::ForwardDynamics)
         }
@@ -535,6 +546,7 @@ fn command(arguments: &Arguments, out: &Path) -> String {
     for (option, is_given) in [
         (" --friction", arguments.friction),
         (" --limits", arguments.limits),
+        (" --rollout", arguments.rollout),
         (" --names", arguments.names),
         (" --with-sin-cos", arguments.with_sin_cos),
     ] {

@@ -100,6 +100,9 @@ pub struct Additions<'a> {
     /// Whether acados can integrate the robot, too: the functions of an explicit differential equation. Needs `casadi`,
     /// and among the programs `forward_dynamics` and `forward_dynamics_derivatives`.
     pub acados: bool,
+    /// Whether [`ptx`](crate::ptx) also writes kernels of rollouts, for the programs for whose functions
+    /// [`is_for_rollouts`](crate::is_for_rollouts) is true.
+    pub rollout: bool,
 }
 
 /// The code of [`c_code`], with additions.
