@@ -226,9 +226,12 @@ fn compare_rollout<T: Number + Real>(arm: &CompiledArm, function: Function, prec
             let found = kernel.run_with(&given, &[count * kept * dof; 2], &others, 32);
             for (found, all) in found.iter().zip([&q, &qd]) {
                 let written = |state: &(usize, &T)| (state.0 / dof % steps + 1).is_multiple_of(every);
-                let written: Vec<T> =
-                    all.iter().enumerate().filter(|state| written(state) && state.0 / dof % steps < kept * every)
-                        .map(|state| *state.1).collect();
+                let written: Vec<T> = all
+                    .iter()
+                    .enumerate()
+                    .filter(|state| written(state) && state.0 / dof % steps < kept * every)
+                    .map(|state| *state.1)
+                    .collect();
                 let bits = |numbers: &[T]| numbers.iter().map(|number| number.bits()).collect::<Vec<_>>();
                 assert_eq!(bits(found), bits(&in_order(&written)), "{name} {end}, {count} samples, every {every}");
             }

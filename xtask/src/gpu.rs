@@ -163,8 +163,7 @@ fn assembled(ptxas: &Path, processor: &str, function: &str, text: &Path, folder:
         bail!("{}: {said}", text.display());
     }
     let end = format!("{function}_columns");
-    let of_columns =
-        said.split("Compiling entry function").find(|part| part.contains(&format!("{end}' for")));
+    let of_columns = said.split("Compiling entry function").find(|part| part.contains(&format!("{end}' for")));
     let of_columns = of_columns.with_context(|| format!("no kernel of columns: {said}"))?;
     let number_before = |words: &str| {
         let before = of_columns.split(words).next()?;
@@ -172,7 +171,8 @@ fn assembled(ptxas: &Path, processor: &str, function: &str, text: &Path, folder:
     };
     let spilled: Option<usize> = number_before(" bytes spill stores");
     let registers: Option<usize> = number_before(" registers");
-    let instructions = instructions(&fs::read(&code)?, end.as_bytes()).context("the code has no section of the kernel")?;
+    let instructions =
+        instructions(&fs::read(&code)?, end.as_bytes()).context("the code has no section of the kernel")?;
     Ok(Assembled {
         registers: registers.with_context(|| said.clone())?,
         spilled: spilled.with_context(|| said.clone())?,

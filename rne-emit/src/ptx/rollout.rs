@@ -74,7 +74,8 @@ impl Kernel<'_> {
         }
         let start = std::mem::take(&mut writing.body);
         writing.values(false);
-        let accelerations: Vec<String> = self.program.outputs.iter().map(|output| writing.operand(output.value)).collect();
+        let accelerations: Vec<String> =
+            self.program.outputs.iter().map(|output| writing.operand(output.value)).collect();
         for (joint, acceleration) in accelerations.iter().enumerate() {
             let _ = writeln!(
                 writing.body,

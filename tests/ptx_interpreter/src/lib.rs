@@ -303,7 +303,8 @@ impl Kernel {
         // a block more than there are states for
         self.launch(&mut memory, &values, states.div_ceil(width) + 1, width);
         let number = |address: usize| T::of_bits(memory.load(address as u64, T::BYTES));
-        let read = |(start, count): (usize, &usize)| (0..*count).map(|index| number(start + index * T::BYTES)).collect();
+        let read =
+            |(start, count): (usize, &usize)| (0..*count).map(|index| number(start + index * T::BYTES)).collect();
         starts.into_iter().zip(results).map(read).collect()
     }
 
@@ -362,12 +363,6 @@ impl Kernel {
                     }
                 }
             };
-            let word = |index| u32::try_from(value(index)).expect("32 bits");
-            let signed = |index| word(index).cast_signed();
-            let double = |index| f64::from_bits(value(index));
-            let single = |index| f32::from_bits(word(index));
-            let of_double = |number: f64| number.to_bits();
-            let of_single = |number: f32| u64::from(number.to_bits());
             let result = match operation.as_str() {
                 "ret" => {
                     *next = self.code.len();
@@ -378,51 +373,13 @@ impl Kernel {
                     *next = usize::try_from(value(0)).expect("a place");
                     continue;
                 }
-                "mov.u32" | "mov.u64" | "mov.b32" | "mov.b64" | "mov.f32" | "mov.f64" | "ld.param.u32"
-                | "ld.param.u64" | "ld.param.f32" | "ld.param.f64" | "cvta.to.global.u64" => value(1),
-                "mul.wide.u32" => u64::from(word(1)) * u64::from(word(2)),
-                "mad.lo.u64" => value(1).wrapping_mul(value(2)).wrapping_add(value(3)),
-                "add.u64" => value(1).wrapping_add(value(2)),
-                "div.u32" => (word(1) / word(2)).into(),
-                "mad.lo.u32" => word(1).wrapping_mul(word(2)).wrapping_add(word(3)).into(),
-                "mad.wide.u32" => u64::from(word(1)) * u64::from(word(2)) + value(3),
-                "mul.lo.s32" => signed(1).wrapping_mul(signed(2)).cast_unsigned().into(),
-                "sub.s32" => signed(1).wrapping_sub(signed(2)).cast_unsigned().into(),
-                "min.s32" => signed(1).min(signed(2)).cast_unsigned().into(),
-                "setp.gt.s32" => u64::from(signed(1) > signed(2)),
-                "add.u32" => word(1).wrapping_add(word(2)).into(),
-                "and.b32" => (word(1) & word(2)).into(),
-                "xor.b32" => (word(1) ^ word(2)).into(),
-                "shl.b32" => word(1).checked_shl(word(2)).unwrap_or(0).into(),
-                "setp.ge.u32" => u64::from(word(1) >= word(2)),
-                "setp.ne.u32" => u64::from(word(1) != word(2)),
-                "setp.gt.f64" => u64::from(double(1) > double(2)),
-                "setp.lt.f64" => u64::from(double(1) < double(2)),
-                "setp.gt.f32" => u64::from(single(1) > single(2)),
-                "setp.lt.f32" => u64::from(single(1) < single(2)),
-                "selp.f32" | "selp.f64" => {
-                    if value(3) == 0 {
-                        value(2)
-                    } else {
-                        value(1)
-                    }
-                }
-                "neg.f64" => of_double(-double(1)),
-                "add.rn.f64" => of_double(double(1) + double(2)),
-                "sub.rn.f64" => of_double(double(1) - double(2)),
-                "mul.rn.f64" => of_double(double(1) * double(2)),
-                "div.rn.f64" => of_double(double(1) / double(2)),
-                "fma.rn.f64" => of_double(double(1).mul_add(double(2), double(3))),
-                "neg.f32" => of_single(-single(1)),
-                "add.rn.f32" => of_single(single(1) + single(2)),
-                "sub.rn.f32" => of_single(single(1) - single(2)),
-                "mul.rn.f32" => of_single(single(1) * single(2)),
-                "div.rn.f32" => of_single(single(1) / single(2)),
-                "fma.rn.f32" => of_single(single(1).mul_add(single(2), single(3))),
                 "ld.global.nc.f32" | "ld.global.nc.f64" | "ld.shared.f32" | "ld.shared.f64" => {
                     let bytes = if operation.ends_with("64") { 8 } else { 4 };
                     let (is_shared, at) = (operation.starts_with("ld.shared"), value(1));
-                    assert!((is_shared || at >= START as u64) && at.is_multiple_of(bytes as u64), "an address of nothing");
+                    assert!(
+                        (is_shared || at >= START as u64) && at.is_multiple_of(bytes as u64),
+                        "an address of nothing"
+                    );
                     if is_shared { shared.load(at, bytes) } else { memory.load(at, bytes) }
                 }
                 "st.global.f32" | "st.global.f64" | "st.shared.f32" | "st.shared.f64" => {
@@ -434,7 +391,7 @@ impl Kernel {
                     }
                     continue;
                 }
-                other => panic!("{other} is not an instruction of this interpreter"),
+                other => computed(other, value),
             };
             match &operands[0] {
                 Operand::Register(register) => registers[*register] = Some(result),
@@ -445,5 +402,59 @@ impl Kernel {
                 _ => panic!("{operation} writes a register"),
             }
         }
+    }
+}
+
+/// The result of an instruction that reads registers and writes one.
+fn computed(operation: &str, value: impl Fn(usize) -> u64) -> u64 {
+    let word = |index| u32::try_from(value(index)).expect("32 bits");
+    let signed = |index| word(index).cast_signed();
+    let double = |index| f64::from_bits(value(index));
+    let single = |index| f32::from_bits(word(index));
+    let of_double = |number: f64| number.to_bits();
+    let of_single = |number: f32| u64::from(number.to_bits());
+    match operation {
+        "mov.u32" | "mov.u64" | "mov.b32" | "mov.b64" | "mov.f32" | "mov.f64" | "ld.param.u32" | "ld.param.u64"
+        | "ld.param.f32" | "ld.param.f64" | "cvta.to.global.u64" => value(1),
+        "mul.wide.u32" => u64::from(word(1)) * u64::from(word(2)),
+        "mad.lo.u64" => value(1).wrapping_mul(value(2)).wrapping_add(value(3)),
+        "add.u64" => value(1).wrapping_add(value(2)),
+        "div.u32" => (word(1) / word(2)).into(),
+        "mad.lo.u32" => word(1).wrapping_mul(word(2)).wrapping_add(word(3)).into(),
+        "mad.wide.u32" => u64::from(word(1)) * u64::from(word(2)) + value(3),
+        "mul.lo.s32" => signed(1).wrapping_mul(signed(2)).cast_unsigned().into(),
+        "sub.s32" => signed(1).wrapping_sub(signed(2)).cast_unsigned().into(),
+        "min.s32" => signed(1).min(signed(2)).cast_unsigned().into(),
+        "setp.gt.s32" => u64::from(signed(1) > signed(2)),
+        "add.u32" => word(1).wrapping_add(word(2)).into(),
+        "and.b32" => (word(1) & word(2)).into(),
+        "xor.b32" => (word(1) ^ word(2)).into(),
+        "shl.b32" => word(1).checked_shl(word(2)).unwrap_or(0).into(),
+        "setp.ge.u32" => u64::from(word(1) >= word(2)),
+        "setp.ne.u32" => u64::from(word(1) != word(2)),
+        "setp.gt.f64" => u64::from(double(1) > double(2)),
+        "setp.lt.f64" => u64::from(double(1) < double(2)),
+        "setp.gt.f32" => u64::from(single(1) > single(2)),
+        "setp.lt.f32" => u64::from(single(1) < single(2)),
+        "selp.f32" | "selp.f64" => {
+            if value(3) == 0 {
+                value(2)
+            } else {
+                value(1)
+            }
+        }
+        "neg.f64" => of_double(-double(1)),
+        "add.rn.f64" => of_double(double(1) + double(2)),
+        "sub.rn.f64" => of_double(double(1) - double(2)),
+        "mul.rn.f64" => of_double(double(1) * double(2)),
+        "div.rn.f64" => of_double(double(1) / double(2)),
+        "fma.rn.f64" => of_double(double(1).mul_add(double(2), double(3))),
+        "neg.f32" => of_single(-single(1)),
+        "add.rn.f32" => of_single(single(1) + single(2)),
+        "sub.rn.f32" => of_single(single(1) - single(2)),
+        "mul.rn.f32" => of_single(single(1) * single(2)),
+        "div.rn.f32" => of_single(single(1) / single(2)),
+        "fma.rn.f32" => of_single(single(1).mul_add(single(2), single(3))),
+        other => panic!("{other} is not an instruction of this interpreter"),
     }
 }
