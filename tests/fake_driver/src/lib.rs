@@ -48,14 +48,17 @@ struct Card {
     counts: [u64; 6],
 }
 
+/// The bytes from each address that were allocated here, and those of [`fakeMap`].
 #[derive(Default)]
-struct Allocated(BTreeMap<u64, usize>);
+struct Allocated(BTreeMap<u64, usize>, BTreeMap<u64, usize>);
 
 impl Allocated {
     /// Panics where the bytes were not allocated.
     fn check(&self, address: u64, bytes: usize) -> *mut u8 {
-        let found = self.0.range(..=address).next_back();
-        let is_inside = found.is_some_and(|(start, size)| address + bytes as u64 <= start + *size as u64);
+        let is_inside = [&self.0, &self.1].into_iter().any(|parts| {
+            let found = parts.range(..=address).next_back();
+            found.is_some_and(|(start, size)| address + bytes as u64 <= start + *size as u64)
+        });
         assert!(is_inside, "{bytes} bytes at {address:#x} were not allocated");
         address as *mut u8
     }
@@ -89,6 +92,12 @@ fn with<R>(work: impl FnOnce(&mut Card) -> R) -> R {
 #[unsafe(no_mangle)]
 pub extern "C" fn fakeCount(which: c_int) -> u64 {
     with(|card| usize::try_from(which).ok().and_then(|which| card.counts.get(which).copied()).unwrap_or(0))
+}
+
+/// Lets kernels read and write memory of the process that was not allocated here, as that of a library.
+#[unsafe(no_mangle)]
+pub extern "C" fn fakeMap(address: u64, bytes: usize) {
+    with(|card| card.memory.1.insert(address, bytes));
 }
 
 macro_rules! calls {
