@@ -43,7 +43,7 @@ class Array:
     def __cuda_array_interface__(self):
         about = self.numbers.__array_interface__
         data = (about["data"][0], "read-only" in self.flags)
-        return {"shape": about["shape"], "typestr": about["typestr"], "strides": about["strides"], "data": data, "version": 3}
+        return {"version": 3, "data": data, **{name: about[name] for name in ("shape", "typestr", "strides")}}
 
     def __dlpack_device__(self):
         return (2, 1 if "elsewhere" in self.flags else 0)
@@ -102,8 +102,9 @@ def test_functions_are_those_of_the_arm(panda, dtype, order):
         on = [on_card(numbers, order) for numbers in (q, qd, qdd)]
         same(gpu.inverse_dynamics(*on), panda.inverse_dynamics(q, qd, qdd))
         same(gpu.mass_matrix(q=on[0]), panda.mass_matrix(q))
-        for found, expected in zip(gpu.inverse_dynamics_derivatives(*on), panda.inverse_dynamics_derivatives(q, qd, qdd)):
-            same(found, expected)
+        expected = panda.inverse_dynamics_derivatives(q, qd, qdd)
+        for found, one in zip(gpu.inverse_dynamics_derivatives(*on), expected):
+            same(found, one)
         assert gpu.kinetic_energy(*on[:2]).shape == (count,)
 
 
@@ -170,8 +171,8 @@ def test_a_call_is_on_the_callers_stream_and_does_not_wait(panda, monkeypatch):
         def __cuda_stream__(self):
             return 0, 77
 
-    for stream, handle in [(None, 0), (5, 5), (types.SimpleNamespace(cuda_stream=6), 6), (types.SimpleNamespace(ptr=7), 7),
-                           (Stream(), 77)]:
+    of_torch, of_cupy = types.SimpleNamespace(cuda_stream=6), types.SimpleNamespace(ptr=7)
+    for stream, handle in [(None, 0), (5, 5), (of_torch, 6), (of_cupy, 7), (Stream(), 77)]:
         gpu.inverse_dynamics(*on, stream=stream)
         assert driver.fakeCount(STREAM) == handle
     with pytest.raises(TypeError, match="`stream` is 'fast'"):
@@ -180,8 +181,8 @@ def test_a_call_is_on_the_callers_stream_and_does_not_wait(panda, monkeypatch):
     # libraries with a current stream
     tensor = type("Tensor", (Array,), {"__module__": "torch"})
     current = types.SimpleNamespace(current_stream=lambda device: types.SimpleNamespace(cuda_stream=88))
-    made = {"empty": lambda *a, **k: tensor(empty(*a, **k).numbers), "movedim": lambda a, b, c: tensor(np.moveaxis(a.numbers, b, c))}
-    monkeypatch.setitem(sys.modules, "torch", types.SimpleNamespace(cuda=current, **made))
+    made, movedim = lambda *a, **k: tensor(empty(*a, **k).numbers), lambda a, b, c: tensor(np.moveaxis(a.numbers, b, c))
+    monkeypatch.setitem(sys.modules, "torch", types.SimpleNamespace(cuda=current, empty=made, movedim=movedim))
     found = gpu.inverse_dynamics(*(on_card(one, "columns", tensor) for one in numbers))
     assert driver.fakeCount(STREAM) == 88 and type(found) is tensor
     same(found, panda.inverse_dynamics(*numbers))
@@ -199,10 +200,7 @@ def test_a_call_is_on_the_callers_stream_and_does_not_wait(panda, monkeypatch):
 class Capsule(Array):
     """An array that has DLPack alone."""
 
-    @property
-    def __cuda_array_interface__(self):
-        raise AttributeError
-
+    __cuda_array_interface__ = None
 
     def __dlpack__(self):
         return self.numbers.__dlpack__()
@@ -225,19 +223,20 @@ def test_wrong_arrays_are_refused(panda):
             gpu.inverse_dynamics(*arguments, **keywords)
         assert driver.fakeCount(LAUNCHES) == launches
 
-    refused(ValueError, "`q` is not on a graphics card of NVIDIA: copy it there", np.zeros((4, 7)), np.zeros((4, 7)), np.zeros((4, 7)))
+    refused(ValueError, "`q` is not on a graphics card of NVIDIA: copy it there", *[np.zeros((4, 7))] * 3)
     refused(TypeError, "`q` is a list, but it must be an array on a graphics card", [0] * 7, [0] * 7, [0] * 7)
-    refused(TypeError, "`qd` is of list, but others|`qd` is of builtins, but others are of test_gpu", q, [0] * 7, qdd)
+    refused(TypeError, "`qd` is of builtins, but others are of test_gpu", q, [0] * 7, qdd)
     refused(TypeError, "needs `qdd`; it takes q, qd, qdd", q, qd)
     refused(TypeError, "takes q, qd, qdd, each once", q, qd, qdd, q=q)
     refused(TypeError, "`qd` is of float64, but `q` is of float32", q, on_card(np.zeros((4, 7))), qdd)
     refused(TypeError, "`qdd` is of <i8, but it must be float32 or float64", q, qd, on_card(np.zeros((4, 7), "int64")))
-    refused(ValueError, r"`q` has the shape \(4, 6\), but it must be \(N, 7\)", on_card(np.zeros((4, 6), "float32")), qd, qdd)
-    refused(ValueError, r"`q` has the shape \(7,\), but it must be \(N, 7\)", on_card(np.zeros(7, "float32")), qd, qdd)
+    for shape, words in [((4, 6), r"`q` has the shape \(4, 6\), but"), ((7,), r"`q` has the shape \(7,\), but")]:
+        refused(ValueError, words + r" it must be \(N, 7\)", on_card(np.zeros(shape, "float32")), qd, qdd)
     refused(ValueError, "`qd` has 1 rows, but `q` has 4", q, on_card(np.zeros((1, 7), "float32")), qdd)
     refused(ValueError, "`qd` is not contiguous", q, Array(memory((8, 7), "float32")[::2]), qdd)
     refused(ValueError, "in rows and in columns", q, on_card(qd.numbers, "columns"), qdd)
-    refused(ValueError, "`qdd` is on graphics card 1, but the arm is on card 0", q, qd, on_card(qdd.numbers, flags=["elsewhere"]))
+    elsewhere = on_card(qdd.numbers, flags=["elsewhere"])
+    refused(ValueError, "`qdd` is on graphics card 1, but the arm is on card 0", q, qd, elsewhere)
     refused(ValueError, "`out` shares memory with `qd`", q, qd, qdd, out=qd)
     refused(ValueError, "`out` can only be read", q, qd, qdd, out=on_card(qdd.numbers, flags=["read-only"]))
     refused(ValueError, "it must have 4 states of float32", q, qd, qdd, out=on_card(np.zeros((4, 7))))
@@ -259,6 +258,14 @@ def test_wrong_arrays_are_refused(panda):
         gpu.kinetic_energy(q, qd, payload=q)
     with pytest.raises(RuntimeError, match="there is no graphics card 3: this machine has 1, counted from 0"):
         panda.gpu(3)
+
+
+def test_tensors_of_pytorch():
+    """Strides, new tensors and views of PyTorch itself, whose tensors of the processor pass for those on a card."""
+    pytest.importorskip("torch")
+    command = [sys.executable, ROOT / "benches/gpu/mppi.py", "--fake", LIBRARY, "--samples=33", "--steps=4", "--cycles=3"]
+    said = subprocess.run(command, capture_output=True, text=True)
+    assert "rollouts of 4 steps per second" in said.stdout and "distance to the goal" in said.stdout, said.stderr
 
 
 def test_no_state_is_no_launch(panda):
