@@ -53,7 +53,7 @@ impl GpuRollout {
     }
 }
 
-/// What is launched.
+/// The kernel of a launch: that of the function, or a rollout by it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Work {
     Function,
@@ -256,8 +256,8 @@ impl GpuArm {
         }
         let kernel = if order == Order::Rows { kernels.rows } else { kernels.columns };
         let size = [states.div_ceil(WIDTH), WIDTH];
-        // SAFETY: the parameters are those of the kernel: addresses, for a rollout a number of the type of the arrays and
-        // two of 32 bits, and the number of states; the rest is the caller's
+        // SAFETY: the parameters are those of the kernel: addresses, for a rollout a number of the type of the arrays
+        // and two of 32 bits, and the number of states; the rest is the caller's
         unsafe { self.device.driver().launch(self.device.context(), kernel, size, stream, &parameters) }
     }
 

@@ -200,8 +200,8 @@ impl Driver {
 
     /// Frees a module; no kernel of it may be launched afterwards.
     pub(crate) fn unload(&self, context: Context, module: Module) {
-        // SAFETY: the handle is that of a module that `module` made; the arm that drops it has its only kernels, and the
-        // driver itself waits for kernels that still run
+        // SAFETY: the handle is that of a module that `module` made; the arm that drops it has its only kernels, and
+        // the driver itself waits for kernels that still run
         let _ = self.within(context, || self.checked("cuModuleUnload", unsafe { (self.unload)(module.0) }));
     }
 
@@ -288,7 +288,7 @@ impl Driver {
     pub(crate) fn download<T: Real>(&self, context: Context, from: u64, numbers: &mut [T]) -> Result<(), GpuError> {
         self.within(context, || {
             let bytes = size_of_val(numbers);
-            // SAFETY: writes the bytes of the slice, of which all patterns are numbers; the memory at `from` has as many
+            // SAFETY: writes the bytes of the slice, of which all patterns are numbers; `from` has as many
             self.checked("cuMemcpyDtoH", unsafe { (self.download)(numbers.as_mut_ptr().cast(), from, bytes) })
         })
     }

@@ -1,4 +1,4 @@
-//! What goes wrong on a graphics card.
+//! Errors of functions on a graphics card.
 
 use std::error::Error;
 use std::fmt;
@@ -14,7 +14,7 @@ pub enum GpuError {
     NoDriver {
         /// Its name.
         library: PathBuf,
-        /// What the system says.
+        /// The words of the system.
         reason: String,
     },
     /// The driver does not have a call.
@@ -33,7 +33,7 @@ pub enum GpuError {
     },
     /// The driver could not translate a kernel.
     Translation {
-        /// What it says.
+        /// The words of the driver.
         log: String,
     },
     /// A call of the driver failed.
@@ -76,7 +76,7 @@ pub enum GpuError {
     },
     /// A batch is too large, or a rollout has no step.
     Range {
-        /// What it is: states, steps, every.
+        /// The name of the number: states, steps, every.
         what: &'static str,
         /// The number.
         found: u64,
@@ -98,7 +98,7 @@ impl fmt::Display for GpuError {
             ),
             Self::OldDriver { library, call } => write!(
                 f,
-                "{} has no call {call}: it is not a driver of NVIDIA, or one older than CUDA 11. Install a newer driver",
+                "{} has no call {call}: it is no driver of NVIDIA, or one older than CUDA 11. Install a newer driver",
                 library.display()
             ),
             Self::NoDevice { count: 0, .. } => f.write_str(
@@ -109,8 +109,8 @@ impl fmt::Display for GpuError {
             }
             Self::Translation { log } => write!(
                 f,
-                "the driver cannot translate the kernel. It needs a card from V100 on (compute capability 7.0). It says: \
-                 {log}"
+                "the driver cannot translate the kernel. Kernels need a card from V100 on (compute capability 7.0). The \
+                 driver says: {log}"
             ),
             Self::Call { call, number, name, meaning } => {
                 write!(f, "the driver's call {call} failed with error {number}, {name}: {meaning}")?;

@@ -1,8 +1,8 @@
 //! Functions of a robot arm on a graphics card of NVIDIA: many states at once, a thread per state.
 //!
-//! A [`GpuArm`] writes the functions of a [`CompiledArm`] as kernels of PTX, which the driver of the card translates. The
-//! driver's library is opened when the program runs, so neither CUDA's toolkit nor a card is needed to build a program
-//! with this crate. The results have the bits of the processor with fused multiply-add.
+//! A [`GpuArm`] writes the functions of a [`CompiledArm`] as kernels of PTX, which the driver of the card translates.
+//! The driver's library is opened when the program runs, so neither CUDA's toolkit nor a card is needed to build a
+//! program with this crate. The results have the bits of the processor with fused multiply-add.
 //!
 //! ```
 //! use rne_gpu::{Device, GpuArm, GpuError, GpuRollout, Order};

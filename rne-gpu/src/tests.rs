@@ -176,5 +176,5 @@ fn a_text_that_the_driver_refuses_gives_its_log() {
     let device = device();
     let refused = device.driver().module(device.context(), "not PTX").expect_err("a translation");
     assert!(matches!(&refused, GpuError::Translation { log } if log.starts_with("line 1: error")), "{refused}");
-    assert!(refused.to_string().contains("It says: line 1: error"), "{refused}");
+    assert!(refused.to_string().contains("The driver says: line 1: error"), "{refused}");
 }

@@ -127,8 +127,9 @@ impl GpuArm {
 impl Arm {
     /// Functions of this arm on a graphics card of NVIDIA, for arrays of PyTorch, CuPy and JAX that are on it.
     ///
-    /// Each function of the arm is an attribute of what is returned: `arm.gpu().inverse_dynamics(q, qd, qdd)`, with arrays
-    /// of shape (N, n), float32 or float64. `rollout(q, qd, tau, step)` moves N samples on over T steps in one launch.
+    /// Each function of the arm is an attribute of what is returned: `arm.gpu().inverse_dynamics(q, qd, qdd)`, with
+    /// arrays of shape (N, n), float32 or float64. `rollout(q, qd, tau, step)` moves N samples on over T steps in one
+    /// launch.
     /// A call reads the arrays where they are, launches a kernel on the caller's current stream, and does not wait.
     /// `device`: the number of the card. Needs NVIDIA's driver, and neither CUDA's toolkit nor a compiler.
     #[pyo3(signature = (device=0))]

@@ -79,8 +79,8 @@ impl Kernel<'_> {
         for (joint, acceleration) in accelerations.iter().enumerate() {
             let _ = writeln!(
                 writing.body,
-                "    mul.rn.{real} %change, %step, {acceleration};\n    add.rn.{real} %qd{joint}, %qd{joint}, %change;\n    \
-                 mul.rn.{real} %change, %step, %qd{joint};\n    add.rn.{real} %q{joint}, %q{joint}, %change;"
+                "    mul.rn.{real} %change, %step, {acceleration};\n    \
+                 add.rn.{real} %qd{joint}, %qd{joint}, %change;\n    mul.rn.{real} %change, %step, %qd{joint};\n    add.rn.{real} %q{joint}, %q{joint}, %change;"
             );
         }
         let steps = std::mem::take(&mut writing.body);
@@ -120,7 +120,8 @@ impl Kernel<'_> {
         for (array, length) in &arrays {
             let _ = writeln!(
                 text,
-                "    .reg .u64 %{array};\n    ld.param.u64 %{array}, [{array}];\n    cvta.to.global.u64 %{array}, %{array};"
+                "    .reg .u64 %{array};\n    ld.param.u64 %{array}, [{array}];\n    \
+                 cvta.to.global.u64 %{array}, %{array};"
             );
             let size = length * bytes;
             let _ = match (arrangement, array.as_str()) {

@@ -206,7 +206,8 @@ calls! {
         module: *mut usize, image: *const c_char, count: c_uint, options: *const c_int, values: *const *mut c_void
     ) {
         let text = CStr::from_ptr(image).to_string_lossy().into_owned();
-        let option = |which| (0..count as usize).find(|&index| *options.add(index) == which).map(|index| *values.add(index));
+        let place = |which| (0..count as usize).find(|&index| *options.add(index) == which);
+        let option = |which| place(which).map(|index| *values.add(index));
         let Ok(kernels) = catch_unwind(|| read(&text)) else {
             if let (Some(place), Some(bytes)) = (option(5), option(6)) {
                 write_text(place.cast(), bytes as usize, "line 1: error: this is not PTX that rne writes");
