@@ -109,8 +109,8 @@ impl fmt::Display for GpuError {
             }
             Self::Translation { log } => write!(
                 f,
-                "the driver cannot translate the kernel. Kernels need a card from V100 on (compute capability 7.0). The \
-                 driver says: {log}"
+                "the driver cannot translate the kernel. Kernels need a card from V100 on (compute capability 7.0). \
+                 The driver says: {log}"
             ),
             Self::Call { call, number, name, meaning } => {
                 write!(f, "the driver's call {call} failed with error {number}, {name}: {meaning}")?;

@@ -80,7 +80,8 @@ impl Kernel<'_> {
             let _ = writeln!(
                 writing.body,
                 "    mul.rn.{real} %change, %step, {acceleration};\n    \
-                 add.rn.{real} %qd{joint}, %qd{joint}, %change;\n    mul.rn.{real} %change, %step, %qd{joint};\n    add.rn.{real} %q{joint}, %q{joint}, %change;"
+                 add.rn.{real} %qd{joint}, %qd{joint}, %change;\n    \
+                 mul.rn.{real} %change, %step, %qd{joint};\n    add.rn.{real} %q{joint}, %q{joint}, %change;"
             );
         }
         let steps = std::mem::take(&mut writing.body);
