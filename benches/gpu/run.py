@@ -2,7 +2,9 @@
 """Runs kernels of `rne emit --lang ptx` on a graphics card of NVIDIA: their numbers against the processor's, then times.
 
 It needs the driver (libcuda.so.1) and Python's standard library alone. The folder beside it is written by
-`cargo run -p rne-emit --example gpu_folder -- FOLDER`.
+`cargo run -p rne-emit --example gpu_folder -- FOLDER`. The variable RNE_LIBCUDA names another library of the driver: with
+that of `cargo build -p fake-driver`, which runs kernels on the processor, the checks run on any machine and times mean
+nothing.
 """
 
 import ctypes
@@ -273,8 +275,16 @@ def laid_out(columns, states, code, arrangement):
     return numbers
 
 
-def arguments_of(addresses, states):
-    return [u64(address) for address in addresses] + [u32(states)]
+def arguments_of(addresses, states, case=None):
+    """The parameters of a kernel; the results of a rollout are two arrays, one behind the other."""
+    rollout = (case or {}).get("rollout")
+    if not rollout:
+        return [u64(address) for address in addresses] + [u32(states)]
+    is_double = case["type"] == "f64"
+    half = case["outputs"] // 2 * states * (8 if is_double else 4)
+    step = (ctypes.c_double if is_double else ctypes.c_float)(rollout["step"])
+    return [u64(address) for address in [*addresses, addresses[-1] + half]] + [
+        step, u32(rollout["steps"]), u32(rollout["every"]), u32(states)]
 
 
 def check(driver, case, function, arrangement, states):
@@ -291,7 +301,7 @@ def check(driver, case, function, arrangement, states):
         addresses.append(driver.allocate((count + GUARD) * size))
         driver.upload(addresses[-1], array("B", b"\xa5" * ((count + GUARD) * size)))
         # one block more than there are states for
-        driver.launch(function, states // 64 + 2, 64, arguments_of(addresses, states))
+        driver.launch(function, states // 64 + 2, 64, arguments_of(addresses, states, case))
         driver.synchronize()
         found = driver.download(addresses[-1], code, count + GUARD)
     finally:
@@ -300,7 +310,10 @@ def check(driver, case, function, arrangement, states):
     is_guarded = guard == b"\xa5" * len(guard)
     found = found[:count]
     if arrangement == "rows":
-        found = array(code, [x for element in range(outputs) for x in found[element::outputs]])
+        parts = 2 if case.get("rollout") else 1
+        elements, size_of_part = outputs // parts, count // parts
+        found = array(code, [x for part in range(parts) for element in range(elements)
+                             for x in found[part * size_of_part + element:(part + 1) * size_of_part:elements]])
     whole = case["states"]
     same, double = read(f"{case['label']}.{case['type']}", code), read(case["label"] + ".f64", "d")
     first = lambda numbers: [numbers[e * whole:e * whole + states] for e in range(outputs)]
@@ -348,7 +361,7 @@ def measure(driver, case, function, arrangement, states, widths=(128,)):
         best = None
         for width in widths:
             median, least = driver.seconds(
-                function, (states + width - 1) // width, width, arguments_of(addresses, states))
+                function, (states + width - 1) // width, width, arguments_of(addresses, states, case))
             if best is None or median < best[0]:
                 best = (median, least, width)
     finally:
@@ -453,22 +466,29 @@ def main():
     driver = Driver()
     RESULT.update(device=driver.name, driver=driver.version, attributes=driver.attributes, unit=manifest["unit"])
     say(f"{driver.name}, driver {driver.version}, {driver.attributes}")
-    attempt("limits", lambda: limits(driver))
+    is_fake = driver.name.startswith("no card")
+    if not is_fake:
+        attempt("limits", lambda: limits(driver))
+    sizes = lambda *powers: (5,) if is_fake else powers
     torques = [case for case in cases if case["label"] == "panda_inverse_dynamics"]
-    close = [case for case in cases if case not in torques and case["robot"] in ("panda", "g1_floating", "g1")]
-    others = [case for case in cases if case not in torques and case not in close]
+    rollouts = [case for case in cases if case.get("rollout")]
+    first = torques + rollouts
+    close = [case for case in cases if case not in first and case["robot"] in ("panda", "g1_floating", "g1")]
+    others = [case for case in cases if case not in first and case not in close]
     for case in torques:
-        attempt(case["label"], lambda: one_case(driver, case, (20, 22, 24), (1, 31, 64, case["states"])))
+        attempt(case["label"], lambda: one_case(driver, case, sizes(20, 22, 24), (1, 31, 64, case["states"])))
+    for case in rollouts:
+        attempt(case["label"], lambda: one_case(driver, case, sizes(17, 20), (1, 31, 64, case["states"])))
     for case in close:
         if left() < 40:
             say(f"skipped for want of time: {case['label']} {case['type']}")
             continue
-        attempt(case["label"], lambda: one_case(driver, case, (20, 22), (1, 31, 64, case["states"])))
+        attempt(case["label"], lambda: one_case(driver, case, sizes(20, 22), (1, 31, 64, case["states"])))
     for case in others:
         if left() < 3:
             say(f"skipped for want of time: {case['label']} {case['type']}")
             continue
-        attempt(case["label"], lambda: one_case(driver, case, (22,) if left() > 25 else (), (31, 64, case["states"])))
+        attempt(case["label"], lambda: one_case(driver, case, sizes(22) if left() > 25 else (), (31, 64, case["states"])))
     checks = RESULT["checks"]
     RESULT["seconds"] = time.monotonic() - BEGIN
     differing = sum(result["differing_bits"] for result in checks)

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use rne_emit::{Additions, Precision, Prefix, ptx};
-use rne_machine::{Arguments, Array, CompiledArm, Destination, Form, Function, Number};
+use rne_machine::{Arguments, Array, CompiledArm, Destination, Form, Function, Number, Rollout};
 use serde_json::{Value, json};
 
 /// Functions of the arm that is looked at closely.
@@ -17,6 +17,12 @@ const OF_PANDA: [Function; 5] = [
     Function::InverseDynamicsDerivatives,
     Function::InverseDynamicsWithPayload,
 ];
+
+/// The rollouts of the arm: their steps, and after how many steps states are written.
+const STEPS: u32 = 50;
+const EVERY: [u32; 2] = [1, STEPS];
+/// The duration of a step, s.
+const STEP: f64 = 0.02;
 
 /// Robot files that are not shipped, and the functions that are taken of them.
 const OTHERS: [(&str, &[Function]); 4] = [
@@ -51,6 +57,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         for &function in *functions {
             cases.extend(case(&folder, name, arm, function)?);
             println!("{name} {function}");
+        }
+        if name == "panda" {
+            for every in EVERY {
+                cases.extend(rollout(&folder, name, arm, every)?);
+            }
         }
     }
     let manifest = json!({ "unit": rne_runtime::VectorUnit::widest().name(), "cases": cases });
@@ -123,6 +134,78 @@ fn case(folder: &Path, name: &str, arm: &CompiledArm, function: Function) -> Res
         }));
     }
     Ok(cases)
+}
+
+/// Rollouts of an arm: their kernels in both precisions, the first states and torques, and the states after steps.
+fn rollout(folder: &Path, name: &str, arm: &CompiledArm, every: u32) -> Result<Vec<Value>, Box<dyn Error>> {
+    let program = arm.function(Function::ForwardDynamics)?.program();
+    let (dof, samples, steps) = (arm.dof(), 131, STEPS as usize);
+    let label = format!("{name}_rollout_every_{every}");
+    let mut random = fastrand::Rng::with_seed(7);
+    let mut columns = |elements: usize, scale: f32| -> Vec<Vec<f32>> {
+        (0..elements).map(|_| (0..samples).map(|_| scale * (2.0 * random.f32() - 1.0)).collect()).collect()
+    };
+    let inputs = [("q", columns(dof, 1.0)), ("qd", columns(dof, 0.5)), ("tau", columns(dof * steps, 20.0))];
+    let numbers = inputs.iter().flat_map(|(_, columns)| columns.iter().flatten()).flat_map(|x| x.to_le_bytes());
+    fs::write(folder.join(format!("{label}.in")), numbers.collect::<Vec<u8>>())?;
+    let double = states(arm, samples, every as usize, &inputs, f64::from)?;
+    let single = states(arm, samples, every as usize, &inputs, |x| x)?;
+    fs::write(folder.join(format!("{label}.f64")), double.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>())?;
+    fs::write(folder.join(format!("{label}.f32")), single.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>())?;
+    let (prefix, additions) = (Prefix::of(arm.robot()), Additions { rollout: true, ..Additions::default() });
+    let mut cases = Vec::new();
+    for (precision, type_name) in [(Precision::Double, "f64"), (Precision::Single, "f32")] {
+        let file = format!("{label}_{type_name}.ptx");
+        let text = ptx(arm.robot(), std::slice::from_ref(program), precision, &prefix, &additions)?;
+        fs::write(folder.join(&file), text)?;
+        cases.push(json!({
+            "label": label,
+            "robot": name,
+            "function": "rollout",
+            "type": type_name,
+            "ptx": file,
+            "kernel": format!("{}_rollout", prefix.as_str()),
+            "arrays": inputs.iter().map(|(array, columns)| json!([array, columns.len()])).collect::<Vec<_>>(),
+            "rollout": { "steps": STEPS, "step": STEP, "every": every },
+            "outputs": 2 * dof * steps / every as usize,
+            "used": dof * (2 + steps),
+            "states": samples,
+            "operations": (program.operations().total() + 4 * dof) * steps,
+            "instructions": (rne_codegen::fma::instructions(program) + 4 * dof) * steps,
+            "angles": program.operations().sincos * steps,
+            "form": "reduced",
+        }));
+    }
+    Ok(cases)
+}
+
+/// The states of a rollout on the processor, by columns: positions, then velocities.
+fn states<T: Number>(
+    arm: &CompiledArm,
+    samples: usize,
+    every: usize,
+    inputs: &[(&str, Vec<Vec<f32>>)],
+    number: impl Fn(f32) -> T,
+) -> Result<Vec<T>, Box<dyn Error>> {
+    let (dof, steps) = (arm.dof(), STEPS as usize);
+    let rows = |columns: &Vec<Vec<f32>>| -> Vec<T> {
+        (0..samples)
+            .flat_map(|sample| columns.iter().map(|column| number(column[sample])).collect::<Vec<_>>())
+            .collect()
+    };
+    let rows: Vec<Vec<T>> = inputs.iter().map(|(_, columns)| rows(columns)).collect();
+    let arguments = Arguments::new().q(Array::Rows(&rows[0])).qd(Array::Rows(&rows[1])).tau(Array::Rows(&rows[2]));
+    let [mut q, mut qd] = [(); 2].map(|()| vec![number(0.0); samples * steps * dof]);
+    arm.rollout(&Rollout::new(steps, STEP), samples, &arguments, &mut q, &mut qd)?;
+    let of_sample = steps * dof;
+    let written = (0..of_sample).filter(|element| (element / dof + 1).is_multiple_of(every));
+    let column =
+        |numbers: &[T], element: usize| (0..samples).map(|sample| numbers[sample * of_sample + element]).collect();
+    let columns: Vec<Vec<T>> = [&q, &qd]
+        .into_iter()
+        .flat_map(|numbers| written.clone().map(|element| column(numbers, element)).collect::<Vec<Vec<T>>>())
+        .collect();
+    Ok(columns.concat())
 }
 
 /// What the processor computes, by columns.

@@ -43,7 +43,7 @@ pub use heading::{GENERATED, Heading};
 pub use inert::{markdown, title, verbatim};
 pub use listing::{Folds, Line, Listing, Section, Selection, listing, reason};
 pub use own_tests::{Golden, c_tests, rust_tests, without_c_tests};
-pub use ptx::ptx;
+pub use ptx::{is_for_rollouts, ptx};
 pub use steps::steps;
 pub use syntax::Precision;
 pub use table::{angle, operations_table};

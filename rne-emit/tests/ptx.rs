@@ -1,13 +1,11 @@
 //! Kernels of PTX compute what the processor computes, to the bit, in whatever order a batch lies in memory.
 
-mod ptx_interpreter;
-
 use std::path::Path;
 
 use ptx_interpreter::{Real, read};
 use rne_codegen::{Compiler, Form, Function, Interpreter};
 use rne_emit::{Additions, Precision, Prefix, ptx};
-use rne_machine::{Arguments, Array, CompiledArm, Destination, Number};
+use rne_machine::{Arguments, Array, CompiledArm, Destination, Number, Rollout};
 use rne_runtime::VectorUnit;
 use rne_runtime::machine::Kernel;
 
@@ -180,4 +178,91 @@ fn rows_that_are_too_long_for_shared_memory_stay_where_they_are() {
     }
     compare::<f64>(&arm, Function::InverseDynamicsDerivatives, Precision::Double, f64::from);
     compare::<f32>(&arm, Function::InverseDynamicsDerivatives, Precision::Single, |x| x);
+}
+
+/// A rollout on the processor and its kernel: the states after each step, and those after some steps alone.
+fn compare_rollout<T: Number + Real>(arm: &CompiledArm, function: Function, precision: Precision, of: fn(f32) -> T) {
+    let program = arm.function(function).expect("a function of the arm").program();
+    let (prefix, additions) = (Prefix::of(arm.robot()), Additions { rollout: true, ..Additions::default() });
+    let text = ptx(arm.robot(), std::slice::from_ref(program), precision, &prefix, &additions).expect("text");
+    let kernels = read(&text);
+    assert_eq!(kernels.len(), 4);
+    let name = program.name.replace("forward_dynamics", "rollout");
+    let (dof, steps, step) = (arm.dof(), 5, 0.004_f32);
+    for count in [1, 31, 67] {
+        let mut random = fastrand::Rng::with_seed(5);
+        // a mass, its centre and a symmetric tensor are given as a payload
+        let arrays = arm.function(function).expect("a function of the arm").arguments().to_vec();
+        let inputs: Vec<(&str, Vec<T>)> = arrays
+            .iter()
+            .map(|&(array, elements)| {
+                let elements = if array == "tau" { elements * steps } else { elements };
+                let number = |_| of(if array == "payload" { random.f32() } else { 2.0 * random.f32() - 1.0 });
+                (array, (0..count * elements).map(number).collect())
+            })
+            .collect();
+        let mut arguments = Arguments::new();
+        for (array, numbers) in &inputs {
+            arguments = arguments.with(array, Array::Rows(numbers)).expect("an argument");
+        }
+        let [mut q, mut qd] = [(); 2].map(|()| vec![of(0.0); count * steps * dof]);
+        arm.rollout(&Rollout::new(steps, step.into()), count, &arguments, &mut q, &mut qd).expect("states");
+        if !Kernel::of::<f64>(VectorUnit::widest()).is_fused {
+            eprintln!("this processor has no fused multiply-add to compare with");
+            return;
+        }
+        for (every, end) in [1, 2, 5].into_iter().flat_map(|every| ["columns", "rows"].map(|end| (every, end))) {
+            let kept = steps / every;
+            let in_order = |numbers: &[T]| {
+                let of_sample = numbers.len() / count;
+                match end {
+                    "columns" => (0..numbers.len()).map(|at| numbers[at % count * of_sample + at / count]).collect(),
+                    _ => numbers.to_vec(),
+                }
+            };
+            let given: Vec<Vec<T>> = inputs.iter().map(|(_, numbers)| in_order(numbers)).collect();
+            let others = [of(step).bits(), steps as u64, every as u64, count as u64];
+            let kernel = &kernels[&format!("{}_{name}_{end}", prefix.as_str())];
+            let found = kernel.run_with(&given, &[count * kept * dof; 2], &others, 32);
+            for (found, all) in found.iter().zip([&q, &qd]) {
+                let written = |state: &(usize, &T)| (state.0 / dof % steps + 1).is_multiple_of(every);
+                let written: Vec<T> = all
+                    .iter()
+                    .enumerate()
+                    .filter(|state| written(state) && state.0 / dof % steps < kept * every)
+                    .map(|state| *state.1)
+                    .collect();
+                let bits = |numbers: &[T]| numbers.iter().map(|number| number.bits()).collect::<Vec<_>>();
+                assert_eq!(bits(found), bits(&in_order(&written)), "{name} {end}, {count} samples, every {every}");
+            }
+        }
+    }
+}
+
+#[test]
+fn rollouts_have_the_bits_of_the_processor() {
+    let of_sliders = shipped("gantry_ppp");
+    for arm in [shipped("panda"), shipped("stanford"), of_sliders, of_file("docs/tree.yaml")] {
+        compare_rollout::<f64>(&arm, Function::ForwardDynamics, Precision::Double, f64::from);
+        compare_rollout::<f32>(&arm, Function::ForwardDynamics, Precision::Single, |x| x);
+    }
+    let arm = shipped("puma560");
+    compare_rollout::<f64>(&arm, Function::ForwardDynamicsWithPayload, Precision::Double, f64::from);
+    compare_rollout::<f32>(&arm.in_form(Form::SevenSteps), Function::ForwardDynamics, Precision::Single, |x| x);
+}
+
+/// A rod that falls, in closed form: nothing of it is written twice.
+#[test]
+fn a_rollout_of_a_slider_is_a_sum() {
+    let yaml = "{format: 1, name: slider, source: own, convention: standard, gravity: [0, 0, -10], joints: \
+                [{type: prismatic, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 2, com: [0, 0, 0]}}]}";
+    let arm = CompiledArm::from_yaml(yaml).expect("an arm");
+    let program = arm.function(Function::ForwardDynamics).expect("a function").program();
+    let (prefix, additions) = (Prefix::of(arm.robot()), Additions { rollout: true, ..Additions::default() });
+    let text = ptx(arm.robot(), std::slice::from_ref(program), Precision::Double, &prefix, &additions).expect("text");
+    let others = [0.5_f64.to_bits(), 4, 1, 1];
+    let arguments = [vec![1.0], vec![3.0], vec![24.0, 24.0, 16.0, 20.0]];
+    let found = read(&text)["slider_rollout_rows"].run_with(&arguments, &[4, 4], &others, 64);
+    // accelerations 2, 2, -2, 0 m/s²; steps of 0.5 s
+    assert_eq!(found, [[3.0, 5.5, 7.5, 9.5], [4.0, 5.0, 4.0, 4.0]]);
 }

@@ -42,10 +42,12 @@ const PROCESSORS: [&str; 3] = ["sm_70", "sm_80", "sm_90"];
 const MOST_REGISTERS: usize = 128;
 
 /// Functions beside the torques of arms: robot files, and what is taken of them.
-const OTHERS: [(&str, &str); 6] = [
+const OTHERS: [(&str, &str); 8] = [
     ("robots/panda.yaml", "mass_matrix"),
     ("robots/panda.yaml", "forward_dynamics"),
     ("robots/panda.yaml", "inverse_dynamics_derivatives"),
+    ("robots/panda.yaml", "rollout"),
+    ("robots/puma560.yaml", "rollout"),
     ("benches/trees/g1.yaml", "inverse_dynamics"),
     ("benches/trees/g1_floating.yaml", "inverse_dynamics_of_floating_base"),
     ("benches/trees/g1_floating.yaml", "floating_forward_dynamics"),
@@ -76,12 +78,13 @@ impl Gpu {
         for (path, function) in torques.chain(OTHERS) {
             for (real, name) in [("float", "f32"), ("double", "f64")] {
                 let text = folder.path().join("kernel.ptx");
-                cmd!(shell, "{rne} emit {path} --lang ptx --function {function} --real {real} --output {text} --force")
+                let asked = if function == "rollout" { vec!["--rollout"] } else { vec!["--function", function] };
+                cmd!(shell, "{rne} emit {path} --lang ptx {asked...} --real {real} --output {text} --force")
                     .quiet()
                     .ignore_stderr()
                     .run()?;
                 let robot = Path::new(path).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-                let found = PROCESSORS.map(|processor| assembled(&ptxas, processor, &text, folder.path()));
+                let found = PROCESSORS.map(|processor| assembled(&ptxas, processor, function, &text, folder.path()));
                 let found: Vec<Assembled> = found.into_iter().collect::<Result<_>>()?;
                 let joints = machine::read(path)?.matches("dh:").count();
                 let is_judged = function == "inverse_dynamics" && name == "f32" && (6..=7).contains(&joints);
@@ -146,8 +149,8 @@ fn shipped_arms() -> Result<Vec<String>> {
     Ok(paths)
 }
 
-/// Assembles a file of two kernels; returns the one that takes columns.
-fn assembled(ptxas: &Path, processor: &str, text: &Path, folder: &Path) -> Result<Assembled> {
+/// Assembles a file of kernels; returns that of a function, or the rollout, that takes columns.
+fn assembled(ptxas: &Path, processor: &str, function: &str, text: &Path, folder: &Path) -> Result<Assembled> {
     let code = folder.join("kernel.cubin");
     let output = Command::new(ptxas)
         .args(["--verbose", "--gpu-name", processor])
@@ -159,7 +162,8 @@ fn assembled(ptxas: &Path, processor: &str, text: &Path, folder: &Path) -> Resul
     if !output.status.success() {
         bail!("{}: {said}", text.display());
     }
-    let of_columns = said.split("Compiling entry function").find(|part| part.contains("_columns' for"));
+    let end = format!("{function}_columns");
+    let of_columns = said.split("Compiling entry function").find(|part| part.contains(&format!("{end}' for")));
     let of_columns = of_columns.with_context(|| format!("no kernel of columns: {said}"))?;
     let number_before = |words: &str| {
         let before = of_columns.split(words).next()?;
@@ -167,7 +171,8 @@ fn assembled(ptxas: &Path, processor: &str, text: &Path, folder: &Path) -> Resul
     };
     let spilled: Option<usize> = number_before(" bytes spill stores");
     let registers: Option<usize> = number_before(" registers");
-    let instructions = instructions(&fs::read(&code)?).context("the code has no section of the kernel")?;
+    let instructions =
+        instructions(&fs::read(&code)?, end.as_bytes()).context("the code has no section of the kernel")?;
     Ok(Assembled {
         registers: registers.with_context(|| said.clone())?,
         spilled: spilled.with_context(|| said.clone())?,
@@ -175,8 +180,8 @@ fn assembled(ptxas: &Path, processor: &str, text: &Path, folder: &Path) -> Resul
     })
 }
 
-/// Instructions of the kernel of columns in a file of format ELF: each has 16 bytes.
-fn instructions(code: &[u8]) -> Option<usize> {
+/// Instructions of the kernel whose name ends so, in a file of format ELF: each has 16 bytes.
+fn instructions(code: &[u8], end: &[u8]) -> Option<usize> {
     let number = |at: usize, bytes: usize| -> Option<usize> {
         let bytes = code.get(at..at + bytes)?;
         bytes.iter().rev().try_fold(0_usize, |number, byte| number.checked_mul(256)?.checked_add((*byte).into()))
@@ -187,7 +192,7 @@ fn instructions(code: &[u8]) -> Option<usize> {
         let header = sections + index * size;
         let name = code.get(names + number(header, 4)?..)?;
         let name = name.split(|byte| *byte == 0).next()?;
-        if name.starts_with(b".text.") && name.ends_with(b"_columns") {
+        if name.starts_with(b".text.") && name.ends_with(end) {
             return Some(number(header + 0x20, 8)? / 16);
         }
     }
@@ -200,7 +205,7 @@ mod tests {
 
     #[test]
     fn what_is_no_code_has_no_instructions() {
-        assert_eq!(instructions(b"no ELF"), None);
-        assert_eq!(instructions(&[0; 64]), None);
+        assert_eq!(instructions(b"no ELF", b""), None);
+        assert_eq!(instructions(&[0; 64], b""), None);
     }
 }

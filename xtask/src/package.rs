@@ -28,7 +28,7 @@ pub(crate) struct Package {
 }
 
 /// The crates that are published, by the order in which they depend on each other.
-const CRATES: [&str; 20] = [
+const CRATES: [&str; 21] = [
     "rne-model",
     "rne-robots",
     "rne-runtime",
@@ -37,6 +37,7 @@ const CRATES: [&str; 20] = [
     "rne-emit",
     "rne-macro",
     "rne-machine",
+    "rne-gpu",
     "rne-diagnose",
     "rne-inspection",
     "rne-symbolic",

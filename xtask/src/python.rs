@@ -96,7 +96,9 @@ impl Python {
         let python = place.user(&wheel, &packages, self.install)?;
         let shell = &place.shell;
         let program = place.command_line()?;
-        let tests = cmd!(shell, "{python} -m pytest -q -p no:cacheprovider doors/python/tests").env("RNE", program);
+        let driver = place.fake_driver()?;
+        let tests = cmd!(shell, "{python} -m pytest -q -p no:cacheprovider doors/python/tests");
+        let tests = tests.env("RNE", program).env("RNE_LIBCUDA", driver);
         let mut holds = tests.quiet().run().is_ok();
         if self.notebooks {
             holds &= cmd!(shell, "{python} doors/python/notebooks/run.py").quiet().run().is_ok();
@@ -187,6 +189,14 @@ impl Place {
             .quiet()
             .run()?;
         Ok(machine::target_folder("target")?.join("release").join(format!("rne{}", std::env::consts::EXE_SUFFIX)))
+    }
+
+    /// The library that the tests load in the place of NVIDIA's driver.
+    fn fake_driver(&self) -> Result<PathBuf> {
+        let shell = &self.shell;
+        machine::without_flags(cmd!(shell, "cargo build --quiet --locked --package fake-driver")).quiet().run()?;
+        let name = format!("{}fake_driver{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+        Ok(machine::target_folder("target")?.join("debug").join(name))
     }
 
     /// The environment of the tests with the wheel and these packages, its Python.

@@ -1,8 +1,8 @@
 //! Python's door to rne: any arm at run time, with numpy in and out.
 //!
 //! Thin: [`arm`] has the class, [`dynamics`], [`operational_space`], [`pose`], [`rollout`] and [`insight`] its methods,
-//! [`arrays`] what numpy's arrays are to the machine and [`xla`] what those of JAX are, [`load`] how an arm is read,
-//! [`errors`] what goes wrong.
+//! [`arrays`] what numpy's arrays are to the machine, [`xla`] what those of JAX are and `gpu` what those on a graphics
+//! card are, [`load`] how an arm is read, [`errors`] what goes wrong.
 //! [`logs`], [`identification`], [`watching`] and [`excitation`] are about logs of arms; [`log_errors`] words what goes
 //! wrong there, and [`interruption`] lets Ctrl-C end them. The package around it is in `rne/`.
 
@@ -12,6 +12,8 @@ mod dynamics;
 mod errors;
 mod excitation;
 mod functions;
+#[cfg(feature = "gpu")]
+mod gpu;
 mod identification;
 mod insight;
 mod interruption;
@@ -38,6 +40,9 @@ mod _rne {
     use super::errors::{EvaluationError, RobotFileError, RobotFileWarning};
     #[pymodule_export]
     use super::excitation::exciting;
+    #[cfg(feature = "gpu")]
+    #[pymodule_export]
+    use super::gpu::GpuArm;
     #[pymodule_export]
     use super::identification::identified;
     #[pymodule_export]

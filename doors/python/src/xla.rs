@@ -67,7 +67,7 @@ fn operands(arm: &CompiledArm, function: Function) -> Vec<Operand> {
 }
 
 /// The shapes of the arrays that a function returns, one behind the other, and whether they are poses.
-fn results(arm: &CompiledArm, function: Function) -> Vec<(Vec<usize>, bool)> {
+pub(crate) fn results(arm: &CompiledArm, function: Function) -> Vec<(Vec<usize>, bool)> {
     fn of(layout: &Layout) -> Vec<(Vec<usize>, bool)> {
         match layout {
             Layout::Number => vec![(vec![], false)],

@@ -191,6 +191,7 @@ impl Arguments {
         precision: Precision,
     ) -> Result<CCode, Failure> {
         let request = Request {
+            rollout: false,
             casadi: false,
             acados: false,
             runge_kutta: false,

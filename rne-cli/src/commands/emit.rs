@@ -35,8 +35,7 @@ Examples:
 Without --function rne writes the functions of the trait InverseDynamics. If the
 file of --check is out of date, rne exits with status 1 and prints the command
 that updates the file. C code needs no library. On standard output, the C header
-and the C source are one file. A C compiler with the option -DRNE_TEST makes a
-program that runs the tests.")]
+and the C source are one file. C compiled with -DRNE_TEST runs the tests.")]
 #[allow(clippy::struct_excessive_bools)] // options of a command
 pub(crate) struct Arguments {
     /// Robot file, or a name from `rne list`
@@ -76,6 +75,9 @@ pub(crate) struct Arguments {
     /// Add a step of Runge-Kutta to C code: runge_kutta_step
     #[arg(long)]
     runge_kutta: bool,
+    /// Add kernels to PTX that roll out forward dynamics
+    #[arg(long)]
+    rollout: bool,
     /// Add functions for CasADi, in double precision; docs/optimal-control.md lists those with derivatives
     #[arg(long, conflicts_with = "run_time")]
     casadi: bool,
@@ -229,6 +231,12 @@ fn emitted(
              vector or a matrix, such as {TYPED}--function inverse_dynamics,forward_dynamics{TYPED:#}"
         )));
     }
+    if arguments.rollout && !programs.iter().any(|program| rne_emit::is_for_rollouts(program.function)) {
+        return Err(Failure::usage(format_args!(
+            "none of these functions can be rolled out; ask for \
+             {TYPED}--function forward_dynamics,forward_dynamics_with_payload{TYPED:#}, or for one of the two"
+        )));
+    }
     let precision = if arguments.casadi { Real::Double } else { arguments.real.unwrap_or(Real::Float) }.precision();
     let request = Request {
         file: &arguments.file,
@@ -239,6 +247,7 @@ fn emitted(
         limits: arguments.limits,
         runge_kutta: arguments.runge_kutta,
         names: arguments.names_joints(robot),
+        rollout: arguments.rollout,
         casadi: arguments.casadi,
         acados: arguments.acados,
         tests: arguments.tests,
@@ -317,6 +326,7 @@ fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
         ("--friction", arguments.friction, &[C], "in Rust, the derive `Actuation` computes friction"),
         ("--limits", arguments.limits, &[C], "in Rust, `f64::clamp` limits a torque"),
         ("--runge-kutta", arguments.runge_kutta, &[C], "in Rust, every type with `ForwardDynamics` has the step"),
+        ("--rollout", arguments.rollout, &[Ptx], "`CompiledArm::rollout` rolls samples out on the processor"),
         ("--names", arguments.names, &[Rust, C], "code for processors of graphics has functions alone"),
         ("--tests", arguments.tests, &[Rust, C], "code for processors of graphics has functions alone"),
         ("--casadi", arguments.casadi, &[C], "CasADi calls functions of C"),
@@ -356,6 +366,7 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
         _ if arguments.runge_kutta && *function == Function::ForwardDynamics => true,
         // with its derivatives
         [] if arguments.runge_kutta => *function == Function::ForwardDynamicsDerivatives,
+        [] if arguments.rollout => *function == Function::ForwardDynamics,
         [] if arguments.casadi && robot.closed.is_empty() => {
             matches!(function, Function::InverseDynamics | Function::ForwardDynamics)
         }
@@ -544,6 +555,7 @@ fn command(arguments: &Arguments, out: &Path) -> String {
         (" --friction", arguments.friction),
         (" --limits", arguments.limits),
         (" --runge-kutta", arguments.runge_kutta),
+        (" --rollout", arguments.rollout),
         (" --names", arguments.names),
         (" --with-sin-cos", arguments.with_sin_cos),
     ] {

@@ -50,6 +50,7 @@ pub(super) struct Request<'a> {
     pub(super) friction: bool,
     pub(super) limits: bool,
     pub(super) names: bool,
+    pub(super) rollout: bool,
     pub(super) casadi: bool,
     pub(super) acados: bool,
     pub(super) runge_kutta: bool,
@@ -64,7 +65,8 @@ pub(super) fn c_code(request: &Request<'_>, robot: &Robot, programs: &[Program])
     let origin = origin(request);
     let friction = if request.friction { Some(friction(file, robot)?) } else { None };
     let friction = friction.as_deref();
-    let additions = Additions { origin: Some(&origin), friction, limits, names, casadi, acados, runge_kutta };
+    let additions =
+        Additions { origin: Some(&origin), friction, limits, names, casadi, acados, runge_kutta, ..Additions::default() };
     if limits && robot.independent_joints().all(|joint| joint.limits.effort.is_none()) {
         let has_follower = robot.joints.iter().any(|joint| joint.limits.effort.is_some());
         let follower =
@@ -103,7 +105,7 @@ pub(super) fn for_gpu(
     programs: &[Program],
 ) -> Result<String, Failure> {
     let origin = origin(request);
-    let additions = Additions { origin: Some(&origin), ..Additions::default() };
+    let additions = Additions { origin: Some(&origin), rollout: request.rollout, ..Additions::default() };
     let prefix = request.prefix.cloned().unwrap_or_else(|| Prefix::of(robot));
     let text = match language {
         ForGpu::Cuda => rne_emit::cuda(robot, programs, &prefix, &additions),

@@ -374,6 +374,22 @@ fn functions_are_chosen() {
 }
 
 #[test]
+fn rollouts_are_kernels_of_ptx() {
+    let emit = ["emit", "robots/puma560.yaml", "--rollout"];
+    let text = fine(&[&emit[..], &["--lang", "ptx", "--real", "double"]].concat());
+    for end in ["columns", "rows"] {
+        assert!(text.contains(&format!(".visible .entry puma560_forward_dynamics_{end}(\n")), "{text}");
+        assert!(text.contains(&format!(".visible .entry puma560_rollout_{end}(\n")), "{text}");
+    }
+    assert!(text.contains("    .param .f64 step,\n    .param .u32 steps,\n    .param .u32 every,\n"), "{text}");
+    let loaded = ["--lang", "ptx", "--function", "forward_dynamics_with_payload"];
+    assert!(fine(&[&emit[..], &loaded].concat()).contains(".entry puma560_rollout_with_payload_rows("));
+    fails(2, &emit, &["--rollout", "is for --lang ptx", "CompiledArm::rollout"]);
+    let torques = ["--lang", "ptx", "--function", "inverse_dynamics"];
+    fails(2, &[&emit[..], &torques].concat(), &["can be rolled out", "--function forward_dynamics"]);
+}
+
+#[test]
 fn own_files_are_overwritten_and_others_are_not() {
     let folder = folder("overwriting");
     let out = path(&folder, "arm.rs");

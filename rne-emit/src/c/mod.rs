@@ -104,6 +104,9 @@ pub struct Additions<'a> {
     /// Whether there is a function `runge_kutta_step`, and one for its derivatives where `forward_dynamics_derivatives`
     /// is among the programs. Needs `forward_dynamics`.
     pub runge_kutta: bool,
+    /// Whether [`ptx`](crate::ptx) also writes kernels of rollouts, for the programs for whose functions
+    /// [`is_for_rollouts`](crate::is_for_rollouts) is true.
+    pub rollout: bool,
 }
 
 /// The code of [`c_code`], with additions.

@@ -5,17 +5,13 @@ use std::collections::HashMap;
 use std::fmt::Write as _;
 
 use rne_codegen::fma::{self, Fusing};
-use rne_codegen::{
-    ArgumentArray, Contraction, Form, Layout, Name, Negated, Operator, Program, Value, ValueId, argument_parts,
-};
+use rne_codegen::{ArgumentArray, Form, Layout, Program, Value, ValueId, argument_parts};
 
-use super::{Arrangement, order};
+use super::Arrangement;
+use super::writing::Writing;
 use crate::c::{ConstantTooLarge, comment, elements_of};
 use crate::syntax::Precision;
 use crate::wrap::{WIDTH, fill};
-
-/// Sine and cosine as a block of instructions; ANGLE, SINE and COSINE are replaced by registers.
-const SIN_COS: [&str; 2] = [include_str!("sin_cos_f32.ptx"), include_str!("sin_cos_f64.ptx")];
 
 /// Threads of a block whose rows go through shared memory, and the bytes of it that every processor has for a block.
 const BLOCK: usize = 64;
@@ -40,11 +36,11 @@ argument_parts!(abouts);
 
 /// A program as its kernels compute it, and its arrays.
 pub(super) struct Kernel<'p> {
-    program: Cow<'p, Program>,
-    precision: Precision,
-    arrays: Vec<ArgumentArray>,
+    pub(super) program: Cow<'p, Program>,
+    pub(super) precision: Precision,
+    pub(super) arrays: Vec<ArgumentArray>,
     /// The literals of constants, by their values.
-    literals: HashMap<ValueId, String>,
+    pub(super) literals: HashMap<ValueId, String>,
 }
 
 impl<'p> Kernel<'p> {
@@ -70,9 +66,14 @@ impl<'p> Kernel<'p> {
         Ok(Self { program, precision, arrays, literals })
     }
 
+    /// The number type, and the bytes of a number.
+    pub(super) fn number(&self) -> (&'static str, usize) {
+        if self.precision == Precision::Double { ("f64", 8) } else { ("f32", 4) }
+    }
+
     /// The text of the kernel of this name.
     pub(super) fn text(&self, name: &str, arrangement: Arrangement) -> String {
-        let (real, bytes) = if self.precision == Precision::Double { ("f64", 8) } else { ("f32", 4) };
+        let (real, bytes) = self.number();
         let arrays = self.arrays.iter().map(|array| (format!("in_{}", array.name), array.elements.len()));
         let is_used = self.arrays.iter().map(|array| array.elements.iter().any(Option::is_some));
         let arrays: Vec<_> = arrays.zip(is_used).map(|((name, length), is_used)| (name, length, is_used)).collect();
@@ -81,18 +82,8 @@ impl<'p> Kernel<'p> {
         let staged = (staged + outputs) * bytes * BLOCK;
         let is_staged = arrangement == Arrangement::Rows && outputs > WIDE && staged <= MOST_SHARED;
         let memory = if is_staged { "shared" } else { "global" };
-        let mut writing = Writing {
-            kernel: self,
-            arrangement,
-            memory,
-            real,
-            bytes,
-            registers: Vec::new(),
-            addresses: 0,
-            known: vec![String::new(); self.program.values.len()],
-            body: String::new(),
-        };
-        writing.values();
+        let mut writing = Writing::of(self, arrangement, memory);
+        writing.values(true);
         let Writing { registers, addresses, body, .. } = writing;
         let names = arrays.iter().map(|(name, ..)| name.as_str()).chain(["out"]);
         let parameters: Vec<String> = names.map(|array| format!("    .param .u64 {array}")).collect();
@@ -258,190 +249,5 @@ impl Staging {
              mul.lo.s32 %left, %count, {length};\n    sub.s32 %left, %left, %index;\n",
             length * bytes
         )
-    }
-}
-
-/// The instructions of a kernel.
-struct Writing<'k, 'p> {
-    kernel: &'k Kernel<'p>,
-    arrangement: Arrangement,
-    /// The memory in which a thread finds its arguments and leaves its results.
-    memory: &'static str,
-    real: &'static str,
-    bytes: usize,
-    registers: Vec<String>,
-    addresses: usize,
-    /// The register or the literal of each value; empty before it is computed.
-    known: Vec<String>,
-    body: String,
-}
-
-impl Writing<'_, '_> {
-    /// All values in their order; an argument is read just before its first use, and a result is written as soon as it
-    /// is known, so that few registers are in use at once.
-    fn values(&mut self) {
-        let program = &*self.kernel.program;
-        let mut results: Vec<Vec<usize>> = vec![Vec::new(); program.values.len()];
-        for (index, output) in program.outputs.iter().enumerate() {
-            results[output.value.index()].push(index);
-        }
-        let turns: HashMap<_, _> = program
-            .values
-            .iter()
-            .filter_map(|(id, value)| match value {
-                Value::Sine(angle) => Some(((angle, 0), id)),
-                Value::Cosine(angle) => Some(((angle, 1), id)),
-                _ => None,
-            })
-            .collect();
-        for id in order::of(program) {
-            let value = program.values.get(id);
-            match value {
-                Value::Sine(angle) | Value::Cosine(angle) => self.turn(angle, [0, 1].map(|of| turns.get(&(angle, of)))),
-                // read where they are used
-                Value::Argument | Value::Constant(_) => {}
-                _ => self.compute(id, value),
-            }
-            for &index in &results[id.index()] {
-                let result = self.operand(id);
-                let register = if result.starts_with('0') {
-                    let register = self.register(None, id);
-                    let _ = writeln!(self.body, "    mov.{} {register}, {result};", self.real);
-                    self.known[id.index()].clone_from(&register);
-                    register
-                } else {
-                    result
-                };
-                let place = self.place("%out", index);
-                let _ = writeln!(self.body, "    st.{}.{} {place}, {register};", self.memory, self.real);
-            }
-        }
-    }
-
-    /// A register that is declared: `$w2_z` for a number with a name, which no word of the language begins with.
-    fn register(&mut self, name: Option<Name>, id: ValueId) -> String {
-        let register = name.map_or_else(|| format!("$_{}", id.index()), |name| format!("${name}"));
-        self.registers.push(register.clone());
-        register
-    }
-
-    /// The address of an element in square brackets.
-    fn place(&mut self, array: &str, element: usize) -> String {
-        match (self.arrangement, element * self.bytes) {
-            (_, 0) => format!("[{array}]"),
-            (Arrangement::Rows, offset) => format!("[{array}+{offset}]"),
-            (Arrangement::Columns, offset) => {
-                let address = self.addresses;
-                self.addresses += 1;
-                let _ = writeln!(self.body, "    mad.wide.u32 %a{address}, %states, {offset}, {array};");
-                format!("[%a{address}]")
-            }
-        }
-    }
-
-    /// The register or the literal of a value.
-    fn operand(&mut self, id: ValueId) -> String {
-        let program = &*self.kernel.program;
-        let found = &self.known[id.index()];
-        if !found.is_empty() {
-            return found.clone();
-        }
-        let operand = match program.values.get(id) {
-            Value::Constant(_) => self.kernel.literals.get(&id).cloned().unwrap_or_default(),
-            Value::Same(of) => self.operand(of),
-            _ => self.argument(id),
-        };
-        self.known[id.index()].clone_from(&operand);
-        operand
-    }
-
-    /// Reads an argument.
-    fn argument(&mut self, id: ValueId) -> String {
-        let name = self.kernel.program.values.name(id);
-        let arrays = self.kernel.arrays.iter();
-        let mut places = arrays.filter_map(|array| {
-            let element = array.elements.iter().position(|element| *element == name)?;
-            Some((format!("%in_{}", array.name), element))
-        });
-        let (array, element) = places.next().unwrap_or_default();
-        let register = self.register(name, id);
-        let place = self.place(&array, element);
-        let load = if self.memory == "shared" { "ld.shared" } else { "ld.global.nc" };
-        let _ = writeln!(self.body, "    {load}.{} {register}, {place};", self.real);
-        register
-    }
-
-    /// Sine and cosine of an angle at once, unless they are known.
-    fn turn(&mut self, angle: ValueId, turned: [Option<&ValueId>; 2]) {
-        if turned.iter().flatten().any(|id| !self.known[id.index()].is_empty()) {
-            return;
-        }
-        let of = self.operand(angle);
-        let [sine, cosine] = [(turned[0], "sine"), (turned[1], "cosine")].map(|(id, unused)| match id {
-            Some(&id) => {
-                let register = self.register(self.kernel.program.values.name(id), id);
-                self.known[id.index()].clone_from(&register);
-                register
-            }
-            None => unused.to_owned(),
-        });
-        let block = SIN_COS[usize::from(self.kernel.precision == Precision::Double)];
-        let block = block.replace("COSINE", &cosine).replace("SINE", &sine).replace("ANGLE", &of);
-        self.body.push_str(&block);
-    }
-
-    fn compute(&mut self, id: ValueId, value: Value) {
-        let real = self.real;
-        let line = match value {
-            // Aliases, and the negative of a literal.
-            Value::Same(of) => {
-                self.known[id.index()] = self.operand(of);
-                return;
-            }
-            Value::Negative(a) => format!("neg.{real} DST, {}", self.operand(a)),
-            Value::Binary(operator, a, b) => {
-                let operation = match operator {
-                    Operator::Sum => "add",
-                    Operator::Difference => "sub",
-                    Operator::Product => "mul",
-                    Operator::Quotient => "div",
-                };
-                format!("{operation}.rn.{real} DST, {}, {}", self.operand(a), self.operand(b))
-            }
-            Value::Fused(Contraction { factors: [x, y], addend, negated }) => {
-                let [mut x, y, mut z] = [x, y, addend].map(|id| self.operand(id));
-                match negated {
-                    Some(Negated::Factor) => x = self.negative(id, &x),
-                    Some(Negated::Addend) => z = self.negative(id, &z),
-                    None => {}
-                }
-                format!("fma.rn.{real} DST, {x}, {y}, {z}")
-            }
-            Value::BySign(operands) => {
-                let zero = if real == "f64" { "0d0000000000000000" } else { "0f00000000" };
-                let [x, a, b] = operands.map(|operand| self.operand(operand));
-                let register = self.register(self.kernel.program.values.name(id), id);
-                let _ = writeln!(
-                    self.body,
-                    "    setp.gt.{real} %is_above, {x}, {zero};\n    setp.lt.{real} %is_below, {x}, {zero};\n    \
-                     selp.{real} {register}, {b}, {zero}, %is_below;\n    \
-                     selp.{real} {register}, {a}, {register}, %is_above;"
-                );
-                self.known[id.index()] = register;
-                return;
-            }
-            Value::Argument | Value::Constant(_) | Value::Sine(_) | Value::Cosine(_) => return,
-        };
-        let register = self.register(self.kernel.program.values.name(id), id);
-        let _ = writeln!(self.body, "    {};", line.replace("DST", &register));
-        self.known[id.index()] = register;
-    }
-
-    /// The negative of an operand of the value `id`; the assembler makes it a part of the instruction that uses it.
-    fn negative(&mut self, id: ValueId, operand: &str) -> String {
-        let register = format!("%n{}", id.index());
-        self.registers.push(register.clone());
-        let _ = writeln!(self.body, "    neg.{} {register}, {operand};", self.real);
-        register
     }
 }

@@ -6,6 +6,8 @@
 
 mod kernel;
 mod order;
+mod rollout;
+mod writing;
 
 use std::fmt::Write as _;
 
@@ -17,6 +19,7 @@ use crate::c::{Additions, ConstantTooLarge, File, Prefix, comment, header};
 use crate::syntax::Precision;
 use kernel::Kernel;
 pub(crate) use kernel::heading;
+pub use rollout::is_for_rollouts;
 
 /// How the numbers of a batch lie in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +70,9 @@ pub fn ptx(
         for (arrangement, end) in [(Arrangement::Columns, "columns"), (Arrangement::Rows, "rows")] {
             let name = format!("{}_{}_{end}", file.prefix, program.name);
             let _ = write!(text, "\n{}", kernel.text(&name, arrangement));
+        }
+        if additions.rollout {
+            text.push_str(&rollout::text(prefix.as_str(), &kernel));
         }
     }
     Ok(text)

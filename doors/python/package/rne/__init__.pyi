@@ -492,6 +492,8 @@ class Arm:
         """Functions of this arm for JAX: `jit`, `vmap`, `grad`, `jacfwd` and `jacrev` of them work, on the CPU."""
     def torch(self, *, frame: str | None = ...) -> Any:
         """Functions of this arm for PyTorch, with derivatives in reverse mode, on the CPU."""
+    def gpu(self, device: int = ...) -> Any:
+        """Functions of this arm on a graphics card of NVIDIA, for arrays of PyTorch, CuPy and JAX that are on it."""
     def diagnose(
         self, q: Sequence[float], qd: Sequence[float], qdd: Sequence[float], tau: Sequence[float], *,
         tolerance: float = ...,

@@ -4,8 +4,9 @@
 use std::collections::HashMap;
 
 /// A kernel as it was read.
-pub(crate) struct Kernel {
-    parameters: Vec<String>,
+#[derive(Debug)]
+pub struct Kernel {
+    parameters: Vec<Parameter>,
     code: Vec<Instruction>,
     registers: usize,
     /// Bytes of the memory that a block shares.
@@ -14,12 +15,45 @@ pub(crate) struct Kernel {
     is_of_64: bool,
 }
 
+/// A parameter of a kernel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Parameter {
+    /// Its name.
+    pub name: String,
+    /// The bytes of its value: 4 or 8.
+    pub bytes: usize,
+}
+
+/// The memory of the card.
+pub trait Memory {
+    /// The number of some bytes at an address; panics where there is no such memory.
+    fn load(&self, address: u64, bytes: usize) -> u64;
+
+    /// Writes a number of some bytes to an address; panics where there is no such memory.
+    fn store(&mut self, address: u64, bytes: usize, number: u64);
+}
+
+impl Memory for Vec<u8> {
+    fn load(&self, address: u64, bytes: usize) -> u64 {
+        let at = usize::try_from(address).expect("an address");
+        let mut word = [0; 8];
+        word[..bytes].copy_from_slice(&self[at..at + bytes]);
+        u64::from_le_bytes(word)
+    }
+
+    fn store(&mut self, address: u64, bytes: usize, number: u64) {
+        let at = usize::try_from(address).expect("an address");
+        self[at..at + bytes].copy_from_slice(&number.to_le_bytes()[..bytes]);
+    }
+}
+
 /// Where a thread is.
 struct Thread {
     registers: Vec<Option<u64>>,
     next: usize,
 }
 
+#[derive(Debug)]
 struct Instruction {
     /// The predicate under which it is executed.
     guard: Option<usize>,
@@ -27,6 +61,7 @@ struct Instruction {
     operands: Vec<Operand>,
 }
 
+#[derive(Debug)]
 enum Operand {
     Register(usize),
     Bits(u64),
@@ -37,10 +72,16 @@ enum Operand {
     Special(String),
     /// The low and the high half of 64 bits.
     Halves(usize, usize),
+    /// The place of an instruction in the code.
+    Place(usize),
 }
 
 /// Reads all kernels of a module, by their names.
-pub(crate) fn read(module: &str) -> HashMap<String, Kernel> {
+///
+/// # Panics
+/// When the text is not what `rne emit --lang ptx` writes.
+#[must_use]
+pub fn read(module: &str) -> HashMap<String, Kernel> {
     let code: String =
         module.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n");
     let mut directives = code.split(".visible .entry ");
@@ -52,11 +93,11 @@ pub(crate) fn read(module: &str) -> HashMap<String, Kernel> {
 fn kernel(text: &str) -> (String, Kernel) {
     let (name, rest) = text.split_once('(').expect("parameters");
     let (parameters, rest) = rest.split_once(')').expect("the end of the parameters");
-    let parameters: Vec<String> = parameters
+    let parameters: Vec<Parameter> = parameters
         .split(',')
         .map(|parameter| match parameter.split_whitespace().collect::<Vec<_>>()[..] {
-            [".param", ".u64", name] => name.to_owned(),
-            [".param", ".u32", "states"] => "states".to_owned(),
+            [".param", ".u64" | ".f64", name] => Parameter { name: name.to_owned(), bytes: 8 },
+            [".param", ".u32" | ".f32", name] => Parameter { name: name.to_owned(), bytes: 4 },
             ref other => panic!("{other:?}"),
         })
         .collect();
@@ -65,11 +106,19 @@ fn kernel(text: &str) -> (String, Kernel) {
     let rest = required.or(rest.strip_prefix(".maxntid 256, 1, 1")).expect("the size of a block").trim();
     let body = rest.strip_prefix('{').and_then(|body| body.trim_end().strip_suffix('}')).expect("a body");
     // Braces of `{low, high}` stand in an instruction; others begin and end blocks, whose registers are new each time.
-    let mut reading = Reading { registers: HashMap::new(), count: 0 };
+    let mut reading = Reading { registers: HashMap::new(), count: 0, labels: HashMap::new() };
     let mut shared = 0;
     let mut code = Vec::new();
-    for statement in body.split(';').map(str::trim) {
-        let statement = statement.trim_start_matches(['{', '}', '\n', ' ']).trim();
+    // the places of labels first, for branches lead forwards, too
+    let mut place = 0;
+    let statements = || body.split(';').map(|statement| statement.trim_start_matches(['{', '}', '\n', ' ']).trim());
+    for statement in statements() {
+        let (label, statement) = labelled(statement);
+        reading.labels.extend(label.map(|label| (label.to_owned(), place)));
+        place += usize::from(!statement.is_empty() && !statement.starts_with('.'));
+    }
+    for statement in statements() {
+        let (_, statement) = labelled(statement);
         if let Some(size) = statement.strip_prefix(".shared .align 8 .b8 rows[") {
             shared = size.trim_end_matches(']').parse().expect("a size");
         } else if let Some(declared) = statement.strip_prefix(".reg ") {
@@ -81,9 +130,18 @@ fn kernel(text: &str) -> (String, Kernel) {
     (name.to_owned(), Kernel { parameters, code, registers: reading.count, shared, is_of_64: required.is_some() })
 }
 
+/// A label before a statement, and the statement.
+fn labelled(statement: &str) -> (Option<&str>, &str) {
+    match statement.split_once(':') {
+        Some((label, rest)) => (Some(label), rest.trim_start_matches(['{', '\n', ' '])),
+        None => (None, statement),
+    }
+}
+
 struct Reading {
     registers: HashMap<String, usize>,
     count: usize,
+    labels: HashMap<String, usize>,
 }
 
 impl Reading {
@@ -152,18 +210,21 @@ impl Reading {
         if ["%ctaid.x", "%ntid.x", "%tid.x"].contains(&text) {
             return Operand::Special(text.to_owned());
         }
-        match text.parse() {
-            Ok(number) => Operand::Bits(number),
-            Err(_) => Operand::Register(self.register(text)),
+        match (text.parse(), self.labels.get(text)) {
+            (Ok(number), _) => Operand::Bits(number),
+            (Err(_), Some(&place)) => Operand::Place(place),
+            (Err(_), None) => Operand::Register(self.register(text)),
         }
     }
 }
 
 /// Numbers of a type, as bits of a register.
-pub(crate) trait Real: Copy {
+pub trait Real: Copy {
     /// Bytes of a number.
     const BYTES: usize;
+    /// The number with these bits.
     fn of_bits(bits: u64) -> Self;
+    /// The bits of the number.
     fn bits(self) -> u64;
 }
 
@@ -187,25 +248,75 @@ real!(f64, u64);
 const START: usize = 256;
 
 impl Kernel {
+    /// Its parameters.
+    #[must_use]
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// The threads that a block must have, if it must have a certain number.
+    #[must_use]
+    pub fn required_width(&self) -> Option<u32> {
+        self.is_of_64.then_some(64)
+    }
+
     /// Runs blocks of `width` threads over the arguments; returns the array of results. An argument without a number
     /// has the address 0.
-    pub(crate) fn run<T: Real>(&self, arguments: &[Vec<T>], results: usize, states: u32, width: u32) -> Vec<T> {
+    ///
+    /// # Panics
+    /// When a thread does what no kernel may do.
+    pub fn run<T: Real>(&self, arguments: &[Vec<T>], results: usize, states: u32, width: u32) -> Vec<T> {
+        self.run_with(arguments, &[results], &[states.into()], width).remove(0)
+    }
+
+    /// As [`run`](Self::run), with several arrays of results and with other parameters, the last of which is the number
+    /// of states.
+    ///
+    /// # Panics
+    /// When a thread does what no kernel may do.
+    pub fn run_with<T: Real>(
+        &self,
+        arguments: &[Vec<T>],
+        results: &[usize],
+        others: &[u64],
+        width: u32,
+    ) -> Vec<Vec<T>> {
         let mut memory = vec![0_u8; START];
-        let mut addresses = Vec::new();
+        let mut values = Vec::new();
         for array in arguments {
-            addresses.push(if array.is_empty() { 0 } else { memory.len() as u64 });
+            values.push(if array.is_empty() { 0 } else { memory.len() as u64 });
             memory.extend(array.iter().flat_map(|number| number.bits().to_le_bytes()[..T::BYTES].to_vec()));
         }
-        addresses.push(memory.len() as u64);
-        let start = memory.len();
-        // a number that no kernel computes
-        memory.resize(start + results * T::BYTES, 0xA5);
-        assert_eq!(addresses.len() + 1, self.parameters.len());
-        let values: HashMap<&str, u64> =
-            self.parameters.iter().map(String::as_str).zip(addresses.into_iter().chain([states.into()])).collect();
+        let starts: Vec<usize> = results
+            .iter()
+            .map(|results| {
+                let start = memory.len();
+                // a number that no kernel computes
+                memory.resize(start + results * T::BYTES, 0xA5);
+                start
+            })
+            .collect();
+        values.extend(starts.iter().map(|start| *start as u64));
+        values.extend(others);
+        let states = u32::try_from(*others.last().expect("the number of states")).expect("few");
         let width = if self.is_of_64 { 64 } else { width };
         // a block more than there are states for
-        for block in 0..=states.div_ceil(width) {
+        self.launch(&mut memory, &values, states.div_ceil(width) + 1, width);
+        let number = |address: usize| T::of_bits(memory.load(address as u64, T::BYTES));
+        let read =
+            |(start, count): (usize, &usize)| (0..*count).map(|index| number(start + index * T::BYTES)).collect();
+        starts.into_iter().zip(results).map(read).collect()
+    }
+
+    /// Runs blocks of `width` threads; `parameters` has the bits of each parameter.
+    ///
+    /// # Panics
+    /// When a thread does what no kernel may do, or the memory refuses an address.
+    pub fn launch(&self, memory: &mut impl Memory, parameters: &[u64], blocks: u32, width: u32) {
+        assert_eq!(parameters.len(), self.parameters.len(), "parameters");
+        let names = self.parameters.iter().map(|parameter| parameter.name.as_str());
+        let values: HashMap<&str, u64> = names.zip(parameters.iter().copied()).collect();
+        for block in 0..blocks {
             // what a thread finds that no thread has written
             let mut shared = vec![0x5A_u8; self.shared];
             let thread = |_| Thread { registers: vec![None; self.registers], next: 0 };
@@ -213,23 +324,18 @@ impl Kernel {
             while threads.iter().any(|thread| thread.next < self.code.len()) {
                 for (index, thread) in threads.iter_mut().enumerate() {
                     let place = [block, width, u32::try_from(index).expect("few")];
-                    self.to_barrier(thread, [&mut memory, &mut shared], &values, place);
+                    self.to_barrier(thread, memory, &mut shared, &values, place);
                 }
             }
         }
-        let word = |bytes: &[u8]| {
-            let mut word = [0; 8];
-            word[..T::BYTES].copy_from_slice(bytes);
-            T::of_bits(u64::from_le_bytes(word))
-        };
-        memory[start..].chunks(T::BYTES).map(word).collect()
     }
 
     /// Runs a thread to the next barrier, or to its end.
     fn to_barrier(
         &self,
         thread: &mut Thread,
-        [memory, shared]: [&mut Vec<u8>; 2],
+        memory: &mut impl Memory,
+        shared: &mut Vec<u8>,
         parameters: &HashMap<&str, u64>,
         [block, width, number]: [u32; 3],
     ) {
@@ -251,78 +357,41 @@ impl Kernel {
                         "%tid.x" => number.into(),
                         other => panic!("{other}"),
                     },
+                    Operand::Place(place) => *place as u64,
                     Operand::Halves(low, high) => {
                         registers[*low].expect("a half") | registers[*high].expect("a half") << 32
                     }
                 }
             };
-            let word = |index| u32::try_from(value(index)).expect("32 bits");
-            let signed = |index| word(index).cast_signed();
-            let double = |index| f64::from_bits(value(index));
-            let single = |index| f32::from_bits(word(index));
-            let of_double = |number: f64| number.to_bits();
-            let of_single = |number: f32| u64::from(number.to_bits());
             let result = match operation.as_str() {
                 "ret" => {
                     *next = self.code.len();
                     return;
                 }
                 "bar.sync" => return,
-                "mov.u32" | "mov.b32" | "mov.b64" | "mov.f32" | "mov.f64" | "ld.param.u32" | "ld.param.u64"
-                | "cvta.to.global.u64" => value(1),
-                "mad.lo.u32" => word(1).wrapping_mul(word(2)).wrapping_add(word(3)).into(),
-                "mad.wide.u32" => u64::from(word(1)) * u64::from(word(2)) + value(3),
-                "mul.lo.s32" => signed(1).wrapping_mul(signed(2)).cast_unsigned().into(),
-                "sub.s32" => signed(1).wrapping_sub(signed(2)).cast_unsigned().into(),
-                "min.s32" => signed(1).min(signed(2)).cast_unsigned().into(),
-                "setp.gt.s32" => u64::from(signed(1) > signed(2)),
-                "add.u32" => word(1).wrapping_add(word(2)).into(),
-                "and.b32" => (word(1) & word(2)).into(),
-                "xor.b32" => (word(1) ^ word(2)).into(),
-                "shl.b32" => word(1).checked_shl(word(2)).unwrap_or(0).into(),
-                "setp.ge.u32" => u64::from(word(1) >= word(2)),
-                "setp.ne.u32" => u64::from(word(1) != word(2)),
-                "setp.gt.f64" => u64::from(double(1) > double(2)),
-                "setp.lt.f64" => u64::from(double(1) < double(2)),
-                "setp.gt.f32" => u64::from(single(1) > single(2)),
-                "setp.lt.f32" => u64::from(single(1) < single(2)),
-                "selp.f32" | "selp.f64" => {
-                    if value(3) == 0 {
-                        value(2)
-                    } else {
-                        value(1)
-                    }
+                "bra" => {
+                    *next = usize::try_from(value(0)).expect("a place");
+                    continue;
                 }
-                "neg.f64" => of_double(-double(1)),
-                "add.rn.f64" => of_double(double(1) + double(2)),
-                "sub.rn.f64" => of_double(double(1) - double(2)),
-                "mul.rn.f64" => of_double(double(1) * double(2)),
-                "div.rn.f64" => of_double(double(1) / double(2)),
-                "fma.rn.f64" => of_double(double(1).mul_add(double(2), double(3))),
-                "neg.f32" => of_single(-single(1)),
-                "add.rn.f32" => of_single(single(1) + single(2)),
-                "sub.rn.f32" => of_single(single(1) - single(2)),
-                "mul.rn.f32" => of_single(single(1) * single(2)),
-                "div.rn.f32" => of_single(single(1) / single(2)),
-                "fma.rn.f32" => of_single(single(1).mul_add(single(2), single(3))),
                 "ld.global.nc.f32" | "ld.global.nc.f64" | "ld.shared.f32" | "ld.shared.f64" => {
                     let bytes = if operation.ends_with("64") { 8 } else { 4 };
-                    let is_shared = operation.starts_with("ld.shared");
-                    let from = if is_shared { &*shared } else { &*memory };
-                    let at = usize::try_from(value(1)).expect("an address");
-                    assert!((is_shared || at >= START) && at.is_multiple_of(bytes), "an address of nothing");
-                    let mut word = [0; 8];
-                    word[..bytes].copy_from_slice(&from[at..at + bytes]);
-                    u64::from_le_bytes(word)
+                    let (is_shared, at) = (operation.starts_with("ld.shared"), value(1));
+                    assert!(
+                        (is_shared || at >= START as u64) && at.is_multiple_of(bytes as u64),
+                        "an address of nothing"
+                    );
+                    if is_shared { shared.load(at, bytes) } else { memory.load(at, bytes) }
                 }
                 "st.global.f32" | "st.global.f64" | "st.shared.f32" | "st.shared.f64" => {
                     let bytes = if operation.ends_with("64") { 8 } else { 4 };
-                    let (at, number) = (usize::try_from(value(0)).expect("an address"), value(1));
-                    let into = if operation.starts_with("st.shared") { &mut *shared } else { &mut *memory };
-                    into[at..at + bytes].copy_from_slice(&number.to_le_bytes()[..bytes]);
+                    if operation.starts_with("st.shared") {
+                        shared.store(value(0), bytes, value(1));
+                    } else {
+                        memory.store(value(0), bytes, value(1));
+                    }
                     continue;
                 }
-                other => panic!("{other} is not an instruction of this interpreter"),
+                other => computed(other, value),
             };
             match &operands[0] {
                 Operand::Register(register) => registers[*register] = Some(result),
@@ -333,5 +402,59 @@ impl Kernel {
                 _ => panic!("{operation} writes a register"),
             }
         }
+    }
+}
+
+/// The result of an instruction that reads registers and writes one.
+fn computed(operation: &str, value: impl Fn(usize) -> u64) -> u64 {
+    let word = |index| u32::try_from(value(index)).expect("32 bits");
+    let signed = |index| word(index).cast_signed();
+    let double = |index| f64::from_bits(value(index));
+    let single = |index| f32::from_bits(word(index));
+    let of_double = |number: f64| number.to_bits();
+    let of_single = |number: f32| u64::from(number.to_bits());
+    match operation {
+        "mov.u32" | "mov.u64" | "mov.b32" | "mov.b64" | "mov.f32" | "mov.f64" | "ld.param.u32" | "ld.param.u64"
+        | "ld.param.f32" | "ld.param.f64" | "cvta.to.global.u64" => value(1),
+        "mul.wide.u32" => u64::from(word(1)) * u64::from(word(2)),
+        "mad.lo.u64" => value(1).wrapping_mul(value(2)).wrapping_add(value(3)),
+        "add.u64" => value(1).wrapping_add(value(2)),
+        "div.u32" => (word(1) / word(2)).into(),
+        "mad.lo.u32" => word(1).wrapping_mul(word(2)).wrapping_add(word(3)).into(),
+        "mad.wide.u32" => u64::from(word(1)) * u64::from(word(2)) + value(3),
+        "mul.lo.s32" => signed(1).wrapping_mul(signed(2)).cast_unsigned().into(),
+        "sub.s32" => signed(1).wrapping_sub(signed(2)).cast_unsigned().into(),
+        "min.s32" => signed(1).min(signed(2)).cast_unsigned().into(),
+        "setp.gt.s32" => u64::from(signed(1) > signed(2)),
+        "add.u32" => word(1).wrapping_add(word(2)).into(),
+        "and.b32" => (word(1) & word(2)).into(),
+        "xor.b32" => (word(1) ^ word(2)).into(),
+        "shl.b32" => word(1).checked_shl(word(2)).unwrap_or(0).into(),
+        "setp.ge.u32" => u64::from(word(1) >= word(2)),
+        "setp.ne.u32" => u64::from(word(1) != word(2)),
+        "setp.gt.f64" => u64::from(double(1) > double(2)),
+        "setp.lt.f64" => u64::from(double(1) < double(2)),
+        "setp.gt.f32" => u64::from(single(1) > single(2)),
+        "setp.lt.f32" => u64::from(single(1) < single(2)),
+        "selp.f32" | "selp.f64" => {
+            if value(3) == 0 {
+                value(2)
+            } else {
+                value(1)
+            }
+        }
+        "neg.f64" => of_double(-double(1)),
+        "add.rn.f64" => of_double(double(1) + double(2)),
+        "sub.rn.f64" => of_double(double(1) - double(2)),
+        "mul.rn.f64" => of_double(double(1) * double(2)),
+        "div.rn.f64" => of_double(double(1) / double(2)),
+        "fma.rn.f64" => of_double(double(1).mul_add(double(2), double(3))),
+        "neg.f32" => of_single(-single(1)),
+        "add.rn.f32" => of_single(single(1) + single(2)),
+        "sub.rn.f32" => of_single(single(1) - single(2)),
+        "mul.rn.f32" => of_single(single(1) * single(2)),
+        "div.rn.f32" => of_single(single(1) / single(2)),
+        "fma.rn.f32" => of_single(single(1).mul_add(single(2), single(3))),
+        other => panic!("{other} is not an instruction of this interpreter"),
     }
 }

@@ -1,0 +1,139 @@
+//! Functions of an arm on a graphics card: `Arm.gpu` stands on it, in `rne/gpu.py`.
+//!
+//! Arrays on the card are addresses here. `rne/gpu.py` checks what they are before it gives them on.
+
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
+
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use rne_codegen::Function;
+use rne_gpu::{Device, GpuError, GpuRollout, Order, Precision};
+
+use crate::arm::{Arm, name};
+use crate::errors::of_evaluation;
+use crate::xla::results;
+
+/// The cards that are open: their context is kept as long as the process lives, as other libraries do it.
+static DEVICES: Mutex<Option<HashMap<usize, Device>>> = Mutex::new(None);
+
+/// An arm on a graphics card.
+#[pyclass(frozen, module = "rne._rne")]
+pub(crate) struct GpuArm {
+    arm: rne_gpu::GpuArm,
+}
+
+/// What Python is told of a function: its arguments with their elements, and the shapes of its results with a flag for
+/// poses.
+type Told = (Vec<(&'static str, usize)>, Vec<(Vec<usize>, bool)>);
+
+fn of_gpu(error: &GpuError) -> PyErr {
+    match error {
+        GpuError::NoDriver { .. }
+        | GpuError::OldDriver { .. }
+        | GpuError::NoDevice { .. }
+        | GpuError::Translation { .. }
+        | GpuError::Call { .. } => PyRuntimeError::new_err(error.to_string()),
+        _ => of_evaluation(error),
+    }
+}
+
+#[pymethods]
+impl GpuArm {
+    #[new]
+    fn new(arm: &Arm, device: usize) -> PyResult<Self> {
+        let mut devices = DEVICES.lock().unwrap_or_else(PoisonError::into_inner);
+        let devices = devices.get_or_insert_default();
+        let device = match devices.get(&device) {
+            Some(device) => device.clone(),
+            None => {
+                let found = Device::open(device).map_err(|error| of_gpu(&error))?;
+                devices.entry(device).insert_entry(found).get().clone()
+            }
+        };
+        Ok(Self { arm: rne_gpu::GpuArm::new(&arm.arm, &device) })
+    }
+
+    /// The name of the card.
+    #[getter]
+    fn card(&self) -> &str {
+        self.arm.device().name()
+    }
+
+    /// The names of the functions of the arm.
+    #[getter]
+    fn functions(&self) -> Vec<&'static str> {
+        Function::of_robot(self.arm.arm().robot()).map(Function::name).collect()
+    }
+
+    /// The arguments and results of a function.
+    fn told(&self, py: Python<'_>, function: &str) -> PyResult<Told> {
+        let function: Function = name(function)?;
+        let arm = self.arm.arm();
+        let compiled = py.detach(|| arm.function(function)).map_err(|error| of_evaluation(&error))?;
+        Ok((compiled.arguments().to_vec(), results(arm, function)))
+    }
+
+    /// Translates the kernels of a function, or of rollouts by it.
+    fn prepare(&self, py: Python<'_>, function: &str, is_double: bool, is_rollout: bool) -> PyResult<()> {
+        let function: Function = name(function)?;
+        let precision = if is_double { Precision::Double } else { Precision::Single };
+        py.detach(|| self.arm.prepare(function, precision, is_rollout)).map_err(|error| of_gpu(&error))
+    }
+
+    /// Waits for a stream.
+    fn wait(&self, py: Python<'_>, stream: u64) -> PyResult<()> {
+        py.detach(|| self.arm.device().wait(stream)).map_err(|error| of_gpu(&error))
+    }
+
+    /// Launches a function, or a rollout of (steps, step, every) by it. The addresses are those of arrays that have
+    /// been checked.
+    #[allow(unsafe_code)]
+    #[pyo3(signature = (function, is_double, is_columns, states, arguments, results, stream, rollout=None))]
+    fn launch(
+        &self,
+        py: Python<'_>,
+        function: &str,
+        is_double: bool,
+        is_columns: bool,
+        states: usize,
+        arguments: Vec<u64>,
+        results: Vec<u64>,
+        stream: u64,
+        rollout: Option<(u32, f64, u32)>,
+    ) -> PyResult<()> {
+        let function: Function = name(function)?;
+        let order = if is_columns { Order::Columns } else { Order::Rows };
+        let rollout = rollout.map(|(steps, step, every)| GpuRollout { steps, step, every });
+        let (arm, arguments, results) = (&self.arm, &arguments[..], &results[..]);
+        // SAFETY: `rne/gpu.py` has read the addresses from the arrays of a library, with their shapes, number type,
+        // order and card, and keeps the arrays until the launch has been queued; libraries free memory in the order of
+        // the stream. That nobody else writes to the arrays meanwhile is the caller's duty, as for all arrays on cards.
+        let launched = py.detach(|| match (rollout, is_double) {
+            (None, false) => unsafe { arm.launch::<f32>(function, order, states, arguments, results, stream) },
+            (None, true) => unsafe { arm.launch::<f64>(function, order, states, arguments, results, stream) },
+            (Some(rollout), false) => unsafe {
+                arm.launch_rollout::<f32>(function, &rollout, order, states, arguments, results, stream)
+            },
+            (Some(rollout), true) => unsafe {
+                arm.launch_rollout::<f64>(function, &rollout, order, states, arguments, results, stream)
+            },
+        });
+        launched.map_err(|error| of_gpu(&error))
+    }
+}
+
+#[pymethods]
+impl Arm {
+    /// Functions of this arm on a graphics card of NVIDIA, for arrays of PyTorch, CuPy and JAX that are on it.
+    ///
+    /// Each function of the arm is an attribute of what is returned: `arm.gpu().inverse_dynamics(q, qd, qdd)`, with
+    /// arrays of shape (N, n), float32 or float64. `rollout(q, qd, tau, step)` moves N samples on over T steps in one
+    /// launch.
+    /// A call reads the arrays where they are, launches a kernel on the caller's current stream, and does not wait.
+    /// `device`: the number of the card. Needs NVIDIA's driver, and neither CUDA's toolkit nor a compiler.
+    #[pyo3(signature = (device=0))]
+    fn gpu<'py>(slf: &Bound<'py, Self>, device: usize) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("rne.gpu")?.getattr("Gpu")?.call1((slf, device))
+    }
+}
