@@ -8,7 +8,7 @@ use std::process::Command;
 use rne_codegen::{Compiler, Form, Program};
 use rne_emit::{FmiVersion, Fmu, FmuCausality, Precision, Prefix, with_inertial_parameters};
 use rne_model::{Reader, Robot};
-use rne_runtime::DynArm;
+use rne_runtime::{DynArm, Payload};
 
 const VERSIONS: [FmiVersion; 2] = [FmiVersion::Two, FmiVersion::Three];
 
@@ -158,12 +158,15 @@ fn references(first: usize, values: &[f64]) -> Vec<(usize, f64)> {
     values.iter().enumerate().map(|(index, value)| (first + index, *value)).collect()
 }
 
-/// The classical method of order 4, in its usual form for ẋ = f(x).
-fn runge_kutta(arm: &DynArm, q: &[f64], qd: &[f64], tau: &[f64], h: f64, steps: usize) -> Vec<f64> {
-    let dof = q.len();
+/// A payload, in the order of its variables.
+const PAYLOAD: [f64; 10] = [1.5, 0.05, -0.03, 0.1, 0.012, 0.015, 0.009, 0.001, -0.002, 0.0015];
+
+/// The classical method of order 4, in its usual form for ẋ = f(x), with a payload at the tip.
+fn runge_kutta(arm: &DynArm, q: &[f64], qd: &[f64], tau: &[f64], payload: &Payload<f64>) -> Vec<f64> {
+    let (dof, h, steps) = (q.len(), 0.001, 50);
     let rate = |x: &[f64]| -> Vec<f64> {
         let (q, qd) = x.split_at(dof);
-        [qd.to_vec(), arm.forward_dynamics(q, qd, tau).expect("one per joint")].concat()
+        [qd.to_vec(), arm.forward_dynamics_with_payload(q, qd, tau, payload).expect("one per joint")].concat()
     };
     let moved = |x: &[f64], by: f64, k: &[f64]| -> Vec<f64> { x.iter().zip(k).map(|(x, k)| x + by * k).collect() };
     let mut x = [q, qd].concat();
@@ -195,11 +198,15 @@ fn co_simulation_is_the_trajectory_of_the_runtime() {
         let [q, qd, more] = state(dof);
         let hold = arm.inverse_dynamics(&q, &qd, &vec![0.0; dof]).expect("one per joint");
         let tau: Vec<f64> = hold.iter().zip(&more).map(|(hold, more)| hold + more).collect();
-        let expected = runge_kutta(&arm, &q, &qd, &tau, 0.001, 50);
         let varying = with_inertial_parameters(robot.clone());
-        for version in VERSIONS {
+        // without a payload, nothing is set: the default is none
+        for (version, payload) in VERSIONS.into_iter().flat_map(|version| [(version, None), (version, Some(PAYLOAD))]) {
+            let expected = payload.map_or(Payload::none(), Payload::from_array);
+            let expected = runge_kutta(&arm, &q, &qd, &tau, &expected);
             let files = files(&varying, version, FmuCausality::Forward);
-            let set = [references(1, &q), references(1 + dof, &qd), references(1 + 3 * dof, &tau)].concat();
+            let count = file(&files, "modelDescription.xml").matches(" causality=").count();
+            let held = payload.map_or(vec![], |payload| references(count - 10, &payload));
+            let set = [references(1, &q), references(1 + dof, &qd), references(1 + 3 * dof, &tau), held].concat();
             let print: Vec<usize> = (1..=2 * dof).collect();
             let main = driver(version, &set, 5, 0.01, &print);
             let Some(found) = printed(&varying, &files, &main) else { return };

@@ -43,14 +43,14 @@ class Arm:
         self.n = len(self.joints)
         source = folder / "robot.c"
         run(RNE, "emit", robot, "--lang", "c", "--real", "double", "--prefix", "robot",
-            "--function", "inverse_dynamics,forward_dynamics", "-o", source)
+            "--function", "inverse_dynamics,forward_dynamics,forward_dynamics_with_payload", "-o", source)
         run("cc", "-O2", "-ffp-contract=off", "-shared", "-fPIC", "-o", folder / "robot.so", source)
         self.library = ctypes.CDLL(str(folder / "robot.so"))
 
     def call(self, function, *arguments):
-        array = ctypes.c_double * self.n
-        result = array()
-        getattr(self.library, f"robot_{function}")(*[array(*one) for one in arguments], result)
+        result = (ctypes.c_double * self.n)()
+        arrays = [(ctypes.c_double * len(one))(*one) for one in arguments]
+        getattr(self.library, f"robot_{function}")(*arrays, result)
         return np.array(result)
 
     def names(self, kind):
@@ -63,10 +63,12 @@ class Arm:
     def start(self, kind, values):
         return dict(zip(self.names(kind), values))
 
-    def trajectory(self, torques, times, q, qd):
+    def trajectory(self, torques, times, q, qd, payload=None):
         """Positions and velocities by an integrator of order 8."""
+        function, more = ("forward_dynamics", []) if payload is None else ("forward_dynamics_with_payload", [payload])
+
         def rate(time, x):
-            return np.concatenate([x[self.n:], self.call("forward_dynamics", x[:self.n], x[self.n:], torques(time))])
+            return np.concatenate([x[self.n:], self.call(function, x[:self.n], x[self.n:], torques(time), *more)])
         solution = solve_ivp(rate, (times[0], times[-1]), np.concatenate([q, qd]), method="DOP853", t_eval=times,
                              rtol=1e-12, atol=1e-12)
         return solution.y.T
@@ -108,6 +110,25 @@ def test_co_simulation_gives_our_trajectory(arm):
         errors.append(np.abs(columns(result, arm.names("q") + arm.names("qd")) - expected).max())
     assert errors[2] < 1e-8
     assert errors[1] < errors[0] / 8 or errors[0] < 1e-10
+
+
+def test_a_payload_that_is_set_moves_with_the_tip(arm):
+    q, qd, qdd = arm.state()
+    torques = arm.call("inverse_dynamics", q, qd, qdd)
+    payload = {"payload.mass": 1.5, "payload.com.x": 0.05, "payload.com.y": -0.03, "payload.com.z": 0.1}
+    payload |= {f"payload.inertia.{element}": value for element, value in
+                {"xx": 0.012, "yy": 0.015, "zz": 0.009, "xy": 0.001, "xz": -0.002, "yz": 0.0015}.items()}
+    assert set(payload) == {name for name in arm.variables if name.startswith("payload.")}
+    for kind, options in [("ModelExchange", {"relative_tolerance": 1e-9}), ("CoSimulation", {})]:
+        step = {"step": 0.0005} if kind == "CoSimulation" else {}
+        result = simulate_fmu(
+            arm.forward, fmi_type=kind, stop_time=0.2, output_interval=0.01, **options,
+            start_values=arm.start("q", q) | arm.start("qd", qd) | arm.start("tau", torques) | payload | step,
+            output=arm.names("q") + arm.names("qd"))
+        expected = arm.trajectory(lambda time: torques, np.clip(result["time"], 0, 0.2), q, qd, list(payload.values()))
+        np.testing.assert_allclose(columns(result, arm.names("q") + arm.names("qd")), expected, rtol=0, atol=1e-6)
+        without = arm.trajectory(lambda time: torques, np.clip(result["time"], 0, 0.2), q, qd)
+        assert np.abs(expected - without).max() > 1e-3
 
 
 def test_inverse_gives_our_torques(arm):
@@ -171,6 +192,8 @@ def test_every_parameter_has_an_effect(arm, tmp_path):
     """A change of any parameter changes torques at one of some states, and nothing else is offered."""
     instance = Instance(arm.inverse, tmp_path)
     names = [name for name in instance.references if name.split(".")[0] not in ("time", "q", "qd", "qdd", "tau")]
+    # an arm that moves in a plane does not feel all numbers of a payload
+    names = [name for name in names if not name.startswith("payload.")]
     assert names
     states = [np.concatenate(arm.state(seed)) for seed in range(5)]
     inputs = instance.of([name for kind in ("q", "qd", "qdd") for name in arm.names(kind)])

@@ -15,6 +15,7 @@ import rne
 
 jax = pytest.importorskip("jax")
 import jax.numpy as jnp  # noqa: E402
+import jax.test_util  # noqa: E402
 from jnp_recursion import Chain  # noqa: E402
 from pages import run_examples  # noqa: E402
 
@@ -22,7 +23,10 @@ from rne.derivatives import DERIVATIVES  # noqa: E402
 from rne.xla import TARGET  # noqa: E402
 
 CLOSE = 1e-12
-SHAPES = {"payload": (10,), "wrench": (6,)}
+SHAPES = {"payload": (10,), "wrench": (6,), "wrenches": (1, 6)}
+#: Functions with second derivatives.
+TWICE = ["inverse_dynamics", "bias_torques", "gravity_torques", "forward_dynamics", "kinetic_energy", "potential_energy",
+         "pose", "inverse_mass_matrix_times_torques"]
 PENDULUM = """format: 1
 name: pendulum
 source: test
@@ -133,18 +137,66 @@ def test_functions_of_a_floating_base_and_of_trees_give_the_numbers_of_the_arm()
             np.testing.assert_array_equal(np.asarray(one), other)
 
 
+def assert_derivatives_are_those_of_differences(call, given, argument, name):
+    at = lambda x: call(**{**given, argument: x})  # noqa: E731
+    x, step = given[argument], 1e-5
+    units = np.eye(x.size).reshape(-1, *x.shape)
+    sides = [jax.tree.map(lambda after, before: (after - before) / (2 * step), at(x + step * e), at(x - step * e))
+             for e in units]
+    expected = jax.tree.map(lambda *columns: np.stack(columns, -1).reshape(*np.shape(columns[0]), *x.shape), *sides)
+    for derive in (jax.jacfwd, jax.jacrev):
+        for found, other in zip(*map(jax.tree.leaves, (derive(at)(x), expected)), strict=True):
+            assert difference(found, other) < 1e-7, (name, argument, derive)
+
+
 @pytest.mark.parametrize("name", sorted(DERIVATIVES))
 def test_derivatives_are_those_of_central_differences(name):
-    arm = rne.robots.puma560
-    call = getattr(arm.jax(), name)
-    given = dict(arguments(arm, call))
+    call = getattr(rne.robots.puma560.jax(), name)
+    given = dict(arguments(rne.robots.puma560, call))
     for argument in DERIVATIVES[name]:
-        at = lambda x: call(**{**given, argument: x})  # noqa: E731
-        x, step = given[argument], 1e-5
-        sides = [(at(x + step * e) - at(x - step * e)) / (2 * step) for e in np.eye(arm.dof)]
-        expected = np.stack(sides, -1)
-        for derive in (jax.jacfwd, jax.jacrev):
-            assert difference(derive(at)(x), expected) < 1e-7, (name, argument, derive)
+        assert_derivatives_are_those_of_differences(call, given, argument, name)
+
+
+@pytest.mark.parametrize("file, frame", [("docs/gripper.yaml", "finger"), ("robots/panda.yaml", "panda_joint4")])
+def test_derivatives_at_a_frame_are_those_of_differences(file, frame):
+    arm = rne.load(Path(__file__).parents[3] / file)
+    frame = next(joint for joint in arm.frames + arm.joints if frame in joint)
+    functions = arm.jax(frame=frame)
+    for name in ("pose", "jacobian", "wrench_torques", "inverse_dynamics_with_wrench"):
+        call = getattr(functions, name)
+        given = dict(arguments(arm, call))
+        for argument in DERIVATIVES[name]:
+            assert_derivatives_are_those_of_differences(call, given, argument, name)
+
+
+def test_second_derivatives_are_those_of_a_recursion_that_jax_derives():
+    arm = rne.robots.panda
+    states_ = states(arm, 3)
+    weights = jnp.arange(1.0, 8.0)
+    batch = lambda call: jax.jit(jax.vmap(call))  # noqa: E731
+    # λᵀτ and a cost of torques at once: XLA compiles this recursion for long
+    of = lambda call: lambda *state: (lambda tau: weights @ tau + weights @ tau**2)(call(*state))  # noqa: E731
+    expected = jax.tree.leaves(batch(jax.hessian(of(Chain(arm).torques), (0, 1, 2)))(*states_))
+    ours = of(arm.jax().inverse_dynamics)
+    for derive in (jax.hessian, lambda f, by: jax.jacfwd(jax.grad(f, by), by), lambda f, by: jax.jacrev(jax.grad(f, by), by)):
+        found = jax.tree.leaves(batch(derive(ours, (0, 1, 2)))(*states_))
+        assert max(difference(*pair) for pair in zip(found, expected, strict=True)) < 1e-11
+
+
+@pytest.mark.parametrize("name", TWICE)
+def test_second_derivatives_are_those_of_differences(name):
+    call = getattr(rne.robots.puma560.jax(), name)
+    given = dict(arguments(rne.robots.puma560, call))
+    jax.test_util.check_grads(call, list(given.values()), order=2, atol=1e-5, rtol=1e-5, eps=1e-5)
+
+
+def test_the_derivative_of_the_gradient_is_one_hessian():
+    arm = rne.robots.panda
+    call, state = arm.jax().torque_gradient, states(arm)
+    derived = jax.jit(jax.jacfwd(lambda q: call(q, *state[1:], jnp.ones(7))[0]))
+    text = derived.lower(state[0]).as_text()
+    assert text.count('"torque_hessian"') == 1 and "x7x7xf64" not in text.split('"torque_hessian"')[1].split("\n")[0]
+    assert difference(derived(state[0]), arm.torque_hessian(*state, np.ones(7))[0]) == 0
 
 
 def test_mapped_axes_are_one_call_and_shared_arguments_are_not_copied():
@@ -197,9 +249,9 @@ def test_single_precision_and_the_option_x64():
 @pytest.mark.parametrize(
     "derive, words",
     [
-        (lambda one, q: jax.jacfwd(one.jacobian)(q), "`jacobian` has no derivative by `q`, but these functions have"),
-        (lambda one, q: jax.hessian(lambda q: one.inverse_dynamics(q, q, q).sum())(q), "have no second ones"),
-        (lambda one, q: jax.grad(lambda p: one.gravity_torques_with_payload(q, p).sum())(jnp.ones(10)), "`payload`"),
+        (lambda one, q: jax.jacfwd(one.regressor)(q, q, q), "`regressor` has no derivative by `q`, but these functions"),
+        (lambda one, q: jax.hessian(lambda q: one.centre_of_mass(q).sum())(q), "has no second derivatives"),
+        (lambda one, q: jax.grad(lambda p: one.gravity_torques_with_payload(q, p).sum())(jnp.ones(10)), "by `payload`, but by q"),
     ],
 )
 def test_what_has_no_derivative_is_refused_in_one_line(derive, words):

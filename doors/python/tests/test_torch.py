@@ -13,7 +13,10 @@ from pages import run_examples  # noqa: E402
 
 from rne.derivatives import DERIVATIVES  # noqa: E402
 
-SHAPES = {"payload": (10,), "wrench": (6,)}
+SHAPES = {"payload": (10,), "wrench": (6,), "wrenches": (1, 6)}
+#: Functions with second derivatives.
+TWICE = ["inverse_dynamics", "bias_torques", "gravity_torques", "forward_dynamics", "kinetic_energy", "potential_energy",
+         "pose", "inverse_mass_matrix_times_torques"]
 EVERY = ["kinetic_energy", "mass_matrix", "inverse_dynamics_derivatives", "pose", "link_poses", "jacobian", "regressor",
          "forward_dynamics", "inverse_dynamics_with_payload", "inverse_dynamics_with_wrench", "torque_gradient"]
 
@@ -44,21 +47,65 @@ def test_derivatives_are_those_of_differences(name):
     call = getattr(arm.torch(), name)
     given, many = dict(arguments(arm, call)), dict(arguments(arm, call, 3))
     for argument in DERIVATIVES[name]:
-        at = lambda x: call(**{**given, argument: x})  # noqa: E731
+        # one number of all results
+        def at(x):
+            found = call(**{**given, argument: x})  # noqa: B023
+            parts = [part.flatten() for part in (found if isinstance(found, tuple) else (found,))]
+            return torch.cat(parts) @ torch.linspace(1, 2, sum(map(len, parts)), dtype=x.dtype)
+
         x, step = given[argument], 1e-5
-        sides = [(at(x + step * e) - at(x - step * e)) / (2 * step) for e in torch.eye(arm.dof, dtype=x.dtype)]
-        expected = torch.stack(sides, -1)
+        units = torch.eye(x.numel(), dtype=x.dtype).reshape(-1, *x.shape)
+        sides = [(at(x + step * e) - at(x - step * e)) / (2 * step) for e in units]
+        expected = torch.stack(sides).reshape(x.shape)
         found = torch.autograd.functional.jacobian(at, x)
         assert (found - expected).abs().max() <= 1e-7 * max(1, expected.abs().max()), argument
         # many states at once have the gradients of each alone
+        total = lambda found: sum(part.sum() for part in found) if isinstance(found, tuple) else found.sum()  # noqa: E731
         many[argument].requires_grad_()
-        call(**many).sum().backward()
+        total(call(**many)).backward()
         for state in range(3):
             alone = {key: value[state].detach().clone() for key, value in many.items()}
             alone[argument].requires_grad_()
-            call(**alone).sum().backward()
+            total(call(**alone)).backward()
             torch.testing.assert_close(many[argument].grad[state], alone[argument].grad, rtol=1e-12, atol=1e-10)
         many[argument].requires_grad_(False)
+
+
+@pytest.mark.parametrize("name", TWICE)
+def test_second_derivatives_are_those_of_differences(name):
+    arm = rne.robots.puma560
+    call = getattr(arm.torch(), name)
+    given = [one.requires_grad_() for _, one in arguments(arm, call, 2)]
+    torch.autograd.gradgradcheck(call, given, eps=1e-5, atol=1e-5, rtol=1e-5)
+
+
+def test_the_hessian_is_that_of_the_arm():
+    arm = rne.robots.panda
+    q, qd, qdd, multipliers = (one for _, one in arguments(arm, arm.torch().torque_gradient))
+    call = arm.torch().inverse_dynamics
+    found = torch.autograd.functional.hessian(lambda q: multipliers @ call(q, qd, qdd), q)
+    expected = arm.torque_hessian(*(one.numpy() for one in (q, qd, qdd, multipliers)))[0]
+    np.testing.assert_array_equal(found.numpy(), expected)
+
+
+def test_compiled_programs_give_the_same():
+    arm = rne.robots.panda
+    call = arm.torch().inverse_dynamics
+    given = [one.requires_grad_() for _, one in arguments(arm, call, 4)]
+    cost = lambda *state: (call(*state).square() * 2).sum()  # noqa: E731
+    compiled = torch.compile(cost, fullgraph=True, backend="aot_eager")
+    found, expected = (torch.autograd.grad(one(*given), given) for one in (compiled, cost))
+    for one, other in zip(found, expected, strict=True):
+        torch.testing.assert_close(one, other, rtol=1e-14, atol=1e-14)
+
+
+def test_derivatives_at_a_frame_are_those_of_differences():
+    arm = rne.robots.panda
+    functions = arm.torch(frame=arm.joints[3])
+    for name in ("pose", "jacobian", "wrench_torques", "inverse_dynamics_with_wrench"):
+        call = getattr(functions, name)
+        given = [one.requires_grad_() for _, one in arguments(arm, call)]
+        torch.autograd.gradcheck(call, given, eps=1e-5, atol=1e-6)
 
 
 def test_a_row_for_all_states_gets_the_sum_of_their_gradients():
@@ -103,8 +150,8 @@ def test_the_operator_is_what_pytorch_asks_of_one():
 def test_what_has_no_derivative_is_refused_in_one_line():
     functions = rne.robots.panda.torch()
     q = torch.zeros(7, dtype=torch.float64, requires_grad=True)
-    slope = torch.autograd.grad(functions.inverse_dynamics(q, q, q).sum(), q, create_graph=True)[0]
-    for value, words in [(functions.jacobian(q), "`jacobian` has no derivative by `q`"), (slope, "`torque_gradient`")]:
+    slope = torch.autograd.grad(functions.centre_of_mass(q).sum(), q, create_graph=True)[0]
+    for value, words in [(functions.link_poses(q), "`link_poses` has no derivative by `q`"), (slope, "no second")]:
         with pytest.raises(NotImplementedError, match=words) as refused:
             value.sum().backward()
         assert "\n" not in str(refused.value)

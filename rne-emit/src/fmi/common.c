@@ -1,3 +1,44 @@
+#ifdef FMIN_FUNCTION_PREFIX
+#define PASTED(prefix, name) prefix##name
+#define WITH_PREFIX(prefix, name) PASTED(prefix, name)
+#define FMI(name) WITH_PREFIX(FMIN_FUNCTION_PREFIX, fmiN##name)
+#else
+#define FMI(name) fmiN##name
+#endif
+
+static fmiNStatus failed(INSTANCE i, const char *message);
+
+static fmiNStatus status(INSTANCE i, int is_ok, const char *message)
+{
+    return is_ok ? fmiNOK : failed(i, message);
+}
+
+// Changes of mode that need no work.
+#define MODE(name) \
+    EXPORT fmiNStatus FMI(name)(INSTANCE i) \
+    { \
+        return i == NULL ? fmiNError : fmiNOK; \
+    }
+MODE(ExitInitializationMode)
+MODE(EnterEventMode)
+MODE(EnterContinuousTimeMode)
+MODE(Terminate)
+
+EXPORT fmiNStatus FMI(SetDebugLogging)(INSTANCE i, fmiNBoolean on, size_t count, const fmiNString categories[])
+{
+    ignored(i, on, count, categories);
+    return fmiNOK;
+}
+
+EXPORT fmiNStatus FMI(CompletedIntegratorStep)(INSTANCE i, fmiNBoolean no_set, fmiNBoolean *enter_event_mode,
+                                               fmiNBoolean *terminate)
+{
+    ignored(i, no_set);
+    *enter_event_mode = *terminate = 0;
+    return fmiNOK;
+}
+
+OWN_FUNCTIONS
 EXPORT void FMI(FreeInstance)(INSTANCE i)
 {
     free(i);

@@ -1,11 +1,3 @@
-#ifdef FMI2_FUNCTION_PREFIX
-#define PASTED(prefix, name) prefix##name
-#define WITH_PREFIX(prefix, name) PASTED(prefix, name)
-#define FMI(name) WITH_PREFIX(FMI2_FUNCTION_PREFIX, fmi2##name)
-#else
-#define FMI(name) fmi2##name
-#endif
-
 typedef struct {
     Model model;
     const fmi2CallbackFunctions *callbacks;
@@ -22,11 +14,6 @@ static fmi2Status failed(fmi2Component c, const char *message)
     return fmi2Error;
 }
 
-static fmi2Status status(fmi2Component c, int is_ok, const char *message)
-{
-    return is_ok ? fmi2OK : failed(c, message);
-}
-
 static fmi2Status no_variables(fmi2Component c, size_t count)
 {
     return status(c, c != NULL && count == 0u, "all variables are of type Real");
@@ -40,12 +27,6 @@ EXPORT const char *FMI(GetTypesPlatform)(void)
 EXPORT const char *FMI(GetVersion)(void)
 {
     return "2.0";
-}
-
-EXPORT fmi2Status FMI(SetDebugLogging)(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[])
-{
-    ignored(c, on, count, categories);
-    return fmi2OK;
 }
 
 EXPORT fmi2Component FMI(Instantiate)(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
@@ -79,17 +60,7 @@ EXPORT fmi2Status FMI(SetupExperiment)(fmi2Component c, fmi2Boolean has_toleranc
     return fmi2OK;
 }
 
-// Changes of mode that need no work.
-#define MODE(name) \
-    EXPORT fmi2Status FMI(name)(fmi2Component c) \
-    { \
-        return c == NULL ? fmi2Error : fmi2OK; \
-    }
 MODE(EnterInitializationMode)
-MODE(ExitInitializationMode)
-MODE(EnterEventMode)
-MODE(EnterContinuousTimeMode)
-MODE(Terminate)
 
 EXPORT fmi2Status FMI(GetReal)(fmi2Component c, const fmi2ValueReference references[], size_t count, fmi2Real values[])
 {
@@ -131,15 +102,6 @@ EXPORT fmi2Status FMI(NewDiscreteStates)(fmi2Component c, fmi2EventInfo *info)
 {
     ignored(c);
     memset(info, 0, sizeof *info);
-    return fmi2OK;
-}
-
-EXPORT fmi2Status FMI(CompletedIntegratorStep)(fmi2Component c, fmi2Boolean no_set, fmi2Boolean *enter_event_mode,
-                                               fmi2Boolean *terminate)
-{
-    ignored(c, no_set);
-    *enter_event_mode = 0;
-    *terminate = 0;
     return fmi2OK;
 }
 

@@ -1,11 +1,3 @@
-#ifdef FMI3_FUNCTION_PREFIX
-#define PASTED(prefix, name) prefix##name
-#define WITH_PREFIX(prefix, name) PASTED(prefix, name)
-#define FMI(name) WITH_PREFIX(FMI3_FUNCTION_PREFIX, fmi3##name)
-#else
-#define FMI(name) fmi3##name
-#endif
-
 typedef struct {
     Model model;
     fmi3InstanceEnvironment environment;
@@ -21,20 +13,9 @@ static fmi3Status failed(fmi3Instance i, const char *message)
     return fmi3Error;
 }
 
-static fmi3Status status(fmi3Instance i, int is_ok, const char *message)
-{
-    return is_ok ? fmi3OK : failed(i, message);
-}
-
 EXPORT const char *FMI(GetVersion)(void)
 {
     return "3.0";
-}
-
-EXPORT fmi3Status FMI(SetDebugLogging)(fmi3Instance i, fmi3Boolean on, size_t count, const fmi3String categories[])
-{
-    ignored(i, on, count, categories);
-    return fmi3OK;
 }
 
 static fmi3Instance instantiated(fmi3String token, fmi3InstanceEnvironment environment, fmi3LogMessageCallback log)
@@ -90,19 +71,9 @@ EXPORT fmi3Status FMI(EnterInitializationMode)(fmi3Instance i, fmi3Boolean has_t
     return fmi3OK;
 }
 
-// Changes of mode that need no work.
-#define MODE(name) \
-    EXPORT fmi3Status FMI(name)(fmi3Instance i) \
-    { \
-        return i == NULL ? fmi3Error : fmi3OK; \
-    }
-MODE(ExitInitializationMode)
-MODE(EnterEventMode)
-MODE(Terminate)
 MODE(EnterConfigurationMode)
 MODE(ExitConfigurationMode)
 MODE(EvaluateDiscreteStates)
-MODE(EnterContinuousTimeMode)
 MODE(EnterStepMode)
 
 EXPORT fmi3Status FMI(GetFloat64)(fmi3Instance i, const fmi3ValueReference references[], size_t count,
@@ -229,14 +200,6 @@ EXPORT fmi3Status FMI(UpdateDiscreteStates)(fmi3Instance i, fmi3Boolean *again, 
     ignored(i);
     *again = *terminate = *nominals = *values = *has_next = false;
     *next = 0.0;
-    return fmi3OK;
-}
-
-EXPORT fmi3Status FMI(CompletedIntegratorStep)(fmi3Instance i, fmi3Boolean no_set, fmi3Boolean *enter_event_mode,
-                                               fmi3Boolean *terminate)
-{
-    ignored(i, no_set);
-    *enter_event_mode = *terminate = false;
     return fmi3OK;
 }
 

@@ -3,13 +3,14 @@ enum { STATES = 2 * N, RESULT = QDD, THIRD = TAU, STEP = PARAMETERS };
 
 static void evaluate(double *v)
 {
-FILLED    PREFIX_forward_dynamics(v + Q, v + QD, v + TAUVALUE_ARGUMENT, v + QDD);
+FILLED    PREFIX_forward_dynamics_with_payload(v + Q, v + QD, v + TAU, v + PAYLOADVALUE_ARGUMENT, v + QDD);
 }
 
 static void derivatives(const double *v, Blocks blocks)
 {
     PREFIX_acceleration_derivatives by;
-FILLED    PREFIX_forward_dynamics_derivatives(v + Q, v + QD, v + TAUDERIVATIVES_ARGUMENT, &by);
+FILLED    PREFIX_forward_dynamics_derivatives_with_payload(
+        v + Q, v + QD, v + TAU, v + PAYLOADDERIVATIVES_ARGUMENT, &by);
     memcpy(blocks[0], by.dq, sizeof by.dq);
     memcpy(blocks[1], by.dqd, sizeof by.dqd);
     memcpy(blocks[2], by.dtau, sizeof by.dtau);

@@ -3,16 +3,17 @@ enum { STATES = 0, RESULT = TAU, THIRD = QDD };
 
 static void evaluate(double *v)
 {
-FILLED    PREFIX_inverse_dynamics(v + Q, v + QD, v + QDDVALUE_ARGUMENT, v + TAU);
+FILLED    PREFIX_inverse_dynamics_with_payload(v + Q, v + QD, v + QDD, v + PAYLOADVALUE_ARGUMENT, v + TAU);
 }
 
 static void derivatives(const double *v, Blocks blocks)
 {
     PREFIX_torque_derivatives by;
-FILLED    PREFIX_inverse_dynamics_derivatives(v + Q, v + QD, v + QDDDERIVATIVES_ARGUMENT, &by);
+FILLED    PREFIX_inverse_dynamics_derivatives_with_payload(
+        v + Q, v + QD, v + QDD, v + PAYLOADDERIVATIVES_ARGUMENT, &by);
     memcpy(blocks[0], by.dq, sizeof by.dq);
     memcpy(blocks[1], by.dqd, sizeof by.dqd);
-    PREFIX_mass_matrix(v + QMASS_ARGUMENT, blocks[2]);
+    PREFIX_mass_matrix_with_payload(v + Q, v + PAYLOADMASS_ARGUMENT, blocks[2]);
 }
 
 static int integrate(double *v, double duration)

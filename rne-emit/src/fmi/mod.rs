@@ -16,7 +16,7 @@ use rne_model::Robot;
 use crate::parameters::{are_used, used};
 use crate::{CCode, inert};
 use parameters::FmuParameter;
-use variables::Variable;
+use variables::{PAYLOAD, Variable};
 
 pub use parameters::with_inertial_parameters;
 
@@ -43,8 +43,14 @@ impl FmuCausality {
     #[must_use]
     pub const fn functions(self) -> &'static [Function] {
         match self {
-            Self::Forward => &[Function::ForwardDynamics, Function::ForwardDynamicsDerivatives],
-            Self::Inverse => &[Function::InverseDynamics, Function::MassMatrix, Function::InverseDynamicsDerivatives],
+            Self::Forward => {
+                &[Function::ForwardDynamicsWithPayload, Function::ForwardDynamicsDerivativesWithPayload]
+            }
+            Self::Inverse => &[
+                Function::InverseDynamicsWithPayload,
+                Function::InverseDynamicsDerivativesWithPayload,
+                Function::MassMatrixWithPayload,
+            ],
         }
     }
 }
@@ -135,8 +141,10 @@ impl Fmu<'_> {
             .replace("INSTANCE", instance)
             .replace("DESERIALIZE", deserialize)
             .replace("GET_DERIVATIVES", derivatives)
-            .replace("fmiN", &format!("fmi{number}"));
-        let first = variables.len() - parameters.len();
+            .replace("fmiN", &format!("fmi{number}"))
+            .replace("FMIN", &format!("FMI{number}"))
+            .replace("OWN_FUNCTIONS", own);
+        let first = variables.len() - PAYLOAD.len() - parameters.len();
         let mut filled = String::new();
         if !parameters.is_empty() {
             let upper = name.to_ascii_uppercase();
@@ -145,26 +153,15 @@ impl Fmu<'_> {
                 let _ = writeln!(filled, "    parameters.{} = v[{}];", parameter.member, first + index);
             }
         }
-        let argument = |function: Function| {
-            let program = self.programs.iter().find(|program| program.function == function);
-            program.is_some_and(are_used)
-        };
-        let [value, by, mass] = match self.causality {
-            FmuCausality::Forward => {
-                [Function::ForwardDynamics, Function::ForwardDynamicsDerivatives, Function::MassMatrix]
-            }
-            FmuCausality::Inverse => {
-                [Function::InverseDynamics, Function::InverseDynamicsDerivatives, Function::MassMatrix]
-            }
-        }
-        .map(argument);
+        let are_used = |&function: &Function| self.programs.iter().any(|one| one.function == function && are_used(one));
+        let used: Vec<bool> = self.causality.functions().iter().map(are_used).collect();
         let mut equations = equations.to_owned();
-        for (place, is_used) in [("VALUE_ARGUMENT", value), ("DERIVATIVES_ARGUMENT", by), ("MASS_ARGUMENT", mass)] {
-            equations = equations.replace(place, if is_used { ", &parameters" } else { "" });
+        for (place, is_used) in ["VALUE_ARGUMENT", "DERIVATIVES_ARGUMENT", "MASS_ARGUMENT"].into_iter().zip(&used) {
+            equations = equations.replace(place, if *is_used { ", &parameters" } else { "" });
         }
         // a function that uses no parameter needs no struct
         let mut parts = equations.split("FILLED").map(str::to_owned).collect::<Vec<_>>();
-        for (part, is_used) in parts.iter_mut().skip(1).zip([value, by || mass]) {
+        for (part, is_used) in parts.iter_mut().skip(1).zip([used[0], used[1..].contains(&true)]) {
             part.insert_str(0, if is_used { &filled } else { "" });
         }
         let starts: Vec<String> = variables.iter().map(|variable| format!("{:?}", variable.start)).collect();
@@ -175,7 +172,7 @@ impl Fmu<'_> {
             .replace("INSTANTIATION_TOKEN", self.token)
             .replace("DOF", &self.robot.dof().to_string());
         let title = crate::c::comment("//", &format!("{}: the functions of FMI {number}.0.", inert::title(self.robot)));
-        title + &with_name(&(model + own + "\n" + &common), name)
+        title + &with_name(&(model + "\n" + &common), name)
     }
 
     fn documentation(&self) -> String {

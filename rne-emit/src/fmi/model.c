@@ -21,7 +21,8 @@ enum {
     QDD = QD + N,
     TAU = QDD + N,
     PARAMETERS = TAU + N,
-    COUNT = COUNT_OF_VALUES
+    COUNT = COUNT_OF_VALUES,
+    PAYLOAD = COUNT - 10
 };
 
 static const double START[COUNT] = {

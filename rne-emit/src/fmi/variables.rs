@@ -30,8 +30,23 @@ pub(super) struct Variable {
     pub(super) derivative_of: Option<usize>,
 }
 
+/// The numbers of a payload, in the order of the argument in C: their names and units.
+pub(super) const PAYLOAD: [(&str, &str); 10] = [
+    ("mass", "kg"),
+    ("com.x", "m"),
+    ("com.y", "m"),
+    ("com.z", "m"),
+    ("inertia.xx", "kg.m2"),
+    ("inertia.yy", "kg.m2"),
+    ("inertia.zz", "kg.m2"),
+    ("inertia.xy", "kg.m2"),
+    ("inertia.xz", "kg.m2"),
+    ("inertia.yz", "kg.m2"),
+];
+
 impl Fmu<'_> {
-    /// Time; q, q̇, q̈ and τ of all joints; the step of the integrator; the parameters. The C code knows this order.
+    /// Time; q, q̇, q̈ and τ of all joints; the step of the integrator; the parameters; the payload. The C code knows
+    /// this order.
     pub(super) fn variables(&self) -> Vec<Variable> {
         let is_forward = self.causality == FmuCausality::Forward;
         let dof = self.robot.dof();
@@ -86,6 +101,20 @@ impl Fmu<'_> {
             unit: parameter.unit,
             role: Role::Tunable,
             start: parameter.value,
+            range: None,
+            derivative_of: None,
+        }));
+        variables.extend(PAYLOAD.map(|(name, unit)| Variable {
+            name: format!("payload.{name}"),
+            description: match name {
+                "mass" => "Mass of a payload that is fixed to the tip",
+                name if name.starts_with("com") => "Centre of mass of the payload, in the tip frame",
+                _ => "Inertia tensor of the payload about its centre of mass, in the axes of the tip frame",
+            }
+            .to_owned(),
+            unit: Some(unit),
+            role: Role::Tunable,
+            start: 0.0,
             range: None,
             derivative_of: None,
         }));

@@ -6,8 +6,9 @@ import types
 
 import numpy as np
 
-from .derivatives import DERIVATIVES, refusal
+from .derivatives import Point, derivatives
 from .names import of_content
+from .signatures import of_arm, title
 
 #: The arms that operators name; a compiled graph of PyTorch can call them at any time.
 _ARMS = {}
@@ -24,14 +25,17 @@ def functions(arm, frame):
         raise ImportError("`Arm.torch` needs the package torch, 2.4 or later: pip install torch") from error
     if not hasattr(torch.library, "custom_op"):
         raise ImportError(f"`Arm.torch` needs the package torch, 2.4 or later, but {torch.__version__} is installed")
+    calls = {method: _call(function) for method, function in _of_arm(arm, frame).items()}
+    return Functions(title(arm, frame), calls)
+
+
+def _of_arm(arm, frame):
     name = of_content(arm, frame)
     if name not in _ARMS:
-        at = {} if frame is None else {"frame": frame}
-        told = arm._functions(frame)
-        _ARMS[name] = {method: _Function(arm, at, method, *one) for method, _, *one in told}
-    title = f"{arm.name}{f' at {frame}' if frame else ''}"
-    calls = {method: _call(name, function) for method, function in _ARMS[name].items()}
-    return Functions(title, calls)
+        # those that have none at a frame are those of the tip, with its derivatives
+        tip = {} if frame is None else _of_arm(arm, None)
+        _ARMS[name] = {**tip, **{one.name: _Function(arm, name, frame, one) for one in of_arm(arm, frame)}}
+    return _ARMS[name]
 
 
 class Functions(types.SimpleNamespace):
@@ -46,14 +50,11 @@ class Functions(types.SimpleNamespace):
 
 
 class _Function:
-    """A function of an arm: the shapes of its arguments and results for one state."""
+    """A function of an arm, or of an arm at a frame."""
 
-    def __init__(self, arm, at, method, operands, results):
-        self.method, self.name = getattr(arm, method), method
-        self.at = at if at and "frame=" in (self.method.__text_signature__ or "") else {}
-        self.shapes = {name: (4, 4) if name == "pose" else tuple(shape) for name, shape in operands}
-        self.results = [(*shape, 4, 4) if is_pose else tuple(shape) for shape, is_pose in results]
-        self.values = arm._parameter_values() if arm.parameters else None
+    def __init__(self, arm, name, frame, signature):
+        self.method, self.arm, self.frame, self.signature = getattr(arm, signature.name), name, frame, signature
+        self.shapes, self.results = signature.shapes, [shape for shape, _ in signature.results]
 
     def leading(self, arguments):
         import torch
@@ -72,7 +73,7 @@ class _Function:
             rows[name] = one.reshape(-1, *shape).numpy()
         if math.prod(leading) == 0:
             return [arguments[0].new_zeros((*leading, *shape)) for shape in self.results]
-        found = self.method(**rows, **self.at)
+        found = self.method(**rows, **({} if self.frame is None else {"frame": self.frame}))
         found = found if isinstance(found, tuple) else (found,)
         # parts are views of one array, and results of an operator share no memory
         parts = [np.array(part, copy=True) for part in found] if len(found) > 1 else map(np.asarray, found)
@@ -103,7 +104,7 @@ def _operator():
     def backward(ctx, gradients):
         given = dict(zip(_ARMS[ctx.arm][ctx.function].shapes, ctx.saved_tensors))
         wanted = {name: wants for name, wants in zip(given, ctx.needs_input_grad[0]) if wants}
-        found = _gradients(ctx.arm, ctx.function, given, wanted, gradients[0])
+        found = _gradients(_ARMS[ctx.arm][ctx.function], given, wanted, gradients)
         return [found.get(name) for name in given], None, None
 
     operator.register_autograd(backward, setup_context=setup)
@@ -119,70 +120,49 @@ def _operator():
     return operator
 
 
-def _gradients(arm, function, given, wanted, gradient):
-    """The products of a row of multipliers and the derivatives, by the arguments that are wanted."""
+def _gradients(one, given, wanted, gradients):
+    """The products of the multipliers of the results and their derivatives, by the arguments that are wanted."""
     import torch
 
-    for name in wanted:
-        if name not in DERIVATIVES.get(function, {}):
-            raise NotImplementedError(refusal(function, name))
+    def compute(name, arguments):
+        other = _ARMS[one.arm][name]
+        results = _operator()([arguments[argument] for argument in other.shapes], other.arm, name)
+        return results[0] if len(results) == 1 else tuple(results)
 
-    @functools.cache
-    def of(name, multipliers=None):
-        one, zeros = _ARMS[arm][name], torch.zeros_like(given["q"])
-        arguments = [multipliers if part == "multipliers" else given.get(part, zeros) for part in one.shapes]
-        results = _operator()(arguments, arm, name)
-        return results[0] if len(results) == 1 else results
-
-    found = {}
-    for name in wanted:
-        if function in _TORQUES:
-            product = of("torque_gradient", gradient)[("q", "qd", "qdd").index(name)]
-        else:
-            derivative = DERIVATIVES[function][name](of, given, torch)
-            axes = _ARMS[arm][function].results[0]
-            rows = derivative.reshape(*derivative.shape[: derivative.dim() - len(axes) - 1], math.prod(axes), -1)
-            weights = gradient.reshape(*gradient.shape[: gradient.dim() - len(axes)], math.prod(axes))
-            product = torch.einsum("...ij,...i->...j", rows, weights)
-        found[name] = product.sum_to_size(given[name].shape)
+    point = Point(compute, given, torch, one.frame is None)
+    name, found = one.signature.name, {}
+    if name in _TORQUES and wanted.keys() <= {"q", "qd", "qdd"}:
+        product = point.with_("torque_gradient", multipliers=gradients[0])
+        return {argument: product[at].sum_to_size(given[argument].shape)
+                for at, argument in enumerate(("q", "qd", "qdd")) if argument in wanted}
+    for argument in wanted:
+        total = torch.zeros_like(given[argument])
+        for index, derivative in enumerate(derivatives(name, argument, point)):
+            if derivative is not None and gradients[index] is not None:
+                matrix, gradient = one.signature.matrix(derivative, index), gradients[index]
+                weights = gradient.reshape((*gradient.shape[: gradient.ndim - len(one.results[index])], matrix.shape[-2]))
+                total = total + torch.einsum("...ij,...i->...j", matrix, weights).sum_to_size(total.shape)
+        found[argument] = total
     return found
 
 
-def _call(arm, one):
+def _call(one):
     """A function as users call it."""
     import torch
 
-    names, operator = list(one.shapes), _operator()
+    signature, operator = one.signature, _operator()
 
     def call(*arguments, **keywords):
-        given = dict(zip(names, arguments))
-        if len(arguments) > len(names) or given.keys() & keywords.keys() or keywords.keys() - set(names):
-            raise TypeError(f"`{one.name}` takes {', '.join(names)}, each once")
-        given.update(keywords)
-        if one.values is not None:
-            given.setdefault("parameters", one.values)
-        missing = [name for name in names if name not in given]
-        if missing:
-            raise TypeError(f"`{one.name}` needs `{missing[0]}`; it takes {', '.join(names)}")
-        tensors = [torch.as_tensor(given[name]) for name in names]
+        tensors = [torch.as_tensor(given) for given in signature.given(arguments, keywords)]
         floats = [tensor.dtype for tensor in tensors if tensor.is_floating_point()]
         kind = functools.reduce(torch.promote_types, floats, torch.float32) if floats else torch.float64
-        for index, (name, tensor) in enumerate(zip(names, tensors)):
-            shape = one.shapes[name]
+        for name, tensor in zip(signature.shapes, tensors):
             if tensor.device.type != "cpu":
                 raise ValueError(f"`{name}` is on {tensor.device}, but rne computes on the CPU: give it `{name}.cpu()`")
             if tensor.is_complex():
                 raise TypeError(f"`{name}` is a tensor of {tensor.dtype}, but it must be one of real numbers")
-            if tensor.dim() < len(shape) or tensor.shape[tensor.dim() - len(shape) :] != shape:
-                wanted = ", ".join(["...", *map(str, shape)])
-                raise ValueError(f"`{name}` has the shape {tuple(tensor.shape)}, but it must be ({wanted})")
-            tensors[index] = tensor.to(kind)
-        most = max(tensor.dim() - len(shape) for tensor, shape in zip(tensors, one.shapes.values()))
-        for index, (tensor, shape) in enumerate(zip(tensors, one.shapes.values())):
-            tensors[index] = tensor.reshape((1,) * (most + len(shape) - tensor.dim()) + tensor.shape)
-        results = operator(tensors, arm, one.name)
+        tensors = [tensor.to(kind) for tensor in signature.aligned(tensors)]
+        results = operator(tensors, one.arm, signature.name)
         return results[0] if len(results) == 1 else tuple(results)
 
-    call.__name__ = call.__qualname__ = one.name
-    call.__doc__ = f"`Arm.{one.name}` for PyTorch; arguments: {', '.join(names)}."
-    return call
+    return signature.entitled(call, "PyTorch")

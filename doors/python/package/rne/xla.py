@@ -9,8 +9,9 @@ import warnings
 import numpy as np
 
 from ._rne import xla_handler
-from .derivatives import DERIVATIVES, refusal
+from .derivatives import Point, derivatives
 from .names import of_content
+from .signatures import of_arm, title
 
 #: The name of the machine in the programs of XLA.
 TARGET = "rne"
@@ -56,13 +57,12 @@ class Functions:
 
     def __init__(self, arm, frame, name):
         arm._for_xla(name, frame)
-        told = arm._functions(frame)
-        values = arm._parameter_values() if arm.parameters else None
-        self._title = f"{arm.name}{f' at {frame}' if frame else ''}"
-        self._all = {}
-        for method, function, operands, results in told:
-            self._all[method] = _Function(self._all, name, method, function, operands, results, values)
-        vars(self).update({function: one.call for function, one in self._all.items()})
+        self._title = title(arm, frame)
+        # those that have none at a frame are those of the tip, with its derivatives
+        self._all = {} if frame is None else dict(functions(arm, None)._all)
+        for signature in of_arm(arm, frame):
+            self._all[signature.name] = _Function(self._all, name, signature, frame is None)
+        vars(self).update({method: one.call for method, one in self._all.items()})
 
     def __repr__(self):
         import jax
@@ -74,62 +74,42 @@ class Functions:
 class _Function:
     """A function: `call` as users call it, `derived` on arrays of one type and as many leading axes."""
 
-    def __init__(self, others, arm, name, function, operands, results, values):
+    def __init__(self, others, arm, signature, at_tip):
         import jax
 
-        self.others, self.arm, self.name, self.function = others, arm, name, function
-        self.results, self.values = results, values
-        self.shapes = dict(operands)
+        self.others, self.arm, self.signature, self.at_tip = others, arm, signature, at_tip
         self.derived = jax.custom_jvp(self.computed)
         self.derived.defjvp(self.tangent, symbolic_zeros=True)
-        self.call = self._call()
+        self.call = signature.entitled(self._call(), "JAX")
 
     def _call(self):
         import jax
         import jax.numpy as jnp
 
-        names = list(self.shapes)
-        shapes = {**self.shapes, "pose": (4, 4)}
-
         def call(*arguments, **keywords):
-            given = dict(zip(names, arguments))
-            if len(arguments) > len(names) or given.keys() & keywords.keys() or keywords.keys() - set(names):
-                raise TypeError(f"`{self.name}` takes {', '.join(names)}, each once")
-            given.update(keywords)
-            if self.values is not None:
-                given.setdefault("parameters", self.values)
-            missing = [name for name in names if name not in given]
-            if missing:
-                raise TypeError(f"`{self.name}` needs `{missing[0]}`; it takes {', '.join(names)}")
-            if not jax.config.jax_enable_x64 and any(getattr(one, "dtype", None) == np.float64 for one in given.values()):
+            given = self.signature.given(arguments, keywords)
+            if not jax.config.jax_enable_x64 and any(getattr(one, "dtype", None) == np.float64 for one in given):
                 warnings.warn(
                     "arrays of float64 are computed in float32, because JAX's option jax_enable_x64 is off; "
                     'jax.config.update("jax_enable_x64", True) turns it on',
                     stacklevel=2,
                 )
-            arrays = [jnp.asarray(given[name]) for name in names]
+            arrays = [jnp.asarray(one) for one in given]
             kinds = [array.dtype for array in arrays]
-            for name, kind in zip(names, kinds):
+            for name, kind in zip(self.signature.shapes, kinds):
                 if not (jnp.issubdtype(kind, jnp.floating) or jnp.issubdtype(kind, jnp.integer)):
                     raise TypeError(f"`{name}` is an array of {kind}, but it must be one of real numbers")
             floats = [kind for kind in kinds if jnp.issubdtype(kind, jnp.floating)]
             kind = jnp.result_type(*floats, jnp.float32) if floats else jnp.result_type(float)
             flat = []
-            for name, array in zip(names, arrays):
-                shape = tuple(shapes[name])
-                axes = array.ndim - len(shape)
-                if axes < 0 or array.shape[axes:] != shape:
-                    wanted = ", ".join(["...", *map(str, shape)])
-                    raise ValueError(f"`{name}` has the shape {array.shape}, but it must be ({wanted})")
+            for (name, shape), array in zip(self.signature.shapes.items(), self.signature.aligned(arrays)):
+                leading, size = array.shape[: array.ndim - len(shape)], math.prod(shape)
                 if name == "pose":
-                    turn = array[..., :3, :3].reshape(*array.shape[:axes], 9)
-                    array = jnp.concatenate([turn, array[..., :3, 3]], -1)
-                flat.append(array.astype(kind).reshape(*array.shape[:axes], math.prod(self.shapes[name])))
-            most = max(array.ndim for array in flat)
-            return self.derived(*[array.reshape((1,) * (most - array.ndim) + array.shape) for array in flat])
+                    size = 12
+                    array = jnp.concatenate([array[..., :3, :3].reshape(*leading, 9), array[..., :3, 3]], -1)
+                flat.append(array.astype(kind).reshape(*leading, size))
+            return self.derived(*flat)
 
-        call.__name__ = call.__qualname__ = self.name
-        call.__doc__ = f"`Arm.{self.name}` for JAX; arguments: {', '.join(names)}."
         return call
 
     def computed(self, *arrays):
@@ -138,12 +118,13 @@ class _Function:
         import jax.numpy as jnp
 
         leading = jnp.broadcast_shapes(*(array.shape[:-1] for array in arrays))
-        sizes = [math.prod(shape) * (12 if is_pose else 1) for shape, is_pose in self.results]
+        shapes = [(shape[:-2], True) if is_pose else (shape, False) for shape, is_pose in self.signature.results]
+        sizes = [math.prod(shape) * (12 if is_pose else 1) for shape, is_pose in shapes]
         result = jax.ShapeDtypeStruct((*leading, sum(sizes)), arrays[0].dtype)
         call = jax.ffi.ffi_call(TARGET, result, vmap_method="expand_dims")
-        numbers = call(*arrays, arm=self.arm, function=self.function)
+        numbers = call(*arrays, arm=self.arm, function=self.signature.function)
         parts, start = [], 0
-        for (shape, is_pose), size in zip(self.results, sizes):
+        for (shape, is_pose), size in zip(shapes, sizes):
             part = numbers if size == result.shape[-1] else numbers[..., start : start + size]
             start += size
             if is_pose:
@@ -161,27 +142,22 @@ class _Function:
         import jax
         import jax.numpy as jnp
 
-        given = dict(zip(self.shapes, primals))
-
-        @functools.cache
-        def of(name):
+        def compute(name, arguments):
             other = self.others[name]
-            zeros = jnp.zeros_like(given["q"])
-            return other.derived(*[given.get(name, zeros) for name in other.shapes])
+            return other.derived(*[arguments[argument] for argument in other.signature.shapes])
 
-        results = of(self.name)
-        total = None
-        for name, tangent in zip(self.shapes, tangents):
+        name, names = self.signature.name, list(self.signature.shapes)
+        point = Point(compute, dict(zip(names, primals)), jnp, self.at_tip)
+        results = point.of(name)
+        parts = list(results) if isinstance(results, tuple) else [results]
+        totals = [jnp.zeros_like(part) for part in parts]
+        for argument, tangent in zip(names, tangents):
             if isinstance(tangent, jax.custom_derivatives.SymbolicZero):
                 continue
-            rule = DERIVATIVES.get(self.name, {}).get(name)
-            if rule is None:
-                raise NotImplementedError(refusal(self.name, name))
-            derivative = rule(of, given, jnp)
-            leading = results.shape[: len(primals[0].shape) - 1]
-            shape = results.shape[len(leading) :]
-            rows = derivative.reshape(*derivative.shape[: len(leading)], math.prod(shape), -1)
-            product = jnp.einsum("...ij,...j->...i", rows, tangent)
-            product = jnp.broadcast_to(product, (*leading, math.prod(shape))).reshape(results.shape)
-            total = product if total is None else total + product
-        return results, jax.tree.map(jnp.zeros_like, results) if total is None else total
+            for index, derivative in enumerate(derivatives(name, argument, point)):
+                if derivative is not None:
+                    matrix = self.signature.matrix(derivative, index)
+                    product = jnp.einsum("...ij,...j->...i", matrix, tangent)
+                    whole = (*parts[index].shape[: primals[0].ndim - 1], matrix.shape[-2])
+                    totals[index] += jnp.broadcast_to(product, whole).reshape(parts[index].shape)
+        return results, tuple(totals) if isinstance(results, tuple) else totals[0]
