@@ -52,7 +52,7 @@ fn printed(robot: &Robot, files: &[(String, String)], main: &str) -> Option<Vec<
     let flags = "-std=c99 -Wall -Wextra -Wshadow -Wconversion -Werror -pedantic -ffp-contract=off -O1 -o program";
     let compiled = Command::new(std::env::var("CC").unwrap_or_else(|_| "cc".to_owned()))
         .args(flags.split(' '))
-        .args(["main.c", "fmu.c", &format!("{}.c", robot.name)])
+        .args(["main.c", "fmi-functions.c", &format!("{}.c", robot.name)])
         .current_dir(folder.path())
         .output();
     let Ok(compiled) = compiled else {
@@ -68,7 +68,7 @@ fn printed(robot: &Robot, files: &[(String, String)], main: &str) -> Option<Vec<
 
 /// The program of [`driver`], whose words in capitals are replaced.
 const MAIN: &str = r#"#include <stdio.h>
-#include "fmi_types.h"
+#include "fmi-types.h"
 DECLARATIONS
 int main(void)
 {

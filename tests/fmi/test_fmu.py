@@ -267,6 +267,6 @@ def test_signatures_are_those_of_the_standard(arm, tmp_path):
     version = arm.description.fmiVersion[0]
     headers = Path(fmpy.__file__).parent / "c-code"
     sources = Path(extract(arm.forward, tmp_path)) / "sources"
-    (sources / "fmi_types.h").write_text(f'#include "fmi{version}Functions.h"\n', encoding="utf-8")
-    run("cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-Wno-strict-prototypes", f"-I{headers}", "-c", "fmu.c",
+    (sources / "fmi-types.h").write_text(f'#include "fmi{version}Functions.h"\n', encoding="utf-8")
+    run("cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-Wno-strict-prototypes", f"-I{headers}", "-c", "fmi-functions.c",
         cwd=sources)

@@ -131,6 +131,13 @@ impl Arm {
                  parameters, and return a number, a vector or a matrix, such as inverse_dynamics",
             ));
         }
+        let prefix = Prefix::of(self.robot());
+        if let Some(name) = rne_emit::casadi_collision(&programs, &prefix).filter(|_| casadi) {
+            return Err(PyValueError::new_err(format!(
+                "two functions would have the name {name}: one for CasADi, and one of C, whose names begin with the \
+                 robot's name. Give the robot another `name`",
+            )));
+        }
         let precision = match precision {
             "double" => Precision::Double,
             "single" => Precision::Single,
@@ -141,7 +148,7 @@ impl Arm {
         let additions = Additions { casadi, ..Additions::default() };
         match language {
             "rust" => Ok(rne_emit::rust_file_with_sin_cos(self.robot(), &programs)),
-            "c" => rne_emit::c_code_with(self.robot(), &programs, precision, &Prefix::of(self.robot()), &additions)
+            "c" => rne_emit::c_code_with(self.robot(), &programs, precision, &prefix, &additions)
                 .map(|code| code.one_file())
                 .map_err(|error| of_evaluation(&error)),
             other => Err(PyValueError::new_err(format!("`{other}` is not a language; write c or rust"))),

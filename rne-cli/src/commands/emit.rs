@@ -16,7 +16,7 @@ use crate::files::output_file::{self, Existing, is_standard_output};
 use crate::files::plan_file::Compiler;
 use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::{Failure, Outcome};
-use crate::palette::{GOOD, TYPED};
+use crate::palette::{GOOD, TITLE, TYPED};
 use crate::values::choice;
 use crate::values::choice::FunctionOrAll;
 
@@ -210,7 +210,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.names_joints(&robot) {
         checked.identifiers.map_err(|report| Failure::from(&report))?;
     }
-    let mut outcome = emitted(arguments, &robot, &bytes, out, header)?;
+    let programs = programs(arguments, &robot)?;
+    let mut outcome = emitted(arguments, &robot, &programs, &bytes, out, header)?;
+    outcome.remark += &not_for_casadi(arguments, &programs);
     outcome.remark += &arguments.rotors.note(&robot);
     outcome.remark += &robot_file::lint_remark(&checked.lints, &arguments.file);
     Ok(outcome)
@@ -220,16 +222,25 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 fn emitted(
     arguments: &Arguments,
     robot: &Robot,
+    programs: &[Program],
     bytes: &[u8],
     out: Option<&Path>,
     header: Option<Header>,
 ) -> Result<Outcome, Failure> {
-    let programs = programs(arguments, robot)?;
     if arguments.casadi && !programs.iter().any(rne_emit::is_for_casadi) {
         return Err(Failure::usage(format_args!(
             "CasADi can call none of these functions: it calls functions that take vectors and return a number, a \
              vector or a matrix, such as {TYPED}--function inverse_dynamics,forward_dynamics{TYPED:#}"
         )));
+    }
+    if arguments.casadi {
+        let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
+        if let Some(name) = rne_emit::casadi_collision(programs, &prefix) {
+            return Err(Failure::usage(format_args!(
+                "two functions would have the name {name}: one for CasADi, and one of C, whose names begin with \
+                 {prefix}. Choose other names in C: {TYPED}--prefix my_arm{TYPED:#}"
+            )));
+        }
     }
     if arguments.rollout && !programs.iter().any(|program| rne_emit::is_for_rollouts(program.function)) {
         return Err(Failure::usage(format_args!(
@@ -253,13 +264,13 @@ fn emitted(
         tests: arguments.tests,
         ascii: arguments.ascii,
     };
-    let c_code = || c_code(&request, robot, &programs);
+    let c_code = || c_code(&request, robot, programs);
     let rust_file = if arguments.with_sin_cos { rne_emit::rust_file_with_sin_cos } else { rne_emit::rust_file };
     let names = if arguments.names_joints(robot) { rne_emit::rust_joints(robot) } else { String::new() };
-    let rust = || Ok::<_, Failure>(rust_file(robot, &programs) + &names + &rust_tests(arguments, robot, &programs)?);
+    let rust = || Ok::<_, Failure>(rust_file(robot, programs) + &names + &rust_tests(arguments, robot, programs)?);
     let shown = |text: String| if arguments.ascii { rne_emit::ascii(&text) } else { text };
     let language = if arguments.lang == Language::Cuda { ForGpu::Cuda } else { ForGpu::Ptx };
-    let gpu = || for_gpu(language, &request, robot, &programs);
+    let gpu = || for_gpu(language, &request, robot, programs);
     let generated = |path: &Path, text| Generated { path: path.to_owned(), text };
     let files = match (arguments.lang, out, header) {
         (Language::Rust, None, _) => return Ok(Outcome::text(shown(rust()?))),
@@ -277,6 +288,21 @@ fn emitted(
         Some(out) => check(arguments, out, &files),
         None => write(arguments, &files),
     }
+}
+
+/// The functions asked for by name that CasADi cannot call.
+fn not_for_casadi(arguments: &Arguments, programs: &[Program]) -> String {
+    let is_asked = |program: &&Program| arguments.functions.contains(&FunctionOrAll::One(program.function));
+    let left_out = programs.iter().filter(is_asked).filter(|program| !rne_emit::is_for_casadi(program));
+    let names: Vec<&str> = left_out.map(|program| program.name.as_str()).collect();
+    if !arguments.casadi || names.is_empty() {
+        return String::new();
+    }
+    format!(
+        "{TITLE}note{TITLE:#}: CasADi calls functions that take vectors and return a number, a vector or a matrix. These \
+         are functions of C alone: {}\n",
+        names.join(", ")
+    )
 }
 
 /// A file whose name says that it is in another language.
@@ -314,7 +340,7 @@ fn is_named_once(run_time: &[String]) -> Result<(), Failure> {
 
 fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
     use Language::{C, Cuda, Ptx, Rust};
-    let options: [(&str, bool, &[Language], &str); 9] = [
+    let options: [(&str, bool, &[Language], &str); 10] = [
         (
             "--with-sin-cos",
             arguments.with_sin_cos,
@@ -392,6 +418,20 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
     Function::ALL.into_iter().filter(is_needed).collect()
 }
 
+fn compiled(arguments: &Arguments, compiler: &Compiler<'_>, function: Function) -> Result<Program, Failure> {
+    let is_for_derivatives = arguments.casadi && !arguments.functions.contains(&FunctionOrAll::One(function));
+    compiler.compile(function, arguments.form()).map_err(|mut failure| {
+        if is_for_derivatives {
+            let _ = write!(
+                failure.text,
+                "\n`{function}` is needed for CasADi's derivatives of another function. Name the functions that you \
+                 need, such as {TYPED}--function inverse_dynamics{TYPED:#}"
+            );
+        }
+        failure
+    })
+}
+
 fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failure> {
     // kernels of a batch want the fewest instructions
     let target = if arguments.lang == Language::Ptx { Target::Throughput } else { Target::Latency };
@@ -400,7 +440,7 @@ fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failur
     let (of_frames, of_arm): (Vec<_>, Vec<_>) = functions.iter().partition(|function| function.of_frame().is_some());
     let of_tip = if arguments.frames.is_empty() { &functions } else { &of_arm };
     let mut programs: Vec<Program> =
-        of_tip.iter().map(|&function| compiler.compile(function, arguments.form())).collect::<Result<_, _>>()?;
+        of_tip.iter().map(|&function| compiled(arguments, &compiler, function)).collect::<Result<_, _>>()?;
     for frame in frames(arguments, robot)? {
         let robot = robot.clone().at_frame(frame);
         let compiler = Compiler::new(&arguments.file, &robot).for_target(target);
@@ -558,14 +598,12 @@ fn command(arguments: &Arguments, out: &Path) -> String {
         (" --rollout", arguments.rollout),
         (" --names", arguments.names),
         (" --with-sin-cos", arguments.with_sin_cos),
+        (" --casadi", arguments.casadi),
+        (" --acados", arguments.acados),
+        (" --tests", arguments.tests),
+        (" --ascii", arguments.ascii),
     ] {
         command.push_str(if is_given { option } else { "" });
-    }
-    if arguments.tests {
-        command.push_str(" --tests");
-    }
-    if arguments.ascii {
-        command.push_str(" --ascii");
     }
     let _ = write!(command, " -o {}", robot_file::shell(out));
     command

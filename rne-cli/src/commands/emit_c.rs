@@ -65,8 +65,16 @@ pub(super) fn c_code(request: &Request<'_>, robot: &Robot, programs: &[Program])
     let origin = origin(request);
     let friction = if request.friction { Some(friction(file, robot)?) } else { None };
     let friction = friction.as_deref();
-    let additions =
-        Additions { origin: Some(&origin), friction, limits, names, casadi, acados, runge_kutta, ..Additions::default() };
+    let additions = Additions {
+        origin: Some(&origin),
+        friction,
+        limits,
+        names,
+        casadi,
+        acados,
+        runge_kutta,
+        ..Additions::default()
+    };
     if limits && robot.independent_joints().all(|joint| joint.limits.effort.is_none()) {
         let has_follower = robot.joints.iter().any(|joint| joint.limits.effort.is_some());
         let follower =

@@ -252,7 +252,9 @@ fn of_eval() -> String {
     let mut row = |options: &str, functions: &str| {
         let indent = " ".repeat(18);
         let words = wrap(functions, terminal::width(PAGE) - indent.len(), "").replace('\n', &format!("\n{indent}"));
-        let _ = writeln!(text, "{TYPED}{options:<18}{TYPED:#}{words}");
+        // long options have a line of their own
+        let options = if options.len() < 18 { format!("{options:<18}") } else { format!("{options}\n{indent}") };
+        let _ = writeln!(text, "{TYPED}{options}{TYPED:#}{words}");
     };
     row("--q", &functions_of(&[Positions]));
     row("--q --qd", &functions_of(&[Positions, Rates]));

@@ -11,6 +11,7 @@ use crate::files::file_name::Format;
 use crate::files::output_file::Output;
 use crate::files::robot_file::{self, Shape};
 use crate::outcome::{Failure, Outcome};
+use crate::palette::TYPED;
 
 /// Convert a robot file to a URDF or an FMU, for other programs
 #[derive(Args)]
@@ -53,6 +54,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if let (Some(version), Some(out)) = (&arguments.fmu, &arguments.output.out) {
         let version = if version == "2" { FmiVersion::Two } else { FmiVersion::Three };
         return fmu::write(&arguments.file, version, arguments.options, out, arguments.output.force);
+    }
+    if let Some(option) = arguments.options.given() {
+        return Err(Failure::usage(format_args!(
+            "{TYPED}{option}{TYPED:#} is for FMUs. Leave it out, or ask for \
+            {TYPED}--fmu{TYPED:#} instead of {TYPED}--urdf{TYPED:#}"
+        )));
     }
     let robot = robot_file::robot(&arguments.file, Shape::Coupled)?;
     let exported = rne_convert::export(&robot)

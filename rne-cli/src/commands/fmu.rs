@@ -22,14 +22,22 @@ use crate::palette::{TITLE, TYPED};
 #[derive(Args, Clone, Copy)]
 pub(super) struct Options {
     /// FMU: motion in, torques out
-    #[arg(long, requires = "fmu")]
+    #[arg(long)]
     inverse: bool,
     /// FMU: sources only, no binary
-    #[arg(long, requires = "fmu")]
+    #[arg(long)]
     no_build: bool,
     /// FMU: include the inertia of the motors' rotors
-    #[arg(long, requires = "fmu")]
+    #[arg(long)]
     rotors: bool,
+}
+
+impl Options {
+    /// The first of these options that is given.
+    pub(super) fn given(self) -> Option<&'static str> {
+        let options = [("--inverse", self.inverse), ("--no-build", self.no_build), ("--rotors", self.rotors)];
+        options.into_iter().find_map(|(option, is_given)| is_given.then_some(option))
+    }
 }
 
 /// Writes the FMU of a robot file.
@@ -51,6 +59,13 @@ pub(super) fn write(
     if checked.robot.floating_base.is_some() {
         return Err(Failure::input(format_args!(
             "{}: the base of this robot floats, and an FMU needs a fixed base; remove `floating_base` to fix the base",
+            file.display()
+        )));
+    }
+    if !checked.robot.closed.is_empty() {
+        return Err(Failure::input(format_args!(
+            "{}: this robot has closed loops, and an FMU needs a robot without closed loops; remove `loops`, or use \
+             {TYPED}rne emit --lang c{TYPED:#}, which writes functions of closed loops",
             file.display()
         )));
     }
@@ -98,16 +113,25 @@ pub(super) fn write(
 
 /// The binary for this computer with its path in the FMU and the compiler; none if there is no compiler.
 fn binary(fmu: &Fmu<'_>, files: &[(String, String)]) -> Result<Option<(String, Vec<u8>, String)>, Failure> {
-    let folder = tempfile::tempdir().map_err(Failure::input)?;
+    let folder = tempfile::tempdir().map_err(|error| {
+        Failure::input(format_args!(
+            "the folder of temporary files {} cannot be used: {error}. Set the variable TMPDIR to a folder that can be \
+             written, or give {TYPED}--no-build{TYPED:#}",
+            std::env::temp_dir().display()
+        ))
+    })?;
     let library = folder.path().join("library");
     for (path, text) in files {
         if let Some(name) = path.strip_prefix("sources/") {
             fs::write(folder.path().join(name), text).map_err(Failure::input)?;
         }
     }
-    let compiler = std::env::var("CC").ok().filter(|name| !name.is_empty()).unwrap_or_else(|| "cc".to_owned());
-    let mut command = Command::new(&compiler);
-    command.args(["-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared", "-o"]).arg(&library);
+    let named = std::env::var("CC").ok().filter(|name| !name.trim().is_empty());
+    let compiler = named.clone().unwrap_or_else(|| "cc".to_owned());
+    // as in make, options may follow the name of the compiler
+    let mut words = compiler.split_whitespace();
+    let mut command = Command::new(words.next().unwrap_or("cc"));
+    command.args(words).args(["-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared", "-o"]).arg(&library);
     match command.args(fmu.sources()).current_dir(folder.path()).output() {
         Ok(output) if output.status.success() => {
             let path = format!("binaries/{}/{}.{}", platform(fmu.version), fmu.robot.name, extension());
@@ -117,6 +141,10 @@ fn binary(fmu: &Fmu<'_>, files: &[(String, String)]) -> Result<Option<(String, V
             "{compiler} does not compile the sources; {TYPED}--no-build{TYPED:#} writes the FMU without a \
              binary:\n{}",
             String::from_utf8_lossy(&output.stderr)
+        ))),
+        Err(error) if error.kind() == ErrorKind::NotFound && named.is_some() => Err(Failure::input(format_args!(
+            "the compiler {compiler} that the variable CC names is not found; correct or remove the variable, or give \
+             {TYPED}--no-build{TYPED:#}"
         ))),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
         Err(error) => Err(Failure::input(format_args!("{compiler} cannot be started: {error}"))),

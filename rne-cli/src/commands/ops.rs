@@ -98,6 +98,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
                 let functions: Vec<Function> = choice::functions_of(&robot)
                     .filter(|function| arguments.functions.is_empty() || arguments.functions.contains(function))
                     .collect();
+                // the compiler says why a robot has not what is asked for
+                for &asked in arguments.functions.iter().filter(|asked| !functions.contains(asked)) {
+                    if let Err(error) = compiler.compiled(asked, Form::SevenSteps)? {
+                        let _ = writeln!(remarks, "{}: {error}", path.display());
+                    }
+                }
                 let counts = counts(path, &compiler, &functions, arguments.without.is_empty(), &mut remarks)?;
                 counted.push((robot.name.clone(), counts));
             }

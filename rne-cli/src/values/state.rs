@@ -490,7 +490,11 @@ fn not_taken(function: Function, name: &str, kind: Argument) -> Failure {
             && other.is_of_closed_loops() == function.is_of_closed_loops()
     };
     let others: Vec<String> = Function::ALL.iter().filter(|other| is_named(other)).map(ToString::to_string).collect();
+    let variant = format!("{function}_with_wrenches");
     let hint = match others.as_slice() {
+        _ if kind == Argument::Wrench && Function::ALL.iter().any(|other| other.name() == variant) => {
+            format!("; {variant} takes it as --tip-wrench TIP=…, with the name of a tip, or `tip`")
+        }
         _ if kind == Argument::Wrench && function.takes(Argument::Wrenches) => {
             "; give it as --tip-wrench TIP=…, with the name of a tip, or `tip`".to_owned()
         }

@@ -33,7 +33,7 @@ fn an_fmu_is_an_archive_of_sources_for_its_version() {
         let files = files(&out);
         let text = |name: &str| &files.iter().find(|(known, _)| known == name).expect(name).1;
         assert!(text("modelDescription.xml").contains(own));
-        for name in ["planar2.c", "planar2.h", "fmu.c", "fmi_types.h", "CMakeLists.txt"] {
+        for name in ["planar2.c", "planar2.h", "fmi-functions.c", "fmi-types.h", "CMakeLists.txt"] {
             assert!(!text(&format!("sources/{name}")).is_empty());
         }
         let has = |name: &str| files.iter().any(|(known, _)| known.starts_with(name));

@@ -10,7 +10,7 @@ use std::fmt::Write;
 use rne_codegen::{ArgumentArray, Function, Layout, Program, Value};
 
 use super::signature::{inputs, record_type, wrapped};
-use super::{File, comment};
+use super::{File, Prefix, comment};
 use crate::parameters;
 
 /// The part that is the same for all functions; PREFIX, DOF and LONGEST are replaced.
@@ -77,6 +77,17 @@ fn derivatives(function: Function) -> Option<Derivatives> {
 pub fn is_for_casadi(program: &Program) -> bool {
     let takes_vectors = inputs(program).iter().all(|array| array.lengths().len() == 1);
     takes_vectors && !parameters::are_used(program) && shape(&program.layout()).is_some()
+}
+
+/// The name that a function for CasADi and a function of C with this prefix would both have, if there is one: a robot
+/// may be called `jac`.
+#[must_use]
+pub fn casadi_collision(programs: &[Program], prefix: &Prefix) -> Option<String> {
+    let of_casadi: Vec<String> = programs
+        .iter()
+        .flat_map(|program| ["", "jac_", "fwd1_", "adj1_", "jac_adj1_"].map(|of| format!("{of}{}", program.name)))
+        .collect();
+    programs.iter().map(|program| format!("{prefix}_{}", program.name)).find(|name| of_casadi.contains(name))
 }
 
 /// Rows and columns.

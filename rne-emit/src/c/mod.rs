@@ -20,7 +20,7 @@ use super::inert::c_comment;
 use super::syntax::{Precision, Syntax};
 use super::wrap::{WIDTH, fill};
 
-pub use casadi::{casadi_derivatives, is_for_casadi};
+pub use casadi::{casadi_collision, casadi_derivatives, is_for_casadi};
 pub use joint_functions::{JointFriction, NoFriction};
 pub use prefix::{BadPrefix, Prefix};
 pub use signature::record_name;

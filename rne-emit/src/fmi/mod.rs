@@ -43,9 +43,7 @@ impl FmuCausality {
     #[must_use]
     pub const fn functions(self) -> &'static [Function] {
         match self {
-            Self::Forward => {
-                &[Function::ForwardDynamicsWithPayload, Function::ForwardDynamicsDerivativesWithPayload]
-            }
+            Self::Forward => &[Function::ForwardDynamicsWithPayload, Function::ForwardDynamicsDerivativesWithPayload],
             Self::Inverse => &[
                 Function::InverseDynamicsWithPayload,
                 Function::InverseDynamicsDerivativesWithPayload,
@@ -93,8 +91,9 @@ impl Fmu<'_> {
             ("modelDescription.xml".to_owned(), self.description(&variables)),
             (format!("sources/{name}.c"), self.code.source(&header)),
             (format!("sources/{header}"), self.code.header().to_owned()),
-            ("sources/fmu.c".to_owned(), self.wrapper(&variables)),
-            ("sources/fmi_types.h".to_owned(), types.to_owned()),
+            ("sources/fmi-functions.c".to_owned(), self.wrapper(&variables)),
+            // no robot has a name with a hyphen
+            ("sources/fmi-types.h".to_owned(), types.to_owned()),
             ("sources/CMakeLists.txt".to_owned(), cmake),
             ("documentation/index.html".to_owned(), self.documentation()),
         ];
@@ -107,7 +106,7 @@ impl Fmu<'_> {
     /// The names of the sources in the folder `sources` that a compiler is given.
     #[must_use]
     pub fn sources(&self) -> [String; 2] {
-        [format!("{}.c", self.robot.name), "fmu.c".to_owned()]
+        [format!("{}.c", self.robot.name), "fmi-functions.c".to_owned()]
     }
 
     /// The parameters that some program uses.

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "PREFIX.h"
-#include "fmi_types.h"
+#include "fmi-types.h"
 
 #ifdef _WIN32
 #define EXPORT __declspec(dllexport)

@@ -59,10 +59,11 @@ impl Fmu<'_> {
             range: None,
             derivative_of: None,
         };
+        // narrowed by those of joints that follow
+        let coordinate_limits = self.robot.coordinate_limits();
         let mut variables = vec![of_run("time", "Simulation time", Role::Time, 0.0)];
         for (order, kind) in ["q", "qd", "qdd", "tau"].into_iter().enumerate() {
-            for (index, joint) in self.robot.independent_joints().enumerate() {
-                let limits = &joint.limits;
+            for (index, (joint, limits)) in self.robot.independent_joints().zip(&coordinate_limits).enumerate() {
                 let symmetric = |largest: Option<f64>| largest.map(|largest| (-largest, largest));
                 let (what, range) = match order {
                     0 => ("Position", limits.position),
@@ -104,19 +105,21 @@ impl Fmu<'_> {
             range: None,
             derivative_of: None,
         }));
-        variables.extend(PAYLOAD.map(|(name, unit)| Variable {
-            name: format!("payload.{name}"),
-            description: match name {
-                "mass" => "Mass of a payload that is fixed to the tip",
-                name if name.starts_with("com") => "Centre of mass of the payload, in the tip frame",
-                _ => "Inertia tensor of the payload about its centre of mass, in the axes of the tip frame",
+        variables.extend(PAYLOAD.map(|(name, unit)| {
+            Variable {
+                name: format!("payload.{name}"),
+                description: match name {
+                    "mass" => "Mass of a payload that is fixed to the tip",
+                    name if name.starts_with("com") => "Centre of mass of the payload, in the tip frame",
+                    _ => "Inertia tensor of the payload about its centre of mass, in the axes of the tip frame",
+                }
+                .to_owned(),
+                unit: Some(unit),
+                role: Role::Tunable,
+                start: 0.0,
+                range: None,
+                derivative_of: None,
             }
-            .to_owned(),
-            unit: Some(unit),
-            role: Role::Tunable,
-            start: 0.0,
-            range: None,
-            derivative_of: None,
         }));
         variables
     }
