@@ -43,9 +43,7 @@ impl FmuCausality {
     #[must_use]
     pub const fn functions(self) -> &'static [Function] {
         match self {
-            Self::Forward => {
-                &[Function::ForwardDynamicsWithPayload, Function::ForwardDynamicsDerivativesWithPayload]
-            }
+            Self::Forward => &[Function::ForwardDynamicsWithPayload, Function::ForwardDynamicsDerivativesWithPayload],
             Self::Inverse => &[
                 Function::InverseDynamicsWithPayload,
                 Function::InverseDynamicsDerivativesWithPayload,

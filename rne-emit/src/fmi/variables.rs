@@ -104,19 +104,21 @@ impl Fmu<'_> {
             range: None,
             derivative_of: None,
         }));
-        variables.extend(PAYLOAD.map(|(name, unit)| Variable {
-            name: format!("payload.{name}"),
-            description: match name {
-                "mass" => "Mass of a payload that is fixed to the tip",
-                name if name.starts_with("com") => "Centre of mass of the payload, in the tip frame",
-                _ => "Inertia tensor of the payload about its centre of mass, in the axes of the tip frame",
+        variables.extend(PAYLOAD.map(|(name, unit)| {
+            Variable {
+                name: format!("payload.{name}"),
+                description: match name {
+                    "mass" => "Mass of a payload that is fixed to the tip",
+                    name if name.starts_with("com") => "Centre of mass of the payload, in the tip frame",
+                    _ => "Inertia tensor of the payload about its centre of mass, in the axes of the tip frame",
+                }
+                .to_owned(),
+                unit: Some(unit),
+                role: Role::Tunable,
+                start: 0.0,
+                range: None,
+                derivative_of: None,
             }
-            .to_owned(),
-            unit: Some(unit),
-            role: Role::Tunable,
-            start: 0.0,
-            range: None,
-            derivative_of: None,
         }));
         variables
     }
