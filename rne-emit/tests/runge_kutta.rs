@@ -113,7 +113,8 @@ fn printed<const DOF: usize>(robot: &Robot, programs: &[Program], states: &[[[f6
          arm_next_state next;\n        arm_next_state_derivatives by;\n        \
          arm_runge_kutta_step(q, q + {DOF}, q + 2 * {DOF}, {step:?}, &next);\n        \
          arm_runge_kutta_step_derivatives(q, q + {DOF}, q + 2 * {DOF}, {step:?}, &by);\n        \
-         print((const double *)&next, 2 * {DOF});\n        print((const double *)&by, 6 * {DOF} * {DOF});\n    }}\n    return 0;\n}}\n",
+         print((const double *)&next, 2 * {DOF});\n        \
+         print((const double *)&by, 6 * {DOF} * {DOF});\n    }}\n    return 0;\n}}\n",
         all = 3 * DOF,
         count = states.len(),
         rows = rows.join(", "),

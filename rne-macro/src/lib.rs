@@ -382,8 +382,8 @@ pub fn derive_euler_step(input: TokenStream) -> TokenStream {
     expand::capability(Capability::EulerStep, input.into()).into()
 }
 
-/// Implements the trait `EulerStepDerivatives` for a struct: the derivatives of a step of the semi-implicit Euler method
-/// by positions, velocities and torques.
+/// Implements the trait `EulerStepDerivatives` for a struct: the derivatives of a step of the semi-implicit Euler
+/// method by positions, velocities and torques.
 ///
 /// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
 /// gets a constant with the operations, `EULER_STEP_DERIVATIVES_OPERATIONS`; `DOF`, names and limits come with

@@ -146,8 +146,8 @@ pub trait FloatingIntegratorStep<const DOF: usize, const NV: usize, const TIPS: 
     }
 }
 
-/// What a step integrates, or its rates: the turn of the base, the velocity of its origin in world axes, its angular
-/// velocity in its axes, and the joints.
+/// The numbers that a step integrates, or their rates: the turn of the base, the velocity of its origin in world axes,
+/// its angular velocity in its axes, and the joints.
 #[derive(Clone, Copy)]
 struct Stage<const DOF: usize, T> {
     u: [T; 3],

@@ -40,8 +40,8 @@ pub struct NextStateDerivatives<const DOF: usize, T> {
 /// A step of the semi-implicit Euler method under torques that do not change during the step.
 pub trait EulerStep<const DOF: usize> {
     /// Positions and velocities after a step of the duration `step`, s: q̇' = q̇ + h q̈ with the accelerations q̈ of q, q̇
-    /// and τ ([`forward_dynamics`](crate::ForwardDynamics::forward_dynamics)), then q' = q + h q̇'. The error of a motion
-    /// is of order h.
+    /// and τ ([`forward_dynamics`](crate::ForwardDynamics::forward_dynamics)), then q' = q + h q̇'. The error of a
+    /// motion is of order h.
     ///
     /// The tip is free, and joints have no friction and no limits. A singular mass matrix (a joint that moves nothing)
     /// gives numbers that are not finite. Source: E. Hairer, C. Lubich, G. Wanner, "Geometric numerical integration",

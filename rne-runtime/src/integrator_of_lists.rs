@@ -1,5 +1,5 @@
-//! Steps of integrators over lists, in the order of operations of those over arrays: of a [`DynArm`](crate::DynArm), and
-//! of any other robot whose number of joints is known at run time only.
+//! Steps of integrators over lists, in the order of operations of those over arrays: of a [`DynArm`](crate::DynArm),
+//! and of any other robot whose number of joints is known at run time only.
 
 use crate::Scalar;
 #[cfg(feature = "arm")]

@@ -1,5 +1,5 @@
 //! The step of the classical Runge-Kutta method, and its derivatives by the state and by the torques, for every robot
-//! that has the accelerations and their derivatives. They allocate nothing, and have no branch that depends on a number.
+//! that has the accelerations and their derivatives. They allocate nothing, and no branch depends on a number.
 
 use core::array::from_fn;
 

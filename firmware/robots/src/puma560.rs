@@ -89,7 +89,8 @@ macro_rules! methods {
         #[doc = concat!("The form `", $name, "`.")]
         pub mod $form {
             use super::{
-                AccelerationDerivatives, BaseMotion, MomentumAndRate, NextState, NextStateDerivatives, ObserverState, Payload, Pose, TorqueDerivatives,
+                AccelerationDerivatives, BaseMotion, MomentumAndRate, NextState, NextStateDerivatives, ObserverState,
+                Payload, Pose, TorqueDerivatives,
                 TorqueGradient, TorqueHessian, Wrench,
             };
 

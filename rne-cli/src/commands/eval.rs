@@ -97,15 +97,17 @@ pub(crate) struct Arguments {
     base_rotation: Option<List>,
     /// Print a golden file of torques at N random states
     #[arg(long, value_name = "N", value_parser = golden::states, allow_negative_numbers = true, conflicts_with_all = [
-        "function", "q", "passive", "qd", "qdd", "tau", "duration", "multipliers", "wrench", "tip_wrench", "payload", "base_omega",
-        "base_omega_dot", "base_acceleration", "base_velocity", "base_pose", "gravity", "base_rotation", "trace",
+        "function", "q", "passive", "qd", "qdd", "tau", "duration", "multipliers", "wrench", "tip_wrench", "payload",
+        "base_omega", "base_omega_dot", "base_acceleration", "base_velocity", "base_pose",
+        "gravity", "base_rotation", "trace",
         "json", "csv", "compare", "frame",
     ])]
     golden: Option<u16>,
     /// Compute it at each state of a table; - is stdin
     #[arg(long, value_name = "TABLE", conflicts_with_all = [
-        "q", "passive", "qd", "qdd", "tau", "duration", "multipliers", "wrench", "tip_wrench", "payload", "base_omega",
-        "base_omega_dot", "base_acceleration", "base_velocity", "base_pose", "gravity", "base_rotation", "golden",
+        "q", "passive", "qd", "qdd", "tau", "duration", "multipliers", "wrench", "tip_wrench", "payload",
+        "base_omega", "base_omega_dot", "base_acceleration", "base_velocity", "base_pose",
+        "gravity", "base_rotation", "golden",
         "trace", "axes",
         "joint", "step", "json", "csv", "compare", "digits",
     ])]

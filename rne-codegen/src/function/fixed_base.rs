@@ -111,7 +111,7 @@ const NEXT: &[Own] = &[
     Own::of(Quantity::NextPosition, |joint| format!("position of joint {joint} after the step")),
 ];
 
-/// Of a step of an integrator.
+/// The part of an entry that the step and its derivatives have in common.
 const STEP: Entry = Entry {
     inverts_mass: true,
     feels_rotors: true,

@@ -363,16 +363,16 @@ macro_rules! functions {
                  second derivatives, by q̇ and q̈ and by q̈ twice, are zero: the torques are linear in q̈, with M(q).";
             EulerStep = euler_step(q: Positions, qd: Rates, tau: Torques, step: Step) -> NextState:
                 "A step of the semi-implicit Euler method under torques `tau`: positions and velocities after it.",
-                "step: its duration h (s). qd of the result: q̇ + h q̈ with the accelerations q̈ of forward_dynamics. q of \
-                 the result: q plus h times these velocities. A singular mass matrix (a joint that moves nothing) gives \
-                 numbers that are not finite.";
+                "step: its duration h (s). qd of the result: q̇ + h q̈ with the accelerations q̈ of forward_dynamics. q \
+                 of the result: q plus h times these velocities. A singular mass matrix (a joint that moves nothing) \
+                 gives numbers that are not finite.";
             EulerStepDerivatives = euler_step_derivatives(
                 q: Positions, qd: Rates, tau: Torques, step: Step
             ) -> NextStateDerivatives:
                 "Derivatives of `euler_step` by q, by q̇ and by τ: the linear model of a step.",
                 "q.dq[i][j], q.dqd[i][j], q.dtau[i][j]: of position i after the step, by joint j; qd.dq and so on: of \
-                 velocity i after the step. With the state x = (q, q̇), the matrices A and B of δx' = A δx + B δτ are made \
-                 of these blocks.";
+                 velocity i after the step. With the state x = (q, q̇), the matrices A and B of δx' = A δx + B δτ are \
+                 made of these blocks.";
         }
     };
 }

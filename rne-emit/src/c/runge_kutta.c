@@ -40,8 +40,8 @@ HEAD_OF_STEP
 // the derivatives
 // The derivatives of the accelerations at a state by one of the step's arguments. `own` are those at the state, `block`
 // those by this argument. The velocities of the state are those of the step and `duration` times the accelerations
-// `before`. Its positions are those of the step and `duration` times the velocities of the state before, which change by
-// `part` times the accelerations `earlier`.
+// `before`. Its positions are those of the step and `duration` times the velocities of the state before, which change
+// by `part` times the accelerations `earlier`.
 static void PREFIX_chain(
     PREFIX_acceleration_derivatives *own, REAL block[DOF][DOF], const int is_by_rates, const REAL duration,
     REAL before[DOF][DOF], const REAL part, REAL earlier[DOF][DOF], REAL found[DOF][DOF])

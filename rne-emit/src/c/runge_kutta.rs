@@ -64,9 +64,9 @@ pub(super) fn declarations(file: &File) -> String {
     let mut text = "\n".to_owned();
     text.push_str(&comment(
         "///",
-        "A step of the classical Runge-Kutta method under torques tau that do not change during the step: positions and \
-         velocities after it. It calls forward_dynamics four times. step: its duration h (s). The error of a motion is \
-         of order h^4.",
+        "A step of the classical Runge-Kutta method under torques tau that do not change during the step: positions \
+         and velocities after it. It calls forward_dynamics four times. step: its duration h (s). The error of a \
+         motion is of order h^4.",
     ));
     text += &format!("{step};\n");
     if has_derivatives(file) {
