@@ -296,10 +296,16 @@ impl Target<'_> {
         body: &TokenStream,
     ) -> TokenStream {
         let krate = self.krate;
-        let (mut names, mut kinds): (Vec<_>, Vec<_>) = self.arguments(function, dof, &quote!('a)).into_iter().unzip();
+        let arguments = self.arguments(function, dof, &quote!('a)).into_iter().zip(function.arguments());
+        // a call takes references; `&step` is the pattern and the argument
+        let by_reference = |((name, kind), argument): ((Ident, TokenStream), &Argument)| match argument {
+            Argument::Step => (quote!(&#name), quote!(&'a #kind)),
+            _ => (quote!(#name), kind),
+        };
+        let (mut names, mut kinds): (Vec<_>, Vec<_>) = arguments.map(by_reference).unzip();
         if parameter_count > 0 {
             let count = Literal::usize_unsuffixed(parameter_count);
-            names.push(format_ident!("parameters"));
+            names.push(quote!(parameters));
             kinds.push(quote!(&'a [T; #count]));
         }
         let returned = self.returned(function.shape(), dof);
