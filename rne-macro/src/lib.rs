@@ -121,7 +121,7 @@ pub fn derive_kinematics(input: TokenStream) -> TokenStream {
     expand::capability(Capability::Kinematics, input.into()).into()
 }
 
-/// Implements the traits `AtFrame` and `FrameKinematics` for a struct: pose, Jacobian with its rate and derivatives, J̇ q̇
+/// Implements the traits `AtFrame` and `FrameKinematics` for a struct: pose, Jacobian, its rate and derivatives, J̇ q̇
 /// and torques of a wrench of every frame in the list `frames` of the robot file, and of every link frame.
 ///
 /// The type gets the function `frame`, which turns a name into the constant that the methods take, and the constant

@@ -16,8 +16,8 @@ use crate::machine::{self, Missing};
 /// and the Hessian of the torques beside `ComputeRNEASecondOrderDerivatives`, to 1e-9.
 #[derive(Args)]
 #[command(after_help = "\
-The command prints a table with the largest error of each function. A run of many robots can be done in parts: 500
-robots, then 500 robots with `--first 500`.
+The command prints a table with the largest error of each function. A run of many
+robots can be done in parts: 500 robots, then 500 robots with `--first 500`.
 
 `--python` needs a Python with numpy, pin and cmeel-eigen, and g++.
 
