@@ -297,6 +297,13 @@ impl Target<'_> {
     ) -> TokenStream {
         let krate = self.krate;
         let (mut names, mut kinds): (Vec<_>, Vec<_>) = self.arguments(function, dof, &quote!('a)).into_iter().unzip();
+        // the call takes references alone
+        let is_number = function.takes(Argument::Step);
+        if let Some(kind) = kinds.last_mut().filter(|_| is_number) {
+            *kind = quote!(&'a #kind);
+        }
+        let [refer, read] =
+            [quote!(let step = &step;), quote!(let step = *step;)].map(|code| is_number.then_some(code));
         if parameter_count > 0 {
             let count = Literal::usize_unsuffixed(parameter_count);
             names.push(format_ident!("parameters"));
@@ -312,9 +319,11 @@ impl Target<'_> {
                 fn run<T: #krate::Scalar, A: #krate::processor::Arithmetic<T>>(
                     (#(#names,)*): Self::Arguments<'_, T>,
                 ) -> Self::Result<T> {
+                    #read
                     #body
                 }
             }
+            #refer
             #parameters
             #krate::processor::run::<Call, T>((#(#names,)*))
         }
