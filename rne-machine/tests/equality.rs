@@ -12,7 +12,7 @@ use rne_search::PlanFile;
 const STATES: usize = 150;
 
 /// Arguments and their elements for any function of an arm.
-fn widths(dof: usize) -> [(&'static str, usize); 19] {
+fn widths(dof: usize) -> [(&'static str, usize); 20] {
     [
         ("q", dof),
         ("qd", dof),
