@@ -1,4 +1,4 @@
-//! The calls of NVIDIA's driver. This is the only module with `unsafe`.
+//! The calls of NVIDIA's driver. All but launches are safe to the rest of the crate.
 //!
 //! The types of the calls are those of the header `cuda.h` of CUDA 12, in which handles are pointers to what the driver
 //! alone reads; here they are numbers of the same size.

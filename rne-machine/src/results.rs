@@ -153,9 +153,9 @@ pub struct StepDerivatives<T> {
 /// Derivatives of the state after a step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NextStateDerivatives<T> {
-    /// Of the positions.
+    /// Derivatives of the positions.
     pub q: StepDerivatives<T>,
-    /// Of the velocities.
+    /// Derivatives of the velocities.
     pub qd: StepDerivatives<T>,
 }
 

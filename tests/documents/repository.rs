@@ -45,22 +45,26 @@ fn no_test_asks_the_clock_but_to_print() {
     let mut found =
         files_that_say(&[concat!("Instant", "::now"), concat!("System", "Time"), concat!(".elap", "sed()")]);
     found.retain(|name| name.split('/').any(|folder| folder == "tests") || name.ends_with("tests.rs"));
-    assert_eq!(found, ["tests/compile_time.rs"]);
+    // the events of a driver for processors of graphics are times
+    assert_eq!(found, ["tests/compile_time.rs", "tests/fake_driver/src/lib.rs"]);
 }
 
 #[test]
-fn unsafe_stands_in_two_modules() {
+fn unsafe_stands_in_few_modules() {
     let mut found = files_that_say(&[concat!("allow(", "unsafe_code)"), concat!("expect(", "unsafe_code)")]);
     found.retain(|name| {
         ["rne-", "src/", "doors/playground/", "doors/capi/src/", "doors/python/src/"]
             .iter()
             .any(|folder| name.starts_with(folder))
     });
-    // two turn the pointers of C into slices, one is an attribute, the name of an export
+    // pointers of C become slices, an export has a name, and launches on a card have addresses that a caller vouches for
     let expected = [
         "doors/capi/src/border.rs",
         "doors/playground/src/border.rs",
+        "doors/python/src/gpu.rs",
         "doors/python/src/xla/border.rs",
+        "rne-gpu/src/arm.rs",
+        "rne-gpu/src/driver.rs",
         "rne-machine/src/native.rs",
         "rne-runtime/src/registers/mod.rs",
     ];

@@ -299,8 +299,8 @@ fn not_for_casadi(arguments: &Arguments, programs: &[Program]) -> String {
         return String::new();
     }
     format!(
-        "{TITLE}note{TITLE:#}: CasADi calls functions that take vectors and return a number, a vector or a matrix. These \
-         are functions of C alone: {}\n",
+        "{TITLE}note{TITLE:#}: CasADi calls functions that take vectors and return a number, a vector or a matrix. \
+         These are functions of C alone: {}\n",
         names.join(", ")
     )
 }

@@ -72,6 +72,13 @@ fn what_casadi_cannot_call_is_refused() {
     fails(2, &[&c[..], &["--function", "forward_kinematics"]].concat(), &["CasADi can call none of these functions"]);
     fails(2, &["emit", "planar2", "--casadi"], &["--casadi is for --lang c", "--lang c"]);
     fails(2, &[&c[..], &["--run-time", "m1"]].concat(), &["--casadi", "--run-time"]);
+    // a prefix with which a function of C would have the name of one for CasADi
+    for prefix in ["jac", "fwd1", "adj1", "jac_adj1"] {
+        let name = format!("{prefix}_inverse_dynamics");
+        fails(2, &[&c[..], &["--prefix", prefix]].concat(), &[&name, "--prefix my_arm"]);
+    }
+    let inverse = ["--prefix", "inverse", "--function", "inverse_dynamics,inverse_mass_matrix,mass_matrix"];
+    fails(2, &[&c[..], &inverse].concat(), &["inverse_mass_matrix"]);
     let mass = fine(&[&c[..], &["--function", "mass_matrix"]].concat());
     assert!(mass.contains("planar2_external(mass_matrix, 1, 1)") && !mass.contains("jac_"), "no derivatives");
 }
@@ -84,4 +91,26 @@ fn a_prefix_may_be_a_word_of_the_template() {
         fs::write(folder.join("arm.c"), code + "int main(void) { return 0; }\n").expect("written");
         printed(&folder, &["arm.c"], &[]);
     }
+}
+
+#[test]
+fn functions_without_casadi_are_named() {
+    let out = folder("casadi_notes").join("arm.c").display().to_string();
+    let functions = ["--function", "inverse_dynamics,torque_hessian,regressor"];
+    let called = rne(&[&["emit", "planar2", "--lang", "c", "--casadi", "-o", &out][..], &functions].concat());
+    assert_eq!(called.status, 0, "{}", called.err);
+    assert!(called.said().contains("functions of C alone: regressor, torque_hessian"), "{}", called.err);
+}
+
+#[test]
+fn the_command_that_writes_a_stale_file_keeps_what_is_for_casadi() {
+    let out = folder("casadi_stale").join("arm.c").display().to_string();
+    let check = ["emit", "planar2", "--lang", "c", "--casadi", "--acados", "--check", &out];
+    let stale = rne(&check);
+    assert_eq!(stale.status, 1, "{}", stale.err);
+    let said = stale.said();
+    let advised = said.lines().find_map(|line| line.strip_prefix("to write it: rne ")).expect("a command");
+    let words: Vec<&str> = advised.split(' ').collect();
+    assert_eq!(rne(&words).status, 0, "{advised}");
+    assert_eq!(rne(&check).status, 0, "{advised}");
 }

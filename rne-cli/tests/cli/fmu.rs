@@ -49,11 +49,58 @@ fn an_fmu_is_an_archive_of_sources_for_its_version() {
 fn an_fmu_has_no_binary_where_there_is_no_compiler() {
     let out = folder("fmu_without").join("arm.fmu");
     let path = out.to_str().expect("UTF-8");
-    let mut call = command(&["export", "planar1", "--fmu", "-o", path]);
-    let called = called(call.env("CC", "no-such-compiler").output().expect("rne starts"));
-    assert_eq!(called.status, 0, "{}", called.err);
-    assert!(called.said().contains("there is no C compiler, so the FMU has sources and no binary"), "{}", called.err);
+    let export = || command(&["export", "planar1", "--fmu", "-o", path]);
+    let built = called(export().env_remove("CC").env("PATH", "").output().expect("rne starts"));
+    assert_eq!(built.status, 0, "{}", built.err);
+    assert!(built.said().contains("there is no C compiler, so the FMU has sources and no binary"), "{}", built.err);
     assert!(files(&out).iter().all(|(name, _)| !name.starts_with("binaries/")));
+    let missing = called(export().arg("--force").env("CC", "no-such-compiler -O2").output().expect("rne starts"));
+    assert_eq!(missing.status, 1, "{}", missing.err);
+    let said = "the compiler no-such-compiler -O2 that the variable CC names is not found";
+    assert!(missing.said().contains(said), "{}", missing.err);
+    let no_folder = called(export().arg("--force").env("TMPDIR", "/no/such/folder").output().expect("rne starts"));
+    assert!(no_folder.said().contains("the folder of temporary files /no/such/folder"), "{}", no_folder.err);
+}
+
+#[test]
+fn the_name_of_a_robot_is_that_of_no_source() {
+    let folder = folder("fmu_names");
+    let text = include_str!("../../../robots/planar1.yaml");
+    for name in ["fmu", "fmi_types", "fmi_functions"] {
+        let (file, out) = (folder.join(format!("{name}.yaml")), folder.join(format!("{name}.fmu")));
+        fs::write(&file, text.replace("name: planar1", &format!("name: {name}"))).expect("written");
+        let [file, path] = [&file, &out].map(|path| path.to_str().expect("UTF-8"));
+        let called = rne(&["export", file, "--fmu", "-o", path]);
+        assert_eq!(called.status, 0, "{}", called.err);
+        let mut names: Vec<String> = files(&out).into_iter().map(|(name, _)| name).collect();
+        let count = names.len();
+        names.sort();
+        names.dedup();
+        assert_eq!(names.len(), count);
+    }
+}
+
+#[test]
+fn limits_of_an_fmu_are_narrowed_by_joints_that_follow() {
+    let folder = folder("fmu_limits");
+    let (file, out) = (folder.join("gripper.yaml"), folder.join("gripper.fmu"));
+    // finger_b = 2 finger_a + 0.005 is from 0.01 to 0.02 m, at most 0.1 m/s
+    let text = include_str!("../../../docs/gripper.yaml")
+        .replace("{finger_a: 1}, offset: 0}", "{finger_a: 2}, offset: 0.005}")
+        .replace("alpha: -pi/2}", "alpha: -pi/2}\n    limits: {position: [0.01, 0.02], velocity: 0.1}");
+    fs::write(&file, text).expect("written");
+    let [file, path] = [&file, &out].map(|path| path.to_str().expect("UTF-8"));
+    let called = rne(&["export", file, "--fmu", "--no-build", "-o", path]);
+    assert_eq!(called.status, 0, "{}", called.err);
+    let files = files(&out);
+    let line = |name: &str| {
+        let is_it = |line: &&str| line.contains(&format!("name=\"{name}\""));
+        files[0].1.lines().find(is_it).unwrap_or_else(|| panic!("{name} in {}", files[0].1))
+    };
+    for part in ["min=\"0.0025\"", "max=\"0.0075\"", "start=\"0.0025\""] {
+        assert!(line("q.finger_a").contains(part), "{}", line("q.finger_a"));
+    }
+    assert!(line("qd.finger_a").contains("max=\"0.05\""), "{}", line("qd.finger_a"));
 }
 
 /// A number that the file computes from a parameter follows this parameter. The FMU offers the parameter alone.
@@ -86,8 +133,10 @@ fn what_cannot_be_an_fmu_is_refused() {
     fails(2, &["export", "planar1", "--fmu", "4", "-o", path], &["4", "2, 3"]);
     fails(2, &["export", "planar1", "--fmu", "-o", "-"], &["--fmu needs the name of a file, such as -o arm.fmu"]);
     fails(2, &["export", "planar1", "--fmu", "-o", "arm.zip.urdf"], &["arm.zip.fmu"]);
-    fails(2, &["export", "planar1", "--urdf", "--inverse"], &["--fmu"]);
-    fails(1, &["export", "docs/four_bar.yaml", "--fmu", "-o", path], &["closed loop"]);
+    for option in ["--inverse", "--no-build", "--rotors"] {
+        fails(2, &["export", "planar1", "--urdf", option], &[option, "is for FMUs", "--fmu"]);
+    }
+    fails(1, &["export", "docs/four_bar.yaml", "--fmu", "-o", path], &["an FMU needs a robot without closed loops"]);
     fails(1, &["export", "docs/satellite.yaml", "--fmu", "-o", path], &["floating"]);
     assert!(!out.exists());
 }

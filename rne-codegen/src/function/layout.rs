@@ -275,7 +275,7 @@ pub enum Record {
     NextState,
     /// By q, by q̇ and by τ.
     StepDerivatives,
-    /// Those of the positions and of the velocities after a step.
+    /// Derivatives of the positions and of the velocities after a step.
     NextStateDerivatives,
 }
 

@@ -13,7 +13,7 @@ use crate::parameters;
 /// The functions in C after the programs, with words in capitals for what differs from file to file.
 const TEMPLATE: &str = include_str!("runge_kutta.c");
 
-/// What stands between the step and its derivatives.
+/// The line between the step and its derivatives.
 const DERIVATIVES: &str = "// the derivatives\n";
 
 /// The program of the accelerations, where the file is to have the step.
