@@ -274,8 +274,14 @@ fn function(robot: &Robot, program: &Program) -> String {
         parameters.push("parameters: &Parameters<T>".to_owned());
     }
     let start = format!("pub fn {}<T: Scalar>(", program.name);
-    let end = format!(") -> {} {{", returned_type(&program.layout()));
+    let mut end = format!(") -> {} {{", returned_type(&program.layout()));
     let line = format!("{start}{}{end}\n", parameters.join(", "));
+    if let Layout::Record(_, parts) = program.layout()
+        && end.len() > WIDTH
+    {
+        let parts: String = parts.iter().map(|part| format!("    {},\n", returned_type(part))).collect();
+        end = format!(") -> (\n{parts}) {{");
+    }
     if line.len() <= WIDTH + 1 {
         text.push_str(&line);
     } else {

@@ -1,5 +1,7 @@
 //! A function of an arm over numpy's arrays.
 
+use std::ops::Range;
+
 use numpy::{Element, PyArrayDyn};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -129,6 +131,25 @@ fn evaluate_in<'py, T: Element + Number>(
         });
         computed.map_err(|error: rne::compiled::EvaluationError| of_evaluation(&error))?;
     }
+    as_python(arm, function, result, many)
+}
+
+/// Elements of the last axis of an array.
+fn of_last_axis<'py>(array: &Bound<'py, PyAny>, elements: Range<usize>) -> PyResult<Bound<'py, PyAny>> {
+    let py = array.py();
+    let slice = PySlice::new(py, isize::try_from(elements.start)?, isize::try_from(elements.end)?, 1).into_any();
+    array.get_item(PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), slice])?)
+}
+
+/// The array of all results as the user has them: records are tuples of arrays.
+fn as_python<'py, T: Element>(
+    arm: &CompiledArm,
+    function: Function,
+    result: Bound<'py, PyArrayDyn<T>>,
+    many: Option<usize>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = result.py();
+    let of_state = shape(function, arm);
     match arm.layout(function) {
         Layout::Record(
             Record::TorqueDerivatives
@@ -150,22 +171,18 @@ fn evaluate_in<'py, T: Element + Number>(
         }
         Layout::Record(record @ (Record::FloatingTorques | Record::FloatingAccelerations | Record::ClosureStep), _) => {
             let first = if record == Record::ClosureStep { arm.robot().closed.passive.len() } else { 6 };
-            let first = isize::try_from(first)?;
-            let of = |from: isize, to: isize| {
-                let part = PySlice::new(py, from, to, 1).into_any();
-                result.get_item(PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), part])?)
-            };
-            Ok(PyTuple::new(py, [of(0, first)?, of(first, isize::MAX)?])?.into_any())
+            let parts = [0..first, first..of_state.iter().product()];
+            let parts =
+                parts.into_iter().map(|part| of_last_axis(result.as_any(), part)).collect::<PyResult<Vec<_>>>()?;
+            Ok(PyTuple::new(py, parts)?.into_any())
         }
         Layout::Record(Record::AccelerationsAndWrenches, _) => {
-            let of = |from: usize, to: usize| {
-                let part = PySlice::new(py, isize::try_from(from)?, isize::try_from(to)?, 1).into_any();
-                result.get_item(PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), part])?)
-            };
             let (joints, tips) = (6 + arm.dof(), arm.robot().tip_count());
             let rows: Vec<usize> = many.into_iter().chain([tips, 6]).collect();
-            let wrenches = of(joints, joints + 6 * tips)?.call_method1("reshape", (rows,))?;
-            Ok(PyTuple::new(py, [of(0, 6)?, of(6, joints)?, wrenches])?.into_any())
+            let wrenches =
+                of_last_axis(result.as_any(), joints..joints + 6 * tips)?.call_method1("reshape", (rows,))?;
+            let [base, accelerations] = [0..6, 6..joints].map(|part| of_last_axis(result.as_any(), part));
+            Ok(PyTuple::new(py, [base?, accelerations?, wrenches])?.into_any())
         }
         // A and B, of the blocks by q, by q̇ and by τ of the positions, then of the velocities
         Layout::Record(Record::NextStateDerivatives, _) => {
@@ -173,18 +190,14 @@ fn evaluate_in<'py, T: Element + Number>(
             let axes: Vec<usize> = (0..lead).chain([0, 2, 1, 3].map(|axis| lead + axis)).collect();
             let rows: Vec<usize> = many.into_iter().chain([2 * dof, 3 * dof]).collect();
             let matrix = result.call_method1("transpose", (axes,))?.call_method1("reshape", (rows,))?;
-            let of = |from: usize, to: usize| {
-                let part = PySlice::new(py, isize::try_from(from)?, isize::try_from(to)?, 1).into_any();
-                matrix.get_item(PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), part])?)
-            };
-            Ok(PyTuple::new(py, [of(0, 2 * dof)?, of(2 * dof, 3 * dof)?])?.into_any())
+            let [a, b] = [0..2 * dof, 2 * dof..3 * dof].map(|part| of_last_axis(&matrix, part));
+            Ok(PyTuple::new(py, [a?, b?])?.into_any())
         }
         Layout::Record(Record::FloatingTorqueDerivatives, parts) => {
             let mut from = 0;
             let mut part = |layout: &Layout, columns: usize| {
                 let to = from + layout.len();
-                let slice = PySlice::new(py, isize::try_from(from)?, isize::try_from(to)?, 1).into_any();
-                let numbers = result.get_item(PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), slice])?)?;
+                let numbers = of_last_axis(result.as_any(), from..to)?;
                 from = to;
                 let rows: Vec<usize> = many.into_iter().chain([layout.len() / columns, columns]).collect();
                 numbers.call_method1("reshape", (rows,))
@@ -193,7 +206,7 @@ fn evaluate_in<'py, T: Element + Number>(
             let parts = parts.iter().zip(columns).map(|(layout, columns)| part(layout, columns));
             Ok(PyTuple::new(py, parts.collect::<PyResult<Vec<_>>>()?)?.into_any())
         }
-        _ => finished(result, whole.is_empty()),
+        _ => finished(result, many.is_none() && of_state.is_empty()),
     }
 }
 

@@ -44,12 +44,11 @@ impl GpuArm {
     fn new(arm: &Arm, device: usize) -> PyResult<Self> {
         let mut devices = DEVICES.lock().unwrap_or_else(PoisonError::into_inner);
         let devices = devices.get_or_insert_default();
-        let device = match devices.get(&device) {
-            Some(device) => device.clone(),
-            None => {
-                let found = Device::open(device).map_err(|error| of_gpu(&error))?;
-                devices.entry(device).insert_entry(found).get().clone()
-            }
+        let device = if let Some(device) = devices.get(&device) {
+            device.clone()
+        } else {
+            let found = Device::open(device).map_err(|error| of_gpu(&error))?;
+            devices.entry(device).insert_entry(found).get().clone()
         };
         Ok(Self { arm: rne_gpu::GpuArm::new(&arm.arm, &device) })
     }

@@ -90,7 +90,7 @@ pub(crate) struct Arguments {
     /// Add sine and cosine to Rust code; C always has them
     #[arg(long)]
     with_sin_cos: bool,
-    /// Add tests that compare the code with `rne::Arm` and laws
+    /// Add tests beside `rne::Arm` and laws of physics
     #[arg(long)]
     tests: bool,
     /// Write comments in ASCII: dw for ω̇, ^T for ᵀ

@@ -80,7 +80,8 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask mutate", "tests/documents/pages.rs", "fn the_page_of_mutations_is_of_the_mutants()"),
     // it searches for minutes
     ("cargo xtask tree-counts", "xtask/src/main.rs", "TreeCounts("),
-    // it draws robots for minutes
+    // they draw robots for minutes
+    ("cargo xtask derivatives", "xtask/src/main.rs", "Derivatives(derivatives::Derivatives)"),
     ("cargo xtask loops", "xtask/src/main.rs", "Loops(loops::Loops)"),
     // it measures times
     ("cargo xtask performance", "xtask/src/main.rs", "Performance(performance::Performance)"),
