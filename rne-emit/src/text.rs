@@ -279,8 +279,8 @@ fn function(robot: &Robot, program: &Program) -> String {
     if let Layout::Record(_, parts) = program.layout()
         && end.len() > WIDTH
     {
-        let parts: String = parts.iter().map(|part| format!("    {},\n", returned_type(part))).collect();
-        end = format!(") -> (\n{parts}) {{");
+        let parts: Vec<String> = parts.iter().map(returned_type).collect();
+        end = format!(") -> (\n    {},\n) {{", parts.join(",\n    "));
     }
     if line.len() <= WIDTH + 1 {
         text.push_str(&line);

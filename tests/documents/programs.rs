@@ -85,8 +85,8 @@ pub(crate) fn stubs() -> String {
                 | Argument::BaseVelocity
                 | Argument::BaseTwist
                 | Argument::BasePose
-                | Argument::BaseRotation => format!("{name}: ArrayLike, "),
-                Argument::Step => format!("{name}: ArrayLike, "),
+                | Argument::BaseRotation
+                | Argument::Step => format!("{name}: ArrayLike, "),
                 Argument::Wrenches if function.is_of_floating_base() => {
                     format!("{name}: ArrayLike | dict[str, ArrayLike] | None = ..., ")
                 }

@@ -134,6 +134,46 @@ pub(crate) fn error_of_accelerations(found: &[f64], expected: &[f64], of_torques
     parts.fold(0.0, |worst, ((found, expected), scale)| worst.max(error_on_scale(found, expected, scale) / number))
 }
 
+/// The function of the accelerations of a step, its numbers by those of the step, and the positions beside those that the
+/// step must have, with the scale of their rounding.
+type WithoutStep<'a> = (Function, Vec<f64>, &'a [f64], Vec<f64>, f64);
+
+/// q̈ = (q̇' - q̇) / h
+fn without_step<'a>(given: &Given<'_, f64>, found: &'a [f64]) -> WithoutStep<'a> {
+    let (positions, rates) = found.split_at(given.q.len());
+    let accelerations = rates.iter().zip(given.qd).map(|(next, qd)| (next - qd) / STEP).collect();
+    let moved = given.q.iter().zip(rates).map(|(q, rate)| q + STEP * rate).collect();
+    (Function::ForwardDynamics, accelerations, positions, moved, largest(given.q))
+}
+
+/// The same of the derivatives.
+fn without_step_of_derivatives<'a>(given: &Given<'_, f64>, found: &'a [f64]) -> WithoutStep<'a> {
+    let dof = given.q.len();
+    let (positions, rates) = found.split_at(3 * dof * dof);
+    let one = |kind: usize, at: usize| {
+        let is_diagonal = at / (dof * dof) == kind && (at % (dof * dof)).is_multiple_of(dof + 1);
+        f64::from(u8::from(is_diagonal))
+    };
+    let accelerations = rates.iter().enumerate().map(|(at, x)| (x - one(1, at)) / STEP).collect();
+    let moved = rates.iter().enumerate().map(|(at, x)| one(0, at) + STEP * x).collect();
+    (Function::ForwardDynamicsDerivatives, accelerations, positions, moved, 1.0)
+}
+
+/// How far accelerations in contact are from those expected, of the condition of the system.
+fn error_in_contact(arm: &Arm, given: &Given<'_, f64>, found: &[f64], expected: &[f64]) -> f64 {
+    let runtime = |function| of_runtime(&arm.runtime, function, given);
+    let [mass, jacobians] = [Function::FloatingMassMatrix, Function::TipJacobians].map(runtime);
+    let rows: Vec<Vec<f64>> = mass.chunks(6 + arm.robot.dof()).map(<[f64]>::to_vec).collect();
+    if conditioning(&rows).is_none() {
+        return 0.0;
+    }
+    let number = contact_condition(&arm.robot, &mass, &jacobians);
+    if number >= 1e12 {
+        return 0.0;
+    }
+    error_on_scale(found, expected, 0.0) / number
+}
+
 /// How far what is found is from the runtime, of its scale and, for accelerations, of the condition of M.
 pub(crate) fn error(
     arm: &Arm,
@@ -178,19 +218,7 @@ pub(crate) fn error(
             assert_eq!(found, expected, "{}, {function}", arm.robot.name);
             return 0.0;
         }
-        Function::ForwardDynamicsInContact => {
-            let runtime = |function| of_runtime(&arm.runtime, function, given);
-            let [mass, jacobians] = [Function::FloatingMassMatrix, Function::TipJacobians].map(runtime);
-            let rows: Vec<Vec<f64>> = mass.chunks(6 + arm.robot.dof()).map(<[f64]>::to_vec).collect();
-            if conditioning(&rows).is_none() {
-                return 0.0;
-            }
-            let number = contact_condition(&arm.robot, &mass, &jacobians);
-            if number >= 1e12 {
-                return 0.0;
-            }
-            error_on_scale(found, &expected, 0.0) / number
-        }
+        Function::ForwardDynamicsInContact => error_in_contact(arm, given, found, &expected),
         Function::ForwardDynamicsDerivatives
         | Function::ForwardDynamicsDerivativesWithWrenches
         | Function::ForwardDynamicsDerivativesWithPayload => {
@@ -214,28 +242,17 @@ pub(crate) fn error(
             let of_torques = largest(&of_runtime(&arm.runtime, torques, given)).max(scale(arm, torques, given));
             error_of_accelerations(found, &expected, of_torques, &Conditioning { number, largest: of_matrix })
         }
-        // those of the accelerations (q̇' - q̇) / h
-        Function::EulerStep => {
-            let (positions, rates) = found.split_at(given.q.len());
-            let accelerations: Vec<f64> = rates.iter().zip(given.qd).map(|(next, qd)| (next - qd) / STEP).collect();
-            let moved: Vec<f64> = given.q.iter().zip(rates).map(|(q, rate)| q + STEP * rate).collect();
-            let of_accelerations = error(arm, maker, Function::ForwardDynamics, given, &accelerations, tolerance);
+        Function::EulerStep | Function::EulerStepDerivatives => {
+            let (of, accelerations, positions, moved, scale) = if function == Function::EulerStep {
+                without_step(given, found)
+            } else {
+                without_step_of_derivatives(given, found)
+            };
+            let of_accelerations = error(arm, maker, of, given, &accelerations, tolerance);
             // of a singular mass matrix the numbers may not be finite
             let is_finite = found.iter().all(|x| x.is_finite());
-            let of_positions = || error_on_scale(positions, &moved, largest(given.q));
+            let of_positions = || error_on_scale(positions, &moved, scale);
             if is_finite { of_accelerations.max(of_positions()) } else { of_accelerations }
-        }
-        Function::EulerStepDerivatives => {
-            let dof = given.q.len();
-            let (positions, rates) = found.split_at(3 * dof * dof);
-            let one = |kind: usize, at: usize| {
-                if at / (dof * dof) == kind && at % (dof * dof) % (dof + 1) == 0 { 1.0 } else { 0.0 }
-            };
-            let by: Vec<f64> = rates.iter().enumerate().map(|(at, x)| (x - one(1, at)) / STEP).collect();
-            let moved: Vec<f64> = rates.iter().enumerate().map(|(at, x)| one(0, at) + STEP * x).collect();
-            let of_accelerations = error(arm, maker, Function::ForwardDynamicsDerivatives, given, &by, tolerance);
-            let is_finite = found.iter().all(|x| x.is_finite());
-            if is_finite { of_accelerations.max(error_on_scale(positions, &moved, 1.0)) } else { of_accelerations }
         }
         Function::ForwardDynamics
         | Function::InverseMassMatrix

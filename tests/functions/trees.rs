@@ -361,7 +361,7 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
         Function::EulerStepDerivatives => {
             let found = self::expected(robot, Function::ForwardDynamicsDerivatives, state);
             let moved = |place: usize, by: &[f64]| {
-                let one = |at: usize| if at % (dof + 1) == 0 { 1.0 } else { 0.0 };
+                let one = |at: usize| if at.is_multiple_of(dof + 1) { 1.0 } else { 0.0 };
                 let blocks = by.chunks(dof * dof).enumerate();
                 let moved = blocks.flat_map(|(kind, block)| {
                     block.iter().enumerate().map(move |(at, x)| STEP * x + if kind == place { one(at) } else { 0.0 })

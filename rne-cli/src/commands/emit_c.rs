@@ -8,6 +8,7 @@ use rne_model::Robot;
 
 use crate::commands::golden;
 use crate::files::input_file::is_stream;
+use crate::files::output_file::is_standard_output;
 use crate::outcome::Failure;
 use crate::palette::TYPED;
 
@@ -26,6 +27,11 @@ pub(super) fn header_beside(source: &Path) -> Result<Header, Failure> {
     // what ends an `#include "…"`
     let name = name.filter(|name| !name.contains(['"', '\\', '\n', '\r', char::REPLACEMENT_CHARACTER]));
     match name {
+        _ if extension.is_empty() && !is_standard_output(source) => Err(Failure::usage(format_args!(
+            "{} is no name of a source file in C, beside which the header is written; name it {TYPED}{}{TYPED:#}",
+            source.display(),
+            source.with_extension("c").display()
+        ))),
         _ if extension == "h" => Err(Failure::usage(format_args!(
             "{} is the name of a header, which is written next to the source; name the source: {TYPED}{}{TYPED:#}",
             source.display(),

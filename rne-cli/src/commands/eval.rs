@@ -233,6 +233,9 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
         };
         let _ = writeln!(remark, "note: {names} not given, so these numbers are 0");
     }
+    if arguments.arm.carried.payload.is_some() && !function.takes(Argument::Payload) {
+        remark.push_str("note: in these numbers, the payload of --payload is a part of the link that carries it\n");
+    }
     let result = || grouped(&function.layout(Sizes::of(&robot)), &numbers);
     if !arguments.trace {
         if arguments.json {

@@ -89,6 +89,7 @@ impl Arguments {
 macro_rules! commands {
     ($($name:ident $module:ident,)*) => {
         #[derive(Subcommand)]
+        #[allow(clippy::large_enum_variant)] // there is one, which is read once
         pub(crate) enum Command {
             $($name($module::Arguments),)*
         }

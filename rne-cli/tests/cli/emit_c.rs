@@ -36,6 +36,12 @@ pub(crate) fn printed(folder: &Path, files: &[&str], options: &[&str]) -> Option
 }
 
 #[test]
+fn a_source_in_c_has_an_extension() {
+    // else the header of another file would be replaced
+    fails(2, &["emit", "planar1", "--lang", "c", "-o", "arm3"], &["arm3 is no name of a source file", "arm3.c"]);
+}
+
+#[test]
 fn standard_output_is_one_file_that_compiles_alone() {
     let folder = folder("c_one_file");
     let code = fine(&["emit", ROBOT, "--form", "seven_steps", "--lang", "c", "--real", "double", "--prefix", "arm"]);

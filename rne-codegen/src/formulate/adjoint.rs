@@ -136,7 +136,7 @@ impl<'s, 'a> Inverse<'s, 'a> {
         if Self::is_of_step(self.builder) {
             let changes = |torques| (0..dof * dof).map(|at| change(torques, at / dof, at % dof)).collect();
             let changes = by_state.each_ref().map(|torques| changes(torques));
-            return integrator::derivatives(self.builder, self.system.coordinates, changes, self.elements);
+            return integrator::derivatives(self.builder, self.system.coordinates, &changes, self.elements);
         }
         let kinds: [fn(usize) -> WithRespectTo; 2] = [WithRespectTo::Position, WithRespectTo::Rate];
         let mut found = Vec::new();

@@ -33,7 +33,7 @@ pub(crate) fn euler_step<'s>(
 pub(crate) fn derivatives<'s>(
     builder: &'s Builder,
     coordinates: &Coordinates,
-    by_state: [Vec<Symbol<'s>>; 2],
+    by_state: &[Vec<Symbol<'s>>; 2],
     by_torques: Outputs<'s>,
 ) -> Outputs<'s> {
     let (joints, step) = (coordinates.joints(), duration(builder));

@@ -69,14 +69,8 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::ForwardDynamics
         | Function::ForwardDynamicsWithPayload
         | Function::ForwardDynamicsWithWrenches
-        | Function::ForwardDynamicsOfLoops => {
-            forward_dynamics(builder, &derivation.system(), &derivation.upper_half(), &derivation.tau())
-        }
-        Function::EulerStep => {
-            let accelerations =
-                forward_dynamics(builder, &derivation.system(), &derivation.upper_half(), &derivation.tau());
-            integrator::euler_step(builder, derivation.coordinates(), &accelerations)
-        }
+        | Function::ForwardDynamicsOfLoops => derivation.accelerations(),
+        Function::EulerStep => integrator::euler_step(builder, derivation.coordinates(), &derivation.accelerations()),
         Function::ForwardKinematics => derivation.tip_pose(),
         Function::LinkPoses => derivation.link_poses(),
         Function::Jacobian => derivation.jacobian(),
@@ -133,19 +127,7 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::ForwardDynamicsDerivatives
         | Function::ForwardDynamicsDerivativesWithWrenches
         | Function::ForwardDynamicsDerivativesWithPayload
-        | Function::EulerStepDerivatives => {
-            let system = derivation.system();
-            let inverse = adjoint::Inverse::of(builder, &system, &derivation.upper_half());
-            // the same quantities come again, at these accelerations
-            inverse.keep_accelerations(builder.unnamed(|| derivation.tau()));
-            let solved = Derivation::new(builder, robot, function);
-            let joints = solved.coordinates().joints();
-            let torques = solved.tau();
-            inverse.derivatives(&[WithRespectTo::Position, WithRespectTo::Rate].map(|kind: fn(usize) -> _| {
-                let columns = builder.derivatives(&torques, joints.iter().map(|joint| kind(joint + 1)));
-                (0..joints.len()).map(|row| columns.iter().map(|column| column[row]).collect()).collect()
-            }))
-        }
+        | Function::EulerStepDerivatives => derivation.derivatives_of_accelerations(function),
         Function::ClosureStep => closure::step(builder, robot),
         Function::LoopMap => closure::map(builder, derivation.coordinates()),
         Function::LoopMapRateTimesVelocity => closure::bias(builder, derivation.coordinates()),
@@ -171,6 +153,26 @@ struct Derivation<'s, 'r> {
 }
 
 impl<'s, 'r> Derivation<'s, 'r> {
+    /// The accelerations by the torques.
+    fn accelerations(&self) -> Outputs<'s> {
+        forward_dynamics(self.builder, &self.system(), &self.upper_half(), &self.tau())
+    }
+
+    /// The derivatives of the accelerations, or of the step that has them.
+    fn derivatives_of_accelerations(&self, function: Function) -> Outputs<'s> {
+        let (builder, system) = (self.builder, self.system());
+        let inverse = adjoint::Inverse::of(builder, &system, &self.upper_half());
+        // the same quantities come again, at these accelerations
+        inverse.keep_accelerations(builder.unnamed(|| self.tau()));
+        let solved = Self::new(builder, self.robot, function);
+        let joints = solved.coordinates().joints();
+        let torques = solved.tau();
+        inverse.derivatives(&[WithRespectTo::Position, WithRespectTo::Rate].map(|kind: fn(usize) -> _| {
+            let columns = builder.derivatives(&torques, joints.iter().map(|joint| kind(joint + 1)));
+            (0..joints.len()).map(|row| columns.iter().map(|column| column[row]).collect()).collect()
+        }))
+    }
+
     fn new(builder: &'s Builder, robot: &'r Robot, function: Function) -> Self {
         let arm = Arm::new(builder, robot);
         let joints = robot.joints.len();

@@ -386,7 +386,9 @@ pub(super) const FIXED_BASE: &[Entry] = &[
         output: "derivatives",
         listed: "returned: six matrices, of vx, vy, vz, wx, wy, wz: the column of the Jacobian, then the position",
         answer: Answer::Tables(&[
-            by_position("∂(row vx of the Jacobian)/∂q, world axes"),
+            by_position(
+                "∂(row vx of the Jacobian)/∂q, world axes; a row per column of the Jacobian, a column per position",
+            ),
             by_position("∂(row vy)/∂q"),
             by_position("∂(row vz)/∂q"),
             by_position("∂(row wx)/∂q"),

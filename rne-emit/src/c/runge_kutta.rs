@@ -4,6 +4,8 @@
 //! As `RungeKuttaStep` and `RungeKuttaStepDerivatives` of the runtime, with the same operations in the same order. Four
 //! copies of the accelerations in one function would be four times the code.
 
+use std::fmt::Write;
+
 use rne_codegen::{Function, Layout, Program, Sizes};
 
 use super::signature::{parameters_type, record_type, wrapped};
@@ -68,7 +70,7 @@ pub(super) fn declarations(file: &File) -> String {
          and velocities after it. It calls forward_dynamics four times. step: its duration h (s). The error of a \
          motion is of order h^4.",
     ));
-    text += &format!("{step};\n");
+    let _ = writeln!(text, "{step};");
     if has_derivatives(file) {
         text.push('\n');
         text.push_str(&comment(
@@ -77,7 +79,7 @@ pub(super) fn declarations(file: &File) -> String {
              It calls forward_dynamics three times and forward_dynamics_derivatives four times. derivatives: as those \
              of euler_step_derivatives.",
         ));
-        text += &format!("{derivatives};\n");
+        let _ = writeln!(text, "{derivatives};");
     }
     text
 }
