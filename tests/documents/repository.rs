@@ -57,7 +57,8 @@ fn unsafe_stands_in_few_modules() {
             .iter()
             .any(|folder| name.starts_with(folder))
     });
-    // pointers of C become slices, an export has a name, and launches on a card have addresses that a caller vouches for
+    // pointers of C become slices, an export has a name, and launches on a card have addresses that a caller vouches
+    // for
     let expected = [
         "doors/capi/src/border.rs",
         "doors/playground/src/border.rs",

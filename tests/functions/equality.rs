@@ -134,8 +134,8 @@ pub(crate) fn error_of_accelerations(found: &[f64], expected: &[f64], of_torques
     parts.fold(0.0, |worst, ((found, expected), scale)| worst.max(error_on_scale(found, expected, scale) / number))
 }
 
-/// The function of the accelerations of a step, its numbers by those of the step, and the positions beside those that the
-/// step must have, with the scale of their rounding.
+/// The function of the accelerations of a step, its numbers by those of the step, and the positions beside those that
+/// the step must have, with the scale of their rounding.
 type WithoutStep<'a> = (Function, Vec<f64>, &'a [f64], Vec<f64>, f64);
 
 /// q̈ = (q̇' - q̇) / h
