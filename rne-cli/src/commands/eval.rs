@@ -19,6 +19,7 @@ use crate::files::states;
 use crate::files::worksheet_file::{self, Filled};
 use crate::files::worksheet_text;
 use crate::outcome::{Failure, Outcome};
+use crate::palette::QUIET;
 use crate::render::answer;
 use crate::render::answer::not_finite;
 use crate::render::layout::PAGE;
@@ -233,15 +234,16 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
         };
         let _ = writeln!(remark, "note: {names} not given, so these numbers are 0");
     }
-    if arguments.arm.carried.payload.is_some() && !function.takes(Argument::Payload) {
-        remark.push_str("note: in these numbers, the payload of --payload is a part of the link that carries it\n");
-    }
     let result = || grouped(&function.layout(Sizes::of(&robot)), &numbers);
     if !arguments.trace {
         if arguments.json {
             return Ok(Outcome { remark, ..Outcome::json(&json!({ "result": result() }))? });
         }
-        return Ok(Outcome { remark, ..Outcome::text(answer::text(&robot, &state, &numbers)) });
+        let mut text = answer::text(&robot, &state, &numbers);
+        if arguments.arm.carried.payload.is_some() && !function.takes(Argument::Payload) {
+            let _ = writeln!(text, "{QUIET}the payload of --payload is a part of the link that carries it{QUIET:#}");
+        }
+        return Ok(Outcome { remark, ..Outcome::text(text) });
     }
     let situation = worksheet::situation(&state, robot.dof());
     if let Some(sheet) = &sheet {

@@ -1,6 +1,6 @@
 // The types of FMI 2.0, as far as this FMU needs them.
-#ifndef FMI_TYPES_H
-#define FMI_TYPES_H
+#ifndef fmi_types_h
+#define fmi_types_h
 
 #include <stddef.h>
 
