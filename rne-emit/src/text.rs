@@ -261,6 +261,9 @@ fn argument_type(array: &ArgumentArray) -> String {
     if array.is_number { "T".to_owned() } else { format!("&{}", array_type(&array.lengths())) }
 }
 
+/// The longest tuple that rustfmt writes in one line.
+const TUPLE: usize = 60;
+
 fn function(robot: &Robot, program: &Program) -> String {
     let arrays = program.arrays_without_parameters();
     let mut text = format!("/// {}\n", program.function.summary());
@@ -277,7 +280,7 @@ fn function(robot: &Robot, program: &Program) -> String {
     let mut end = format!(") -> {} {{", returned_type(&program.layout()));
     let line = format!("{start}{}{end}\n", parameters.join(", "));
     if let Layout::Record(_, parts) = program.layout()
-        && end.len() > WIDTH
+        && end.len() > ") -> () {".len() + TUPLE
     {
         let parts: Vec<String> = parts.iter().map(returned_type).collect();
         end = format!(") -> (\n    {},\n) {{", parts.join(",\n    "));
