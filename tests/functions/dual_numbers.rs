@@ -7,7 +7,7 @@ use rne_codegen::Function;
 use crate::arm::{Arm, Given, base_rotation, of_runtime};
 use crate::trees::State;
 
-/// What is varied.
+/// The argument by which a function is derived.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum By {
     Q,
@@ -19,7 +19,7 @@ pub(crate) enum By {
 }
 use By::{Omega, Q, Qd, Qdd, Tau};
 
-/// What is made of the derivatives.
+/// The numbers that are computed from the derivatives.
 #[derive(Clone, Copy)]
 pub(crate) enum Kind {
     /// A matrix for each that is varied, by rows: a row for each number of the function.

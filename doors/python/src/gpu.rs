@@ -23,8 +23,7 @@ pub(crate) struct GpuArm {
     arm: rne_gpu::GpuArm,
 }
 
-/// What Python is told of a function: its arguments with their elements, and the shapes of its results with a flag for
-/// poses.
+/// The arguments of a function with their numbers of elements, and the shapes of its results. The flag marks poses.
 type Told = (Vec<(&'static str, usize)>, Vec<(Vec<usize>, bool)>);
 
 fn of_gpu(error: &GpuError) -> PyErr {

@@ -327,7 +327,7 @@ fn words(error: c_int) -> [&'static CStr; 2] {
 unsafe fn write_text(place: *mut u8, bytes: usize, text: &str) {
     let text = &text.as_bytes()[..text.len().min(bytes.saturating_sub(1))];
     if bytes > 0 {
-        // SAFETY: the caller gives a place of so many bytes
+        // SAFETY: the caller's memory has this number of bytes
         unsafe {
             std::ptr::copy_nonoverlapping(text.as_ptr(), place, text.len());
             *place.add(text.len()) = 0;
