@@ -199,7 +199,7 @@ fn co_simulation_is_the_trajectory_of_the_runtime() {
         let hold = arm.inverse_dynamics(&q, &qd, &vec![0.0; dof]).expect("one per joint");
         let tau: Vec<f64> = hold.iter().zip(&more).map(|(hold, more)| hold + more).collect();
         let varying = with_inertial_parameters(robot.clone());
-        // without a payload, nothing is set: the default is none
+        // a payload that the program does not set is zero, because the start values of its variables are zero
         for (version, payload) in VERSIONS.into_iter().flat_map(|version| [(version, None), (version, Some(PAYLOAD))]) {
             let expected = payload.map_or(Payload::none(), Payload::from_array);
             let expected = runge_kutta(&arm, &q, &qd, &tau, &expected);

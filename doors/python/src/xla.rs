@@ -144,8 +144,9 @@ impl Arm {
     ///
     /// Torques, accelerations, the mass matrix and its inverse, the two energies, `pose`, `jacobian` and
     /// `centre_of_mass` have derivatives by positions, velocities, accelerations, torques and wrenches. Many have
-    /// second derivatives, which `jax.hessian` takes. Where there is none, JAX raises NotImplementedError. `frame`:
-    /// functions of the tip are those of this frame. Needs the package jax, 0.5 or later.
+    /// second derivatives, which `jax.hessian` takes. JAX raises NotImplementedError for a derivative that a function
+    /// does not have. With `frame`, the functions of the tip, such as `pose`, compute values of this frame. Needs the
+    /// package jax, 0.5 or later.
     #[pyo3(signature = (*, frame=None))]
     fn jax<'py>(slf: &Bound<'py, Self>, frame: Option<&Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("rne.xla")?.call_method1("functions", (slf, frame))
@@ -159,8 +160,8 @@ impl Arm {
     /// and in `torch.vmap` (torch 2.5). The backward pass of torques is one call of `torque_gradient`.
     ///
     /// The functions that have derivatives and second derivatives for `jax` have them here; others raise
-    /// NotImplementedError. `frame`: functions of the tip are those of this frame. Needs the package torch, 2.4 or
-    /// later.
+    /// NotImplementedError. With `frame`, the functions of the tip, such as `pose`, compute values of this frame. Needs
+    /// the package torch, 2.4 or later.
     #[pyo3(signature = (*, frame=None))]
     fn torch<'py>(slf: &Bound<'py, Self>, frame: Option<&Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("rne.pytorch")?.call_method1("functions", (slf, frame))
