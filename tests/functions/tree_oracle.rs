@@ -52,6 +52,22 @@ fn moved(by: [f64; 3]) -> Matrix4<f64> {
     Matrix4::new_translation(&Vector3::from(by))
 }
 
+/// a b. In loops: without optimization, nalgebra's product took two thirds of the time of these tests.
+fn times(a: &Matrix4<f64>, b: &Matrix4<f64>) -> Matrix4<f64> {
+    let (a, b): (&[[f64; 4]; 4], &[[f64; 4]; 4]) = (a.as_ref(), b.as_ref());
+    let mut columns = [[0.0; 4]; 4];
+    for (column, of_b) in columns.iter_mut().zip(b) {
+        for (k, &factor) in of_b.iter().enumerate() {
+            if factor != 0.0 {
+                for (sum, x) in column.iter_mut().zip(&a[k]) {
+                    *sum += x * factor;
+                }
+            }
+        }
+    }
+    Matrix4::from(columns)
+}
+
 fn placed(transform: &Transform) -> Matrix4<f64> {
     let [roll, pitch, yaw] = &transform.rpy;
     moved(transform.xyz) * turned(2, yaw) * turned(1, pitch) * turned(0, roll)
@@ -59,11 +75,15 @@ fn placed(transform: &Transform) -> Matrix4<f64> {
 
 /// What is fixed to a moving frame.
 fn fixed(to: &Jet, at: Matrix4<f64>) -> Jet {
-    to.map(|derivative| derivative * at)
+    to.map(|derivative| times(&derivative, &at))
 }
 
 fn product(a: &Jet, b: &Jet) -> Jet {
-    [a[0] * b[0], a[1] * b[0] + a[0] * b[1], a[2] * b[0] + a[1] * b[1] * 2.0 + a[0] * b[2]]
+    [
+        times(&a[0], &b[0]),
+        times(&a[1], &b[0]) + times(&a[0], &b[1]),
+        times(&a[2], &b[0]) + times(&a[1], &b[1]) * 2.0 + times(&a[0], &b[2]),
+    ]
 }
 
 /// exp(G q), where G is the screw of a joint about or along z.
