@@ -154,7 +154,9 @@ pub(crate) struct Arguments {
 pub(crate) const DIGITS_BY_HAND: u8 = 4;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let outcome = computed(arguments)?;
+    let (robot, lints) = arguments.robot()?;
+    let outcome = computed(arguments, robot)?;
+    let outcome = Outcome { remark: outcome.remark + &lints, ..outcome };
     let letters = arguments.letters;
     let text = match &outcome.text {
         json if arguments.json => letters.json(json),
@@ -165,15 +167,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { text, remark: letters.page(&outcome.remark, PAGE), ..outcome })
 }
 
-fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
-    if arguments.out.is_some() && arguments.states.is_none() {
-        return Err(Failure::usage("-o is for the results of --states; the result of one state is printed"));
-    }
-    let is_read_twice = |states: &PathBuf| is_standard_input(states) && is_standard_input(arguments.arm.file());
-    if arguments.states.as_ref().is_some_and(is_read_twice) {
-        return Err(Failure::usage("FILE and --states are both standard input; give one of them as a file"));
-    }
-    let robot = arguments.arm.robot_at(&arguments.at)?;
+fn computed(arguments: &Arguments, robot: Robot) -> Result<Outcome, Failure> {
     let is_at_frame = arguments.at.frame.is_some();
     let has_loops = !robot.closed.is_empty();
     let function = arguments.function.unwrap_or(match (&arguments.wrench, is_at_frame) {
@@ -270,6 +264,18 @@ fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
 }
 
 impl Arguments {
+    /// The robot, and a note that counts the warnings of its file.
+    fn robot(&self) -> Result<(Robot, String), Failure> {
+        if self.out.is_some() && self.states.is_none() {
+            return Err(Failure::usage("-o is for the results of --states; the result of one state is printed"));
+        }
+        let is_read_twice = |states: &PathBuf| is_standard_input(states) && is_standard_input(self.arm.file());
+        if self.states.as_ref().is_some_and(is_read_twice) {
+            return Err(Failure::usage("FILE and --states are both standard input; give one of them as a file"));
+        }
+        self.arm.robot_at(&self.at)
+    }
+
     /// Whether a robot has the function: with closed loops those of loops, and no others.
     fn has_function(function: Function, robot: &Robot) -> Result<(), Failure> {
         match robot.closed.loops.first() {

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use clap::Args;
 use rne::Payload;
 use rne_codegen::Function;
-use rne_model::Robot;
+use rne_model::{Checked, Report, Robot};
 
 use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::Failure;
@@ -175,16 +175,17 @@ impl ChosenArm {
 
     /// The robot with the payload as a part of the link with the tip.
     pub(crate) fn robot_with_payload(&self, shape: Shape) -> Result<Robot, Failure> {
-        self.carried.of(self.read(Frames::Dropped, shape)?)
+        self.carried.of(self.read(Frames::Dropped, shape)?.0)
     }
 
-    /// The robot without the payload, seen from a frame.
-    pub(crate) fn robot_at(&self, at: &AtFrame) -> Result<Robot, Failure> {
+    /// The robot without the payload, seen from a frame, and a note that counts the warnings of its file.
+    pub(crate) fn robot_at(&self, at: &AtFrame) -> Result<(Robot, String), Failure> {
         let names_frame = at.frame.is_some() || self.carried.payload_on.is_some();
-        at.of(self.read(if names_frame { Frames::Kept } else { Frames::Dropped }, Shape::Closed)?)
+        let (robot, lints) = self.read(if names_frame { Frames::Kept } else { Frames::Dropped }, Shape::Closed)?;
+        Ok((at.of(robot)?, robot_file::lint_remark(&lints, &self.file)))
     }
 
-    fn read(&self, frames: Frames, shape: Shape) -> Result<Robot, Failure> {
+    fn read(&self, frames: Frames, shape: Shape) -> Result<(Robot, Report), Failure> {
         let shown = self.file.display();
         if !self.file.exists() && shown.to_string().parse::<List>().is_ok() {
             return Err(Failure::usage(format_args!(
@@ -192,19 +193,19 @@ impl ChosenArm {
                  without blanks, as in {TYPED}rne eval planar2 --q 0.5,0.3{TYPED:#}"
             )));
         }
-        let robot = self.rotors.of(with_settings(&self.file, &self.set, frames, shape)?);
+        let Checked { robot, lints, .. } = with_settings(&self.file, &self.set, frames, shape)?;
         let without: Vec<&str> = self.without.iter().map(String::as_str).collect();
-        robot.without_bodies(&without).map_err(Failure::usage)
+        Ok((self.rotors.of(robot).without_bodies(&without).map_err(Failure::usage)?, lints))
     }
 }
 
 /// The robot of a file with other values of its parameters.
-fn with_settings(path: &Path, settings: &[Setting], frames: Frames, shape: Shape) -> Result<Robot, Failure> {
+fn with_settings(path: &Path, settings: &[Setting], frames: Frames, shape: Shape) -> Result<Checked, Failure> {
     for (index, Setting { name, .. }) in settings.iter().enumerate() {
         if settings[..index].iter().any(|other| other.name == *name) {
             return Err(Failure::usage(format_args!("--set gives {name} twice")));
         }
     }
     let settings: Vec<(&str, f64)> = settings.iter().map(|Setting { name, value }| (name.as_str(), *value)).collect();
-    Ok(robot_file::read_with(path, &settings, frames, shape)?.robot)
+    robot_file::read_with(path, &settings, frames, shape)
 }

@@ -174,7 +174,7 @@ pub(crate) fn not_opened(error: &OpenError) -> Failure {
     }
 }
 
-/// A line for standard error where a robot file has warnings; code for a machine is written of it all the same.
+/// A line for standard error where a robot file has warnings; the command does its work all the same.
 pub(crate) fn lint_remark(lints: &Report, path: &Path) -> String {
     match lints.warnings().count() {
         0 => String::new(),
@@ -191,7 +191,7 @@ pub(crate) fn lint_remark(lints: &Report, path: &Path) -> String {
     }
 }
 
-/// A valid robot. `rne check` prints its lints; `rne emit` and `rne certify` count its warnings; others say nothing.
+/// A valid robot. `rne check` prints its lints; commands that write code and `rne eval` count its warnings.
 pub(crate) fn robot(path: &Path, shape: Shape) -> Result<Robot, Failure> {
     Ok(read(path, shape)?.robot)
 }

@@ -522,3 +522,18 @@ fn a_mass_matrix_that_is_not_positive_definite_is_told() {
     fs::write(&file, text.replace("zz: -1", "zz: 1")).expect("a robot file");
     assert!(!rne(&arguments).err.contains("positive definite"));
 }
+
+/// A warning that `rne check` prints is counted on standard error; the numbers are on standard output as before.
+#[test]
+fn warnings_of_the_robot_file_are_counted() {
+    let link = "{mass: 1, com: [0, 0, 0], inertia: {xx: 1, yy: 1, zz: 1}}";
+    let joint = format!("  - {{type: revolute, dh: {{theta: 0, d: 0.1, a: 0.8, alpha: 0}}, link: {link}}}\n");
+    let head = "format: 1\nname: p\nsource: own\nconvention: standard\ngravity: [0, -9.81, 0]\njoints:\n";
+    let text = format!("{head}{}", joint.repeat(3));
+    let eval = ["eval", "-", "--json", "--function", "gravity_torques", "--q", "0,0,0"];
+    let called = crate::call::rne_reading(&eval, &text);
+    assert_eq!(called.status, 0, "{called:?}");
+    assert_eq!(called.err, "note: 1 warning in the robot file; rne check - shows it\n");
+    assert!(serde_json::from_str::<Value>(&called.out).is_ok(), "{}", called.out);
+    assert_eq!(rne(&["eval", "planar1", "--q", "0", "--function", "gravity_torques"]).err, "");
+}
