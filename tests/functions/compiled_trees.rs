@@ -6,7 +6,8 @@ use rne_model::Robot;
 use crate::arm::{Arm, Maker, STEP, at_tips, base_rotation};
 use crate::check::Worst;
 use crate::equality::{error, is_compared};
-use crate::trees::{State, robot};
+use crate::tree_functions::State;
+use crate::trees::robot;
 use crate::{couplings, motors, random_trees};
 
 /// States in a run of many.

@@ -12,7 +12,7 @@ use crate::arm::{Arm, Maker};
 use crate::check::{ROOT, Worst, error_on_scale};
 use crate::equality::compare_at_states;
 use crate::random_trees;
-use crate::trees::{State, expected, scale};
+use crate::tree_functions::{State, expected, scale};
 
 const TOLERANCE: f64 = 1e-12;
 

@@ -21,7 +21,8 @@ use crate::dual_numbers::{Derivative, Kind};
 use crate::equality;
 use crate::integrator;
 use crate::random_arms::of_each;
-use crate::trees::{self, State};
+use crate::tree_functions::State;
+use crate::trees;
 
 /// First derivatives, of the largest number that rounding is relative to.
 const FIRST_ORDER: f64 = 1e-11;

@@ -5,7 +5,7 @@ use rne::{BaseMotion, Dual, Payload, Scalar, Wrench};
 use rne_codegen::Function;
 
 use crate::arm::{Arm, Given, base_rotation, of_runtime};
-use crate::trees::State;
+use crate::tree_functions::State;
 
 /// The argument by which a function is derived.
 #[derive(Clone, Copy, PartialEq)]

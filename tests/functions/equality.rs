@@ -12,7 +12,7 @@ use crate::arm::{Arm, Given, Maker, STEP, base_rotation, of_runtime};
 use crate::case::{cases, largest, payload};
 use crate::check::{Conditioning, Worst, conditioning, error_on_scale};
 use crate::golden::ROBOTS;
-use crate::trees::contact_condition;
+use crate::tree_functions::contact_condition;
 
 /// Functions whose seven steps are the runtime's operations, in its order.
 const SAME_BITS: [Function; 36] = [

@@ -10,7 +10,8 @@ use rne_model::{Contact, Reader, Robot};
 
 use crate::arm::{Arm, Given, Maker, base_rotation};
 use crate::check::{ROOT, Worst, conditioning, dot, error_on_scale, json, numbers, product};
-use crate::trees::{State, contact_condition, robot};
+use crate::tree_functions::{State, contact_condition};
+use crate::trees::robot;
 
 const TOLERANCE: f64 = 1e-12;
 const FOLDER: &str = "tests/functions/floating";

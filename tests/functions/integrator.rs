@@ -11,7 +11,8 @@ use rne_model::Robot;
 use crate::arm::{Arm, Given, Maker};
 use crate::arms;
 use crate::check::{Worst, conditioning, error_on_scale};
-use crate::trees::{self, State};
+use crate::tree_functions::State;
+use crate::trees;
 
 /// A robot whose number of joints is known.
 struct Joints<'a, const DOF: usize>(&'a Arm);

@@ -48,6 +48,7 @@ mod rotors;
 mod single_precision;
 #[path = "../c_code/states.rs"]
 mod states;
+mod tree_functions;
 mod tree_oracle;
 mod trees;
 mod wrenches;

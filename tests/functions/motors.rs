@@ -14,7 +14,7 @@ use rne_model::{
 use crate::arm::{Arm, Maker};
 use crate::check::{Worst, conditioning, error_on_scale};
 use crate::equality::compare_at_states;
-use crate::trees::{State, contact_condition, expected, scale};
+use crate::tree_functions::{State, contact_condition, expected, scale};
 use crate::{random_motors, random_trees};
 
 const TOLERANCE: f64 = 1e-12;

@@ -58,10 +58,8 @@ fn times(a: &Matrix4<f64>, b: &Matrix4<f64>) -> Matrix4<f64> {
     let mut columns = [[0.0; 4]; 4];
     for (column, of_b) in columns.iter_mut().zip(b) {
         for (k, &factor) in of_b.iter().enumerate() {
-            if factor != 0.0 {
-                for (sum, x) in column.iter_mut().zip(&a[k]) {
-                    *sum += x * factor;
-                }
+            for (sum, x) in column.iter_mut().zip(&a[k]) {
+                *sum += x * factor;
             }
         }
     }
