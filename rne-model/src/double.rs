@@ -41,6 +41,13 @@ impl Double {
     #[must_use]
     pub fn decimal(value: f64) -> Self {
         let (digits, exponent) = decimal_digits(value.abs());
+        let number = Self::of_digits(digits, exponent);
+        if value < 0.0 { -number } else { number }
+    }
+
+    /// `digits` times ten to the power of `exponent`.
+    #[must_use]
+    pub fn of_digits(digits: u64, exponent: i32) -> Self {
         #[allow(clippy::cast_precision_loss)] // the rest of the digits is in `low`
         let high = digits as f64;
         #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)] // integers of at most 17 digits
@@ -53,7 +60,7 @@ impl Double {
             number = if exponent > 0 { number * power } else { number / power };
             rest -= places;
         }
-        if value < 0.0 { -number } else { number }
+        number
     }
 
     /// The nearest `f64`.
@@ -102,15 +109,21 @@ impl Double {
     }
 }
 
-/// The digits and the decimal exponent of the shortest decimal that reads back as `value`, which is not negative.
+/// The digits and the decimal exponent of the shortest decimal that reads back as `value`, which is not negative. A whole
+/// number that an `f64` counts up to has the exponent 0.
 #[must_use]
 pub fn decimal_digits(value: f64) -> (u64, i32) {
+    const COUNTED: f64 = 9_007_199_254_740_992.0; // 2⁵³
+    if value < COUNTED && value.fract() == 0.0 {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // whole, and neither negative nor large
+        return (value as u64, 0);
+    }
     let text = format!("{value:e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-    let digits = format!("{whole}{fraction}").parse().unwrap_or(0);
-    let places = i32::try_from(fraction.len()).unwrap_or(0);
-    (digits, exponent.parse().unwrap_or(0) - places)
+    let digits = mantissa.bytes().filter(u8::is_ascii_digit);
+    let number = digits.fold(0, |number, digit| 10 * number + u64::from(digit - b'0'));
+    let places = mantissa.split_once('.').map_or(0, |(_, fraction)| fraction.len());
+    (number, exponent.parse().unwrap_or(0) - i32::try_from(places).unwrap_or(0))
 }
 
 /// a + b when |a| ≥ |b|.
@@ -204,6 +217,8 @@ mod tests {
         assert_eq!(decimal_digits(0.4318), (4318, -4));
         assert_eq!(decimal_digits(1.2e300), (12, 299));
         assert_eq!(decimal_digits(0.0), (0, 0));
+        assert_eq!(decimal_digits(1200.0), (1200, 0));
+        assert_eq!(decimal_digits(1e16), (1, 16), "an `f64` does not count so far");
     }
 
     #[test]

@@ -49,7 +49,7 @@ impl Derivatives {
         if cmd!(shell, "{python} -c").arg("import numpy, pinocchio").quiet().ignore_stderr().run().is_err() {
             return Err(Missing::error(format!("{python} has no numpy or pin (pip installs them)")));
         }
-        machine::without_flags(cmd!(shell, "cargo build --release --quiet -p rne-cli")).quiet().run()?;
+        machine::without_flags(cmd!(shell, "cargo build --release --quiet --bin rne")).quiet().run()?;
         let program = machine::target_folder("target")?.join("release").join("rne");
         Ok(Verdict::from(cmd!(shell, "{python} xtask/derivatives.py {program}").quiet().run().is_ok()))
     }

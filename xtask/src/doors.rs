@@ -164,10 +164,7 @@ impl Programs {
                 return Err(Missing::error("the packages of tests/doors/requirements.txt cannot be fetched"));
             }
         }
-        let build = cmd!(shell, "cargo build --quiet --release --locked --package rne-cli --features full");
-        machine::without_flags(build).quiet().run()?;
-        let rne = machine::target_folder("target")?.join("release/rne");
-        Ok(Self { python, rne, prefix: capi::prefix()? })
+        Ok(Self { python, rne: place.command_line()?, prefix: capi::prefix()? })
     }
 
     /// Whether a door was built here before, so that building it again takes little.

@@ -65,7 +65,7 @@ impl Gpu {
     pub(crate) fn run(&self) -> Result<Verdict> {
         let shell = machine::shell()?;
         let ptxas = self.assembler()?;
-        machine::without_flags(cmd!(shell, "cargo build --quiet --package rne-cli")).quiet().run()?;
+        machine::without_flags(cmd!(shell, "cargo build --quiet --bin rne")).quiet().run()?;
         let rne = machine::target_folder("target")?.join("debug/rne");
         let folder = tempfile::tempdir()?;
         let mut verdict = Verdict::Holds;

@@ -78,6 +78,6 @@ pub(crate) fn python(shell: &Shell, install: bool) -> Result<PathBuf> {
 
 /// The command line, built anew.
 pub(crate) fn rne(shell: &Shell) -> Result<PathBuf> {
-    machine::without_flags(cmd!(shell, "cargo build --quiet --package rne-cli")).quiet().run()?;
+    machine::without_flags(cmd!(shell, "cargo build --quiet --bin rne")).quiet().run()?;
     Ok(machine::target_folder("target")?.join("debug/rne"))
 }

@@ -185,7 +185,7 @@ impl Place {
     /// The command line, built, with whose numbers those of logs are compared; optimised, for the tests call it often.
     pub(crate) fn command_line(&self) -> Result<PathBuf> {
         let shell = &self.shell;
-        machine::without_flags(cmd!(shell, "cargo build --quiet --release --locked --package rne-cli --features full"))
+        machine::without_flags(cmd!(shell, "cargo build --quiet --release --locked --bin rne --features rne-cli/full"))
             .quiet()
             .run()?;
         Ok(machine::target_folder("target")?.join("release").join(format!("rne{}", std::env::consts::EXE_SUFFIX)))

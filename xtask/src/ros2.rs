@@ -55,7 +55,7 @@ impl Ros2 {
             }
         }
         cmd!(shell, "cargo build {arguments...} {folder}").run()?;
-        machine::without_flags(cmd!(shell, "cargo build --quiet --locked --package rne-cli")).quiet().run()?;
+        machine::without_flags(cmd!(shell, "cargo build --quiet --locked --bin rne")).quiet().run()?;
         let (node, rne) = (folder.join("release/rne-ros2"), machine::target_folder("target")?.join("debug/rne"));
         let seconds = self.seconds.to_string();
         let exchange = "doors/ros2/peer/exchange.py";

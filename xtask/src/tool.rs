@@ -72,7 +72,7 @@ impl Tool {
             Name::Book => {
                 // the live pages that chapters show
                 let book = machine::target_folder("target")?.join("book");
-                machine::without_flags(cmd!(shell, "cargo build --quiet --package rne-cli")).quiet().run()?;
+                machine::without_flags(cmd!(shell, "cargo build --quiet --bin rne")).quiet().run()?;
                 let rne = machine::target_folder("target")?.join("debug/rne");
                 cmd!(shell, "mdbook build docs/lecture --dest-dir {book}").quiet().ignore_stderr().run()?;
                 for robot in LIVE {

@@ -62,7 +62,7 @@ impl TreeCounts {
         if cmd!(shell, "python3 -c 'import yaml'").quiet().ignore_stderr().run().is_err() {
             return Err(Missing::error("there is no python3 with PyYAML"));
         }
-        machine::without_flags(cmd!(shell, "cargo build --quiet --package rne-cli")).quiet().run()?;
+        machine::without_flags(cmd!(shell, "cargo build --quiet --bin rne")).quiet().run()?;
         let rne = machine::target_folder("target")?.join("debug/rne");
         if self.loops {
             let counted = cmd!(shell, "python3 xtask/loop_counts.py {rne} {LOOPS...}").quiet().ignore_status();

@@ -84,7 +84,7 @@ impl Urdf {
             let test = cmd!(shell, "cargo test --quiet --package rne-convert --test mjcf -- --ignored");
             return Ok(Verdict::from(machine::without_flags(test).env("RNE_MJCF", models).quiet().run().is_ok()));
         }
-        machine::without_flags(cmd!(shell, "cargo build --quiet --package rne-cli")).quiet().run()?;
+        machine::without_flags(cmd!(shell, "cargo build --quiet --bin rne")).quiet().run()?;
         let rne = target.join("debug/rne");
         let write = self.write.then_some("--write");
         let compare = if let Some(folder) = &self.trees {

@@ -176,16 +176,16 @@ impl Embedding {
         if magnitude == 0.0 {
             return Number::ZERO;
         }
+        let (digits, exponent) = decimal_digits(magnitude);
         let residue = if self.unknown == Some(magnitude) {
             let seed = self.seed ^ magnitude.to_bits();
             Residue::residues(mixed(seed), mixed(!seed))
         } else {
-            let (digits, exponent) = decimal_digits(magnitude);
             let factor = if exponent < 0 { Residue::TENTH } else { Residue::integer(10) };
             (0..exponent.abs()).fold(Residue::integer(digits), |residue, _| residue * factor)
         };
         note(residue, || Way::Decimal(magnitude));
-        let number = Number { value: Double::decimal(magnitude), residue };
+        let number = Number { value: Double::of_digits(digits, exponent), residue };
         if value < 0.0 { -number } else { number }
     }
 
