@@ -118,7 +118,7 @@ fn single(robot: &str, function: Function, columns: &[String], state: &[f64]) ->
     {
         give(option, list(prefix));
     }
-    give("--duration", list("step"));
+    give("--duration", list("duration"));
     give("--wrench", list("force").zip(list("moment")).map(|(force, moment)| format!("{force},{moment}")));
     give("--base-omega", list("base_omega").or_else(|| list("omega")));
     give("--base-omega-dot", list("base_omega_dot"));
@@ -169,6 +169,9 @@ fn every_function_is_that_of_single_states() {
                 // a body
                 state[mass + 4..mass + 7].iter_mut().for_each(|moment| *moment = 3.0 + moment.abs());
             }
+            if let Some(duration) = place("duration") {
+                state[duration] = state[duration].abs();
+            }
             // rotations, row by row
             for prefix in ["base_rotation", "pose_"] {
                 let places = columns.iter().enumerate().filter(|(_, column)| column.starts_with(prefix));
@@ -212,6 +215,17 @@ fn every_function_is_that_of_single_states() {
             assert!(error <= 1e-12 * scale, "{name}: {found:?} is not {expected:?}");
         }
     }
+}
+
+/// The column of a duration has the name of the option, or the name of generated code.
+#[test]
+fn a_duration_has_two_names() {
+    let arguments = ["eval", "planar1", "--function", "euler_step", "--states", "-"];
+    assert_eq!(columns("planar1", "euler_step"), ["q1", "qd1", "tau1", "duration"]);
+    let table = |name: &str, duration: &str| format!("tau1,{name},q1,qd1\n1,{duration},0.5,2\n");
+    let found = rne_reading(&arguments, &table("duration", "0.01"));
+    assert!(found.status == 0 && found.out.lines().count() == 2, "{found:?}");
+    assert_eq!(rne_reading(&arguments, &table("step", "0.01")).out, found.out);
 }
 
 fn gravity(states: &str) -> Called {
