@@ -77,14 +77,18 @@ fn named_columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<Option<S
     compiled.arguments().iter().flat_map(headings).collect()
 }
 
-/// The columns of a payload's mass and of a rotation.
+/// The columns of a payload's mass, of the duration of a step and of a rotation.
 fn restricted(compiled: &CompiledFunction) -> Restricted {
     let place = |wanted: &str| {
         let argument = compiled.arguments().iter().position(|(name, _)| *name == wanted)?;
         Some(compiled.arguments()[..argument].iter().map(|(_, elements)| elements).sum())
     };
     // a pose begins with its rotation
-    Restricted { mass: place("payload"), rotation: place("base_rotation").or_else(|| place("pose")) }
+    Restricted {
+        mass: place("payload"),
+        duration: place("step"),
+        rotation: place("base_rotation").or_else(|| place("pose")),
+    }
 }
 
 /// The columns of its results: torques and accelerations by their symbols, others by the function's name and their

@@ -228,6 +228,24 @@ fn a_duration_has_two_names() {
     assert_eq!(rne_reading(&arguments, &table("step", "0.01")).out, found.out);
 }
 
+/// A duration that is not above zero is refused in a table and as an option.
+#[test]
+fn a_duration_is_positive() {
+    let arguments = ["eval", "planar1", "--function", "euler_step", "--states", "-"];
+    let table = |name: &str, duration: &str| format!("tau1,{name},q1,qd1\n1,{duration},0.5,2\n");
+    for (name, duration) in [("duration", "0"), ("step", "-1")] {
+        let refused = rne_reading(&arguments, &table(name, duration));
+        let said = format!("<standard input>:2: the duration `{name}` is {duration} s; the duration of a step must be");
+        assert!(refused.status == 1 && refused.said().contains(&said), "{refused:?}");
+    }
+    let single = ["eval", "planar1", "--function", "euler_step", "--q", "0.5", "--qd", "2", "--tau", "1"];
+    assert_eq!(rne(&[&single[..], &["--duration", "1/100"]].concat()).status, 0);
+    for duration in ["0", "-1", "-0.0", "nan", "inf", "0.01,0.02"] {
+        let said = ["'--duration <H>': write a number of seconds above 0, such as 0.01"];
+        fails(2, &[&single[..], &["--duration", duration]].concat(), &said);
+    }
+}
+
 fn gravity(states: &str) -> Called {
     rne_reading(&["eval", "planar2", "--function", "gravity_torques", "--states", "-"], states)
 }
