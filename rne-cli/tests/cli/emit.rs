@@ -370,7 +370,7 @@ fn functions_are_chosen() {
         assert!(zeros.contains("actuator_torques"), "{zeros}");
     }
     fails(2, &["emit", ROBOT, "--lang", "fortran"], &["rust", "c"]);
-    fails(2, &["emit", ROBOT, "--function", "torques"], &["gravity_torques"]);
+    fails(2, &["emit", ROBOT, "--function", "torques"], &["did you mean inverse_dynamics?"]);
 }
 
 #[test]
