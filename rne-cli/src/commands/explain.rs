@@ -297,9 +297,9 @@ fn of_eval() -> String {
 /// The option of `rne eval` for an argument of a function.
 const fn option(argument: Argument) -> &'static str {
     match argument {
-        // sines and cosines are those of the positions
-        Argument::Positions | Argument::Sines => "--q",
-        Argument::Cosines => "",
+        Argument::Positions => "--q",
+        // those of the positions
+        Argument::Sines | Argument::Cosines => "",
         Argument::Rates => "--qd",
         Argument::Accelerations => "--qdd",
         Argument::Torques => "--tau",
