@@ -340,11 +340,8 @@ fn stepping(version: FmiVersion, cases: &[&(&str, &str, &str)]) -> String {
     }
     // the declarations are those of the other program
     let other = driver(version, &[], 0, 0.0, &[]);
-    let declarations: String = other
-        .lines()
-        .filter(|line| line.starts_with("fmi") || line.starts_with("void fmi"))
-        .map(|line| format!("{line}\n"))
-        .collect();
+    let is_declaration = |line: &&str| line.starts_with("fmi") || line.starts_with("void fmi");
+    let declarations = other.lines().filter(is_declaration).collect::<Vec<_>>().join("\n");
     let (logger, own) = if is_two {
         (
             "static void log_message(void *e, const char *name, fmi2Status status, const char *category, const char \
