@@ -46,7 +46,7 @@ pub(crate) fn of_programs(robot: &Robot, programs: &[Program], precision: Precis
         .collect()
 }
 
-/// What a step of the Runge-Kutta method changes, and its derivatives: for code with accelerations to compare.
+/// The changes that a step of the Runge-Kutta method makes, and its derivatives, for code with accelerations.
 fn steps(
     State { q, qd, tau, .. }: &State,
     arm: &DynArm,

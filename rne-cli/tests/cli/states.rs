@@ -235,7 +235,7 @@ fn a_duration_is_positive() {
     let table = |name: &str, duration: &str| format!("tau1,{name},q1,qd1\n1,{duration},0.5,2\n");
     for (name, duration) in [("duration", "0"), ("step", "-1")] {
         let refused = rne_reading(&arguments, &table(name, duration));
-        let said = format!("<standard input>:2: the duration `{name}` is {duration} s; the duration of a step must be");
+        let said = format!("<standard input>:2: the duration `{name}` is {duration} s; it must be above 0 s");
         assert!(refused.status == 1 && refused.said().contains(&said), "{refused:?}");
     }
     let single = ["eval", "planar1", "--function", "euler_step", "--q", "0.5", "--qd", "2", "--tau", "1"];

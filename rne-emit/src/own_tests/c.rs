@@ -304,9 +304,10 @@ impl Tests<'_> {
              for (state = 0u; state < {states}u; ++state) {{\n        unsigned i;\n        \
              for (i = 0u; i < {blocks}u; ++i) {{\n            \
              scales[i] = test_largest(&expected[state][{size}u * i], {size}u, scales[i]);\n        }}\n    }}\n    \
-             for (state = 0u; state < {states}u; ++state) {{\n        unsigned i;\n        {real} found[{count}];\n        \
-             {} result;\n        \
-             {prefix}_{what}(test_q[state], test_qd[state], test_tau[state], {}{parameters}, &result);\n{copies}        \
+             for (state = 0u; state < {states}u; ++state) {{\n        unsigned i;\n        \
+             {real} found[{count}];\n        {} result;\n        \
+             {prefix}_{what}(\n            \
+             test_q[state], test_qd[state], test_tau[state], {}{parameters}, &result);\n{copies}        \
              for (i = 0u; i < {count}u; ++i) {{\n            \
              test_compare(\"{what}\", state, i, (double)found[i], (double)expected[state][i],\n                \
              {parts} * scales[i / {size}u]);\n        }}\n    }}\n}}\n",

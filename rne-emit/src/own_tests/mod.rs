@@ -22,9 +22,9 @@ pub struct Golden {
     /// How large the terms are of which each program makes its numbers, about: what vanishes for this arm is rounding
     /// of them.
     pub sizes: Vec<f64>,
-    /// What a step of the Runge-Kutta method of the duration [`STEP`](Self::STEP) changes of the positions and of the
-    /// velocities, and its derivatives, in the order of their layouts. Empty where the file has no `forward_dynamics`
-    /// or there is nothing to compare with.
+    /// The changes of the positions and of the velocities by a step of the Runge-Kutta method of the duration
+    /// [`STEP`](Self::STEP), and the derivatives of the step, in the order of their layouts. Empty where the file
+    /// has no `forward_dynamics`, or where there is nothing to compare with.
     pub steps: [Vec<f64>; 2],
 }
 
