@@ -1,12 +1,16 @@
-//! Slips on the command line whose usual message would mislead: blanks in a list of numbers, an option without its
-//! value, a value that looks like an option, an option of another command, a function that commands do not have.
+//! Slips on the command line whose usual message would mislead, or help with nothing: blanks in a list of numbers, an
+//! option without its value, a value that looks like an option, an option of another command, a function that commands
+//! do not have, and arguments that are missing or too many.
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgAction, Command, CommandFactory as _};
+use rne_codegen::Function;
+use rne_model::did_you_mean;
 
 use crate::commands::Arguments;
 use crate::outcome::Failure;
 use crate::palette::TYPED;
+use crate::values::choice;
 use crate::values::numbers::List;
 
 /// The command, as its help is asked for, and what is wrong with its words; `None` where the message of the parser says
@@ -21,10 +25,13 @@ pub(crate) fn explained(error: &clap::Error, words: &[String]) -> Option<(String
     let command = grammar.get_subcommands().find(|command| command.get_name() == name)?;
     let words = &words[1..];
     let text = with_blanks(command, words).or_else(|| without_value(command, words));
-    let text = text.or_else(|| of_libraries(error)).or_else(|| of_other_name(error)).or_else(|| {
+    let text =
+        text.or_else(|| of_libraries(error)).or_else(|| of_other_name(error)).or_else(|| unknown_function(error));
+    let text = text.or_else(|| {
         let is_stray = error.kind() == ErrorKind::UnknownArgument;
         is_stray.then(|| refused(command, words).or_else(|| of_others(&grammar, command, error))).flatten()
-    })?;
+    });
+    let text = text.or_else(|| missing_or_too_many(command, error))?;
     Some((format!("rne {name}"), Failure::usage(text)))
 }
 
@@ -102,16 +109,18 @@ fn refused(command: &Command, words: &[String]) -> Option<String> {
 fn of_libraries(error: &clap::Error) -> Option<String> {
     const FUNCTIONS: [&str; 2] = ["operational_space_inertia", "dynamically_consistent_inverse"];
     let Some(ContextValue::String(value)) = error.get(ContextKind::InvalidValue) else { return None };
-    FUNCTIONS.contains(&value.as_str()).then(|| {
+    let of_matrices = FUNCTIONS.contains(&value.as_str()).then(|| {
         format!(
             "`{value}` is a function of Rust and Python only, because its arguments are matrices: see the section \
              Operational space of docs/functions.md; rne eval computes the arguments, `mass_matrix` and `jacobian`"
         )
-    })
+    });
+    of_matrices.or_else(|| choice::composed(value))
 }
 
 /// Names of functions in Python and in other programs, with those of the commands.
-const OTHER_NAMES: [(&str, &str); 5] = [
+const OTHER_NAMES: [(&str, &str); 6] = [
+    ("torques", "inverse_dynamics"),
     ("pose", "forward_kinematics"),
     ("fk", "forward_kinematics"),
     ("rnea", "inverse_dynamics"),
@@ -141,6 +150,40 @@ fn of_other_name(error: &clap::Error) -> Option<String> {
     Some(format!("`{value}` is not a valid value of {TYPED}{option}{TYPED:#}; did you mean {TYPED}{meant}{TYPED:#}?"))
 }
 
+/// A value of `--function` that no function has as its name. The list of all names is long, so the message has the
+/// names that are similar, and says which command prints the others.
+fn unknown_function(error: &clap::Error) -> Option<String> {
+    /// The most names that a message proposes.
+    const MOST: usize = 6;
+    let Some(ContextValue::String(value)) = error.get(ContextKind::InvalidValue) else { return None };
+    let Some(ContextValue::Strings(valid)) = error.get(ContextKind::ValidValue) else { return None };
+    let is_known = |name: &str| valid.iter().any(|known| known == name);
+    if !is_known(Function::InverseDynamics.name()) {
+        return None;
+    }
+    let names = || valid.iter().map(String::as_str);
+    let near: Vec<&str> = did_you_mean(value, names()).map_or_else(
+        || {
+            let word = value.to_lowercase().replace('-', "_");
+            names().filter(|name| word.len() > 3 && (name.contains(&word) || word.contains(name))).collect()
+        },
+        |near| vec![near],
+    );
+    let listed = format!("{TYPED}rne explain functions{TYPED:#} lists all functions");
+    let proposed = |names: &[&str]| names.iter().map(|name| format!("{TYPED}{name}{TYPED:#}")).collect::<Vec<_>>();
+    Some(match proposed(&near[..near.len().min(MOST)]).as_slice() {
+        [] => {
+            let usual = ["inverse_dynamics", "mass_matrix", "forward_dynamics", "jacobian"];
+            let usual: Vec<&str> = usual.into_iter().filter(|name| is_known(name)).collect();
+            format!("there is no function `{value}`; {listed}, such as {}", proposed(&usual).join(", "))
+        }
+        [only] => format!("there is no function `{value}`; did you mean {only}? {listed}"),
+        [some @ .., last] => {
+            format!("there is no function `{value}`; did you mean {} or {last}? {listed}", some.join(", "))
+        }
+    })
+}
+
 /// Finds the commands that have an option which this command does not have: `eval --seed 1`. The parser would propose
 /// an option of this command that merely looks alike.
 fn of_others(grammar: &Command, command: &Command, error: &clap::Error) -> Option<String> {
@@ -163,6 +206,38 @@ fn of_others(grammar: &Command, command: &Command, error: &clap::Error) -> Optio
         "{TYPED}rne {name}{TYPED:#} has no option {TYPED}{option}{TYPED:#}, which is an option of {}{instead}",
         others.join(", ")
     ))
+}
+
+/// The first example of a command's help, without the words beside it.
+fn example(command: &Command) -> Option<String> {
+    let help = command.get_after_help()?.to_string();
+    let line = help.split_once("Examples:\n")?.1.lines().next()?.trim();
+    Some(line.split("  ").next().unwrap_or(line).to_owned())
+}
+
+/// Arguments that are missing, and words that no argument takes, where the parser proposes nothing: with an example.
+fn missing_or_too_many(command: &Command, error: &clap::Error) -> Option<String> {
+    let name = command.get_name();
+    let example = format!("for example {TYPED}{}{TYPED:#}", example(command)?);
+    match (error.kind(), error.get(ContextKind::InvalidArg)?) {
+        (ErrorKind::MissingRequiredArgument, ContextValue::Strings(missing)) => {
+            let names: Vec<String> = missing.iter().map(|name| format!("{TYPED}{name}{TYPED:#}")).collect();
+            let is_of_others = missing.iter().all(|name| name.starts_with('-'));
+            Some(if is_of_others {
+                format!("an option that is given needs {}, too", names.join(" and "))
+            } else {
+                format!("{TYPED}rne {name}{TYPED:#} needs {}; {example}", names.join(" and "))
+            })
+        }
+        (ErrorKind::UnknownArgument, ContextValue::String(word)) if error.get(ContextKind::SuggestedArg).is_none() => {
+            Some(if word.starts_with('-') {
+                format!("{TYPED}rne {name}{TYPED:#} has no option {TYPED}{word}{TYPED:#}; {example}")
+            } else {
+                format!("the argument `{word}` is one too many for {TYPED}rne {name}{TYPED:#}; {example}")
+            })
+        }
+        _ => None,
+    }
 }
 
 #[cfg(test)]
@@ -232,7 +307,8 @@ mod tests {
             let said = said(&format!("eval panda --function {name}")).expect("refused");
             assert!(said.starts_with(&format!("error: `{name}` is a function of Rust and Python only")), "{said}");
         }
-        assert_eq!(said("eval panda --function operational_space"), None);
+        let step = said("emit panda --lang c --function runge_kutta_step").expect("refused");
+        assert!(step.contains("rne emit FILE --lang c --runge-kutta writes it in C"), "{step}");
     }
 
     #[test]
@@ -251,9 +327,43 @@ mod tests {
     #[test]
     fn what_the_parser_says_well_stays() {
         for line in
-            ["eval planar2 --qq 1", "evil", "eval --help", "check", "show puma560 -x", "eval planar2 --golden -3"]
+            ["eval planar2 --qq 1", "evil", "eval --help", "eval planar2 --golden -3", "emit planar2 --real half"]
         {
             assert_eq!(said(line), None, "{line}");
         }
+    }
+
+    #[test]
+    fn functions_that_are_not_there() {
+        for (name, near) in [
+            ("inverse_dynamic", "did you mean inverse_dynamics? rne explain functions lists all functions"),
+            ("tip-jacobian", "did you mean tip_jacobians?"),
+            ("kinetic", "did you mean kinetic_energy or floating_kinetic_energy?"),
+            ("inverse_dynamics_of_everything", "did you mean inverse_dynamics?"),
+            ("foo", "lists all functions, such as inverse_dynamics, mass_matrix, forward_dynamics, jacobian"),
+        ] {
+            for command in ["eval", "emit", "ops"] {
+                let said = said(&format!("{command} planar2 --function {name}")).expect("refused");
+                assert!(said.starts_with(&format!("error: there is no function `{name}`; ")), "{said}");
+                assert!(said.contains(near) && said.len() < 250, "{said}");
+            }
+        }
+    }
+
+    #[test]
+    fn missing_and_stray_arguments_have_an_example() {
+        for command in ["eval", "emit", "export", "ops"] {
+            let example = format!("; for example rne {command} ");
+            let missing = said(command).expect("refused");
+            assert!(missing.contains(" needs <") && missing.contains(&example), "{missing}");
+            let option = said(&format!("{command} planar2 --wibble")).expect("refused");
+            assert!(option.contains("has no option --wibble; for example rne "), "{option}");
+        }
+        for command in ["eval", "emit", "export --urdf"] {
+            let stray = said(&format!("{command} planar2 more")).expect("refused");
+            assert!(stray.starts_with("error: the argument `more` is one too many for rne e"), "{stray}");
+        }
+        let needed = said("emit planar2 --lang c --acados").expect("refused");
+        assert_eq!(needed, "error: an option that is given needs --casadi, too");
     }
 }

@@ -244,6 +244,126 @@ fn inverse_dynamics_follow_parameters_that_are_set() {
     }
 }
 
+/// A program that steps an FMU and prints for each step whether its status and the logged words are the expected ones.
+/// Words in capitals are replaced.
+const STEPPING: &str = r#"#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include "fmi-types.h"
+DECLARATIONS
+static char said[512];
+LOGGER
+int main(void)
+{
+    const double inf = HUGE_VAL, nan = inf - inf, one = 1.0;
+    OWN
+    (void)nan, (void)inf, (void)one;
+    if (arm == NULL) {
+        return 1;
+    }
+STEPS    FREE(arm);
+    return 0;
+}
+"#;
+
+/// Steps that cannot be are refused in words of their own, and change nothing.
+#[test]
+fn steps_that_cannot_be_are_refused_in_words() {
+    let robot = robots().remove(0);
+    let (varying, dof) = (with_inertial_parameters(robot.clone()), robot.dof());
+    let size = "the step size is negative or not finite; it must be 0 s or more";
+    let time = "the time at which the step begins is not finite";
+    // what is set before the step, its time and size, and what is logged
+    let of_both = [
+        ("", "0.0, 0.01", ""),
+        ("", "0.01, nan", size),
+        ("", "0.01, -0.01", size),
+        ("", "0.01, inf", size),
+        ("", "nan, 0.01", time),
+        ("", "-inf, 0.01", time),
+        ("", "0.0, 0.01", "the step begins before the end of the last step"),
+        // nothing has changed, and sums of times differ by rounding
+        ("", "0.01 - 1e-12, 0.01", ""),
+        ("", "0.02, 0.0", ""),
+        ("", "0.5, 0.01", ""),
+    ];
+    let parameter = 1 + 4 * dof;
+    let set = |reference: usize, value: &str| format!("{reference}, {value}");
+    let (longer, none, back) = (set(parameter, "1e-12"), set(parameter, "0.0"), set(parameter, "0.001"));
+    let (torque, rate) = (set(1 + 3 * dof, "nan"), set(1 + dof, "nan"));
+    let finite = set(1 + dof, "one");
+    let of_forward = [
+        (longer.as_str(), "0.51, 0.01", "the step is 1e9 times as long as the parameter step"),
+        (&none, "0.51, 0.01", "the parameter step is not above 0 s"),
+        (&back, "0.51, 0.01", ""),
+        (&torque, "0.52, 0.01", "the motion does not stay finite during the step"),
+    ];
+    let of_inverse =
+        [(rate.as_str(), "0.51, 0.01", "an input or a parameter is not finite"), (&finite, "0.51, 0.01", "")];
+    for version in VERSIONS {
+        for (causality, own) in [(FmuCausality::Forward, &of_forward[..]), (FmuCausality::Inverse, &of_inverse[..])] {
+            let cases: Vec<_> = of_both.iter().chain(own).collect();
+            let Some(found) = printed(&varying, &files(&varying, version, causality), &stepping(version, &cases))
+            else {
+                return;
+            };
+            for (case, as_expected) in cases.iter().zip(&found) {
+                assert!(*as_expected == 1.0, "{version:?}, {causality:?}, {case:?}");
+            }
+            assert_eq!(found.len(), cases.len());
+        }
+    }
+}
+
+/// The program [`STEPPING`] for these steps.
+fn stepping(version: FmiVersion, cases: &[&(&str, &str, &str)]) -> String {
+    let is_two = version == FmiVersion::Two;
+    let (set, step) = if is_two {
+        ("fmi2SetReal(arm, &r, 1u, &v)", "fmi2DoStep(arm, TIMES, 1)")
+    } else {
+        ("fmi3SetFloat64(arm, &r, 1u, &v, 1u)", "fmi3DoStep(arm, TIMES, true, &a, &b, &c, &last)")
+    };
+    let mut steps = String::new();
+    for (given, times, words) in cases {
+        let before = given.split_once(", ").map_or_else(String::new, |(reference, value)| {
+            format!(
+                "        const unsigned r = {reference};\n        const double v = {value};\n        (void){set};\n"
+            )
+        });
+        let (status, step) = (if words.is_empty() { 0 } else { 3 }, step.replace("TIMES", times));
+        let _ = write!(
+            steps,
+            "    {{\n{before}        said[0] = 0;\n        const int status = (int){step};\n        \
+             printf(\"%d\\n\", status == {status} && strstr(said, \"{words}\") == said);\n    }}\n"
+        );
+    }
+    // the declarations are those of the other program
+    let other = driver(version, &[], 0, 0.0, &[]);
+    let is_declaration = |line: &&str| line.starts_with("fmi") || line.starts_with("void fmi");
+    let declarations = other.lines().filter(is_declaration).collect::<Vec<_>>().join("\n");
+    let (logger, own) = if is_two {
+        (
+            "static void log_message(void *e, const char *name, fmi2Status status, const char *category, const char \
+             *format, ...)\n{\n    va_list list;\n    (void)e, (void)name, (void)status, (void)category;\n    \
+             va_start(list, format);\n    vsnprintf(said, sizeof said, format, list);\n    va_end(list);\n}\n",
+            "fmi2CallbackFunctions calls;\n    void *arm;\n    memset(&calls, 0, sizeof calls);\n    calls.logger = \
+             log_message;\n    arm = fmi2Instantiate(\"arm\", fmi2CoSimulation, \"token\", NULL, &calls, 0, 1);",
+        )
+    } else {
+        (
+            "static void log_message(void *e, fmi3Status status, const char *category, const char *text)\n{\n    \
+             (void)e, (void)status, (void)category;\n    snprintf(said, sizeof said, \"%s\", text);\n}\n",
+            "bool a, b, c;\n    double last;\n    void *arm = fmi3InstantiateCoSimulation(\"arm\", \"token\", NULL, 0, \
+             1, 0, 0, NULL, 0u, NULL, log_message, NULL);",
+        )
+    };
+    let free = if is_two { "fmi2FreeInstance" } else { "fmi3FreeInstance" };
+    [("DECLARATIONS", declarations.as_str()), ("LOGGER", logger), ("OWN", own), ("STEPS", &steps), ("FREE", free)]
+        .into_iter()
+        .fold(STEPPING.to_owned(), |text, (place, part)| text.replace(place, part))
+}
+
 #[test]
 fn descriptions_list_each_variable_once() {
     for robot in robots() {

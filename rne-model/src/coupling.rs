@@ -148,8 +148,9 @@ pub(crate) fn couplings(cx: &Context, root: &Node, format: u32, joints: &mut [Jo
             let message = format!("the joint {name} has a `motor`, but it follows other joints, which move it");
             refused(Diagnostic::error(item.head(), message).label("a follower has no motor").help(help));
         }
-        let varies = cx.run_time.borrow().entries.iter().any(|(entry, _)| *entry == Entry::D(*joint));
-        if coupling.offset != 0.0 && varies {
+        // the offset of a joint that turns is an angle
+        let meets_offset = joints[*joint].row.kind == JointKind::Prismatic && coupling.offset != 0.0;
+        if meets_offset && cx.run_time.borrow().entries.iter().any(|(entry, _)| *entry == Entry::D(*joint)) {
             let message = format!("`d` of the joint {name} varies at run time, and its coupling has an `offset`");
             refused(Diagnostic::error(item.head(), message).help("add the offset to `d`, and delete `offset`"));
         }

@@ -68,6 +68,10 @@ fn mistakes_are_told_at_their_place() {
     // a number that varies at run time
     let varying = Reader::new("hand.yaml").trees().couplings().run_time(&["l"]).read(&text).unwrap_err().short();
     assert!(varying.contains("`d` of the joint `c` varies at run time, and its coupling has an `offset`"), "{varying}");
+    // the offset of a joint that turns is an angle, and `d` is a length
+    let turning = text.replace("name: c, type: prismatic", "name: c, type: revolute");
+    let found = Reader::new("hand.yaml").trees().couplings().run_time(&["l"]).read(&turning);
+    assert!(turning != text && found.is_ok(), "{turning}");
     // who takes no couplings, and a format that has none
     let refused = Reader::new("hand.yaml").trees().read(&text).unwrap_err().short();
     assert!(refused.starts_with("hand.yaml:13:3: ") && refused.contains("the robot has couplings"), "{refused}");

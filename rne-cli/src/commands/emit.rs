@@ -10,7 +10,7 @@ use rne_model::{FrameId, Robot};
 
 use crate::commands::emit_c::{ForGpu, Header, Request, c_code, for_gpu, header_beside};
 use crate::commands::golden;
-use crate::files::chosen_arm::Rotors;
+use crate::files::chosen_arm::{Rotors, not_of_frames};
 use crate::files::file_name::{self, Format};
 use crate::files::output_file::{self, Existing, is_standard_output};
 use crate::files::plan_file::Compiler;
@@ -290,11 +290,14 @@ fn emitted(
     }
 }
 
-/// The functions asked for by name that CasADi cannot call.
+/// The functions asked for, by their names or by other options, that CasADi cannot call.
 fn not_for_casadi(arguments: &Arguments, programs: &[Program]) -> String {
-    let is_asked = |program: &&Program| arguments.functions.contains(&FunctionOrAll::One(program.function));
+    let is_asked = |program: &&Program| {
+        program.frame.is_some() || arguments.functions.contains(&FunctionOrAll::One(program.function))
+    };
     let left_out = programs.iter().filter(is_asked).filter(|program| !rne_emit::is_for_casadi(program));
-    let names: Vec<&str> = left_out.map(|program| program.name.as_str()).collect();
+    let steps = arguments.runge_kutta.then_some(["runge_kutta_step", "runge_kutta_step_derivatives"]);
+    let names: Vec<&str> = left_out.map(|program| program.name.as_str()).chain(steps.into_iter().flatten()).collect();
     if !arguments.casadi || names.is_empty() {
         return String::new();
     }
@@ -387,16 +390,18 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
     if asked.contains(&FunctionOrAll::All) {
         return choice::functions_of(robot).collect();
     }
+    let (is_for_casadi, has_frames) = (arguments.casadi && robot.closed.is_empty(), !arguments.frames.is_empty());
     let is_asked = |function: &Function| match asked.as_slice() {
         _ if arguments.acados && matches!(function, Function::ForwardDynamics | Function::TorqueHessian) => true,
         _ if arguments.runge_kutta && *function == Function::ForwardDynamics => true,
         // with its derivatives
-        [] if arguments.runge_kutta => *function == Function::ForwardDynamicsDerivatives,
-        [] if arguments.rollout => *function == Function::ForwardDynamics,
-        [] if arguments.casadi && robot.closed.is_empty() => {
-            matches!(function, Function::InverseDynamics | Function::ForwardDynamics)
-        }
-        [] if !arguments.frames.is_empty() => function.of_frame().is_some(),
+        [] if arguments.runge_kutta && *function == Function::ForwardDynamicsDerivatives => true,
+        // each option adds its functions
+        [] if arguments.runge_kutta || arguments.rollout || is_for_casadi || has_frames => match function {
+            Function::InverseDynamics => is_for_casadi,
+            Function::ForwardDynamics => is_for_casadi || arguments.rollout,
+            function => has_frames && function.of_frame().is_some(),
+        },
         // tips are there for their wrenches
         [] => {
             Function::TORQUES.contains(function)
@@ -438,6 +443,9 @@ fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failur
     let compiler = Compiler::new(&arguments.file, robot).for_target(target);
     let functions = functions(arguments, robot);
     let (of_frames, of_arm): (Vec<_>, Vec<_>) = functions.iter().partition(|function| function.of_frame().is_some());
+    if !arguments.frames.is_empty() && of_frames.is_empty() {
+        return Err(not_of_frames("none of the functions that are written is one of them"));
+    }
     let of_tip = if arguments.frames.is_empty() { &functions } else { &of_arm };
     let mut programs: Vec<Program> =
         of_tip.iter().map(|&function| compiled(arguments, &compiler, function)).collect::<Result<_, _>>()?;

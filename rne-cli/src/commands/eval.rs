@@ -29,7 +29,7 @@ use crate::values::choice;
 use crate::values::closure;
 use crate::values::definite::{BUT_FOR_ROUNDING, NOT_DEFINITE, is_indefinite, is_singular};
 use crate::values::limits;
-use crate::values::numbers::List;
+use crate::values::numbers::{List, duration};
 use crate::values::state::{Given, State, TipWrench};
 
 /// Compute torques, or another function of an arm, at given states
@@ -61,7 +61,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     tau: Option<List>,
     /// Duration of the step for euler_step, s
-    #[arg(long, value_name = "H", allow_hyphen_values = true)]
+    #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = duration())]
     duration: Option<List>,
     /// Multipliers for torque_gradient, torque_hessian
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]

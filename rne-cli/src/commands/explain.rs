@@ -28,6 +28,7 @@ use crate::values::choice::Kept;
 #[command(after_help = "\
 Examples:
   rne explain functions     functions of a robot, the values of --function
+  rne explain euler_step    what one function computes, and its options
   rne explain arguments     options of `rne eval` for each function
   rne explain tricks        simplifications of code, the values of --without
   rne explain quantities    quantities that `rne show --keep` can keep
@@ -36,8 +37,8 @@ Examples:
   rne explain Jzz3          meaning of the name of a link parameter
   rne explain w2_z puma560  meaning of w2_z in the code of the PUMA 560")]
 pub(crate) struct Arguments {
-    /// Topic: functions, arguments, tricks, quantities, exit-status, hold-out, a link parameter such as Jzz3, or a
-    /// name in the code of FILE
+    /// Topic: functions, arguments, tricks, quantities, exit-status, hold-out, a function, a link parameter such as
+    /// Jzz3, or a name in the code of FILE
     #[arg(value_name = "TOPIC")]
     topic: String,
     /// Robot file or name of a robot from `rne list`; needed only if TOPIC is a variable of the code
@@ -72,15 +73,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if let Some(parameter) = LinkParameter::parse(&arguments.topic) {
         return Ok(Outcome::text(arguments.letters.page(&parameter.explained(), PAGE)));
     }
+    if let Some(text) = of_function(&arguments.topic) {
+        return Ok(Outcome::text(arguments.letters.page(&text, PAGE)));
+    }
     let topic = Topic::from_str(&arguments.topic, false).map_err(|_| {
         let topics: Vec<_> = Topic::value_variants().iter().filter_map(ValueEnum::to_possible_value).collect();
         let topics: Vec<&str> = topics.iter().map(clap::builder::PossibleValue::get_name).collect();
         let word = &arguments.topic;
-        let meant = did_you_mean(word, topics.iter().copied())
+        let functions = Function::ALL.iter().map(|function| function.name());
+        let meant = did_you_mean(word, topics.iter().copied().chain(functions))
             .map_or_else(String::new, |meant| format!(" (did you mean {TYPED}{meant}{TYPED:#}?)"));
         Failure::usage(format_args!(
-            "there is no topic `{word}`{meant}; expected {}, a link parameter such as Jzz3, or a name in the code of a \
-             robot and its file, as in {TYPED}rne explain w2_z puma560{TYPED:#}",
+            "there is no topic `{word}`{meant}; expected {}, a function such as euler_step, a link parameter such as \
+             Jzz3, or a name in the code of a robot and its file, as in {TYPED}rne explain w2_z puma560{TYPED:#}",
             topics.join(", ")
         ))
     })?;
@@ -116,6 +121,9 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
     if let Some(parameter) = LinkParameter::parse(name) {
         return Ok(Outcome::text(arguments.letters.page(&parameter.explained(), PAGE)));
     }
+    if let Some(text) = of_function(name) {
+        return Ok(Outcome::text(arguments.letters.page(&text, PAGE)));
+    }
     // the components of a vector before a name that is nearly the same
     let components = ["x", "y", "z", "xx", "xy", "xz", "yy", "yz", "zz"]
         .map(|axis| format!("{}_{axis}", code_name(name).unwrap_or_else(|| name.clone())));
@@ -134,6 +142,20 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
          code, {TYPED}--form{TYPED:#} and {TYPED}--function{TYPED:#} choose another",
         robot.name
     )))
+}
+
+/// Explains a function by its name: what it computes, and the options of `rne eval` for its arguments.
+fn of_function(name: &str) -> Option<String> {
+    let Ok(function) = name.parse::<Function>() else {
+        return choice::composed(name).map(|text| wrap(&text, terminal::width(PAGE), "") + "\n");
+    };
+    let call = format!(
+        "`rne eval FILE --function {function}` takes the options {}. `rne explain arguments` says how they are given.",
+        options(function)
+    );
+    let words = [function.summary(), function.details(), &call].map(|words| wrap(words, terminal::width(PAGE) - 4, ""));
+    let lines = words.iter().flat_map(|words| words.lines()).map(|line| format!("    {line}\n"));
+    Some(format!("{TYPED}{function}{TYPED:#}\n{}", lines.collect::<String>()))
 }
 
 /// The name in the code of a vector that is spelt out, such as w1 for omega1.
@@ -272,30 +294,42 @@ fn of_eval() -> String {
     text + &entries(of_base_and_tips()) + "\n" + &wrap(OF_EVAL, terminal::width(PAGE), "") + "\n"
 }
 
-/// The options of each function of a floating base, or of several tips, that takes more than those of the joints.
-fn of_base_and_tips() -> impl Iterator<Item = (&'static str, String)> {
-    let option = |argument: &Argument| match argument {
+/// The option of `rne eval` for an argument of a function.
+const fn option(argument: Argument) -> &'static str {
+    match argument {
         Argument::Positions => "--q",
+        // those of the positions
+        Argument::Sines | Argument::Cosines => "",
         Argument::Rates => "--qd",
         Argument::Accelerations => "--qdd",
         Argument::Torques => "--tau",
         Argument::Multipliers => "--multipliers",
         Argument::Step => "--duration",
+        Argument::Wrench => "--wrench",
         Argument::Wrenches => "--tip-wrench",
+        Argument::Payload => "--payload",
         Argument::Base => "--base-omega --base-omega-dot --base-acceleration --gravity",
         Argument::BaseVelocity => "--base-omega",
         Argument::BaseTwist => "--base-velocity --base-omega",
         Argument::BasePose => "--base-pose",
         Argument::BaseRotation => "--base-rotation",
         Argument::Passive => "--passive",
-        Argument::Wrench | Argument::Payload | Argument::Sines | Argument::Cosines => "",
-    };
+    }
+}
+
+/// The options of a function, in the order of its arguments.
+fn options(function: Function) -> String {
+    let options = function.arguments().iter().map(|argument| option(*argument)).filter(|option| !option.is_empty());
+    options.collect::<Vec<_>>().join(" ")
+}
+
+/// The options of each function of a floating base, or of several tips, that takes more than those of the joints.
+fn of_base_and_tips() -> impl Iterator<Item = (&'static str, String)> {
     let is_more = |function: &Function| {
         function.is_of_floating_base() || function.takes(Argument::Wrenches) || function.takes(Argument::Passive)
     };
     let functions = Function::ALL.into_iter().filter(is_more).filter(|function| function.arguments().len() > 1);
-    functions
-        .map(move |function| (function.name(), function.arguments().iter().map(option).collect::<Vec<_>>().join(" ")))
+    functions.map(|function| (function.name(), options(function)))
 }
 
 /// The functions with exactly these arguments.

@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     urdf: bool,
     /// Write an FMU of FMI 2 or 3 [default: 3]; docs/fmi.md explains it
     #[arg(long, value_name = "VERSION", num_args = 0..=1, default_missing_value = "3", value_parser = ["2", "3"],
-        hide_possible_values = true, requires = "out")]
+        hide_possible_values = true)]
     fmu: Option<String>,
     #[command(flatten)]
     options: fmu::Options,
@@ -51,7 +51,14 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    if let (Some(version), Some(out)) = (&arguments.fmu, &arguments.output.out) {
+    if let Some(version) = &arguments.fmu {
+        let Some(out) = &arguments.output.out else {
+            let stem = arguments.file.file_stem().map_or("arm".into(), |stem| stem.to_string_lossy());
+            let name = robot_file::shell(&PathBuf::from(format!("{}.fmu", if stem == "-" { "arm" } else { &*stem })));
+            return Err(Failure::usage(format_args!(
+                "{TYPED}--fmu{TYPED:#} needs the name of the file that it writes: add {TYPED}-o {name}{TYPED:#}"
+            )));
+        };
         let version = if version == "2" { FmiVersion::Two } else { FmiVersion::Three };
         return fmu::write(&arguments.file, version, arguments.options, out, arguments.output.force);
     }

@@ -37,12 +37,34 @@ pub(crate) fn of_programs(robot: &Robot, programs: &[Program], precision: Precis
                 let is_possible = program.function != Function::ForwardDynamicsInContact || can_hold(&numbers, arm);
                 Ok(if is_finite && is_possible && !is_left_out { numbers } else { Vec::new() })
             });
-            let results = results.collect::<Result<_, Failure>>()?;
+            let results = results.collect::<Result<Vec<_>, Failure>>()?;
             let sizes =
                 programs.iter().map(|program| size(program.function, &state, &arm)).collect::<Result<_, _>>()?;
-            Ok(Golden { arguments: arguments(&state, parameters), results, sizes })
+            let steps = steps(&state, &arm, programs, &results)?;
+            Ok(Golden { arguments: arguments(&state, parameters), results, sizes, steps })
         })
         .collect()
+}
+
+/// The changes that a step of the Runge-Kutta method makes, and its derivatives, for code with accelerations.
+fn steps(
+    State { q, qd, tau, .. }: &State,
+    arm: &DynArm,
+    programs: &[Program],
+    results: &[Vec<f64>],
+) -> Result<[Vec<f64>; 2], Failure> {
+    let is_compared = |(program, numbers): (&Program, &Vec<f64>)| {
+        program.function == Function::ForwardDynamics && !numbers.is_empty()
+    };
+    if !programs.iter().zip(results).any(is_compared) {
+        return Ok([Vec::new(), Vec::new()]);
+    }
+    let next = arm.runge_kutta_step(q, qd, tau, Golden::STEP).map_err(Failure::usage)?;
+    let by = arm.runge_kutta_step_derivatives(q, qd, tau, Golden::STEP).map_err(Failure::usage)?;
+    let changes = next.q.iter().zip(q).chain(next.qd.iter().zip(qd)).map(|(next, start)| next - start).collect();
+    let blocks = [by.q, by.qd].into_iter().flat_map(|by| [by.dq, by.dqd, by.dtau]);
+    let steps = [changes, blocks.flatten().flatten().collect::<Vec<f64>>()];
+    Ok(steps.map(|numbers| if numbers.iter().all(|number| number.is_finite()) { numbers } else { Vec::new() }))
 }
 
 /// The arm with the frame of a program in the place of the tip, if the program has one.

@@ -1,5 +1,6 @@
 //! The arm of a command: from the file alone, with its rotors, or with other values of its parameters.
 
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -76,12 +77,17 @@ impl AtFrame {
         if self.frame.is_none() || function.of_frame().is_some() {
             return Ok(());
         }
-        let with: Vec<&str> = Function::of_frames().map(Function::name).collect();
-        Err(Failure::usage(format_args!(
-            "{TYPED}--frame{TYPED:#} is for functions of a frame, and {function} is not one of them; these are: {}",
-            with.join(", ")
-        )))
+        Err(not_of_frames(format_args!("{function} is not one of them")))
     }
+}
+
+/// The error where no function can be taken at the frames of `--frame`.
+pub(crate) fn not_of_frames(why: impl Display) -> Failure {
+    let with: Vec<&str> = Function::of_frames().map(Function::name).collect();
+    Failure::usage(format_args!(
+        "{TYPED}--frame{TYPED:#} is for functions of a frame, and {why}; these are: {}",
+        with.join(", ")
+    ))
 }
 
 /// A robot seen from the frame with this name.

@@ -30,6 +30,8 @@ pub(crate) struct Table {
 pub(crate) struct Restricted {
     /// The column of a mass, which is not negative.
     pub(crate) mass: Option<usize>,
+    /// The column of the duration of a step, which is positive.
+    pub(crate) duration: Option<usize>,
     /// The first of nine columns of a rotation, row by row.
     pub(crate) rotation: Option<usize>,
 }
@@ -41,6 +43,11 @@ impl Restricted {
             && mass < 0.0
         {
             return Some(format!("the mass {} is {mass} kg; a mass is zero or positive", name(at)));
+        }
+        if let Some((at, duration)) = self.duration.and_then(|at| Some((at, *row.get(at)?)))
+            && duration <= 0.0
+        {
+            return Some(format!("the duration {} is {duration} s; it must be above 0 s", name(at)));
         }
         let at = self.rotation?;
         let row = |from: usize| row.get(from..from + 3)?.try_into().ok();

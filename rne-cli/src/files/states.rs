@@ -52,7 +52,8 @@ fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
             "base_rotation" => {
                 axes.into_iter().flat_map(|row| axes.map(|column| format!("{name}_{row}{column}"))).collect()
             }
-            "step" => vec![name.to_owned()],
+            // as the option of `rne eval`
+            "step" => vec!["duration".to_owned()],
             "q" | "passive" | "qd" | "qdd" | "tau" | "multipliers" | "sin" | "cos" => {
                 (1..=elements).map(|joint| format!("{name}{joint}")).collect()
             }
@@ -62,26 +63,32 @@ fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
     compiled.arguments().iter().flat_map(headings).collect()
 }
 
-/// The same columns as `rne log` names them in a table: elements of joints by the names of the robot's joints.
+/// Other names of the same columns: elements of joints as `rne log` names them in a table, by the names of the robot's
+/// joints, and the duration of a step by its name in generated code.
 fn named_columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<Option<String>> {
     let joints: Vec<String> = arm.robot().independent_joints().map(|joint| joint.name.clone()).collect();
     let headings = |&(name, elements): &(&str, usize)| -> Vec<Option<String>> {
         match Heading::quantity(name).filter(|_| elements == joints.len()) {
             Some(quantity) => Heading::of(&joints).columns(quantity).into_iter().map(Some).collect(),
+            None if name == "step" => vec![Some(name.to_owned())],
             None => vec![None; if name == "parameters" { arm.robot().run_time.names.len() } else { elements }],
         }
     };
     compiled.arguments().iter().flat_map(headings).collect()
 }
 
-/// The columns of a payload's mass and of a rotation.
+/// The columns of a payload's mass, of the duration of a step and of a rotation.
 fn restricted(compiled: &CompiledFunction) -> Restricted {
     let place = |wanted: &str| {
         let argument = compiled.arguments().iter().position(|(name, _)| *name == wanted)?;
         Some(compiled.arguments()[..argument].iter().map(|(_, elements)| elements).sum())
     };
     // a pose begins with its rotation
-    Restricted { mass: place("payload"), rotation: place("base_rotation").or_else(|| place("pose")) }
+    Restricted {
+        mass: place("payload"),
+        duration: place("step"),
+        rotation: place("base_rotation").or_else(|| place("pose")),
+    }
 }
 
 /// The columns of its results: torques and accelerations by their symbols, others by the function's name and their

@@ -9,11 +9,30 @@ use rne_codegen::{Argument, Form, Function, Quantity, Step};
 use rne_model::{Convention, Robot};
 
 use crate::outcome::Failure;
+use crate::palette::TYPED;
 
 /// Reads the name of a function; help and messages list them all.
 pub(crate) fn function() -> impl TypedValueParser<Value = Function> {
     let value = |function: Function| PossibleValue::new(function.name()).help(function.summary());
     PossibleValuesParser::new(Function::ALL.map(value)).try_map(|name| name.parse::<Function>())
+}
+
+/// Explains a step of an integrator that no function computes alone, because it is composed of calls of another one.
+pub(crate) fn composed(name: &str) -> Option<String> {
+    let where_it_is = match name {
+        "runge_kutta_step" | "runge_kutta_step_derivatives" => format!(
+            "it is composed of calls of forward_dynamics: {TYPED}rne emit FILE --lang c --runge-kutta{TYPED:#} writes \
+             it in C, and Rust and Python have it as a method"
+        ),
+        "floating_euler_step" | "floating_euler_step_derivatives" | "floating_runge_kutta_step" => {
+            "it is composed of calls of floating_forward_dynamics, and Rust has it as a method".to_owned()
+        }
+        _ => return None,
+    };
+    Some(format!(
+        "`{name}` is no value of {TYPED}--function{TYPED:#}, because {where_it_is}; see the section A step of an \
+         integrator of docs/optimal-control.md"
+    ))
 }
 
 /// One function, or all that a robot has.

@@ -106,6 +106,12 @@ pub(crate) fn above_zero(allowed: &'static str) -> impl Fn(&str) -> Result<f64, 
     checked(|number: &f64| number.is_finite() && *number > 0.0, allowed)
 }
 
+/// Reads the duration of a step.
+pub(crate) fn duration() -> impl Fn(&str) -> Result<List, String> + Clone {
+    let is_fine = |List(numbers): &List| matches!(numbers[..], [seconds] if seconds > 0.0);
+    checked(is_fine, "write a number of seconds above 0, such as 0.01")
+}
+
 #[cfg(test)]
 mod tests {
     use std::f64::consts::FRAC_PI_2;

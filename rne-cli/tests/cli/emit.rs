@@ -370,7 +370,7 @@ fn functions_are_chosen() {
         assert!(zeros.contains("actuator_torques"), "{zeros}");
     }
     fails(2, &["emit", ROBOT, "--lang", "fortran"], &["rust", "c"]);
-    fails(2, &["emit", ROBOT, "--function", "torques"], &["gravity_torques"]);
+    fails(2, &["emit", ROBOT, "--function", "torques"], &["did you mean inverse_dynamics?"]);
 }
 
 #[test]
@@ -526,6 +526,8 @@ fn functions_are_written_at_frames() {
         names(&["--function", "jacobian,gravity_torques", "--frame", "elbow,table"]),
         ["gravity_torques", "jacobian_of_elbow", "jacobian_of_table"]
     );
+    let others = ["emit", FRAMES, "--function", "mass_matrix", "--frame", "camera"];
+    fails(2, &others, &["--frame is for functions of a frame, and none of the functions that are written is one"]);
     fails(2, &["emit", FRAMES, "--frame", "camra"], &["`camera`, `gripper`, `table`", "did you mean `camera`?"]);
     fails(2, &["eval", FRAMES, "--q", "0,0,0", "--frame", "camra"], &["did you mean `camera`?"]);
     let refused = ["eval", FRAMES, "--q", "0,0,0", "--frame", "camera", "--function", "mass_matrix"];

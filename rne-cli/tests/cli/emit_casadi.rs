@@ -114,3 +114,46 @@ fn the_command_that_writes_a_stale_file_keeps_what_is_for_casadi() {
     assert_eq!(rne(&words).status, 0, "{advised}");
     assert_eq!(rne(&check).status, 0, "{advised}");
 }
+
+/// A step of an integrator and frames add their functions to those for CasADi.
+#[test]
+fn options_that_add_functions_go_with_casadi() {
+    let casadi = ["emit", "docs/desk_arm_frames.yaml", "--lang", "c", "--casadi", "--prefix", "arm"];
+    let with = |options: &[&str]| rne(&[&casadi[..], options].concat());
+    for (options, of_c, of_casadi, note) in [
+        (
+            &[][..],
+            &["inverse_dynamics", "forward_dynamics"][..],
+            &["inverse_dynamics, 3", "forward_dynamics, 3"][..],
+            "",
+        ),
+        (
+            &["--runge-kutta"],
+            &["inverse_dynamics", "runge_kutta_step", "runge_kutta_step_derivatives"],
+            &["inverse_dynamics, 3", "forward_dynamics, 3"],
+            "functions of C alone: runge_kutta_step, runge_kutta_step_derivatives",
+        ),
+        (
+            &["--frame", "camera"],
+            &["inverse_dynamics", "pose_of_camera"],
+            &["inverse_dynamics, 3", "jacobian_of_camera, 1"],
+            "functions of C alone: pose_of_camera",
+        ),
+        (
+            &["--frame", "camera", "--runge-kutta"],
+            &["runge_kutta_step", "pose_of_camera"],
+            &["forward_dynamics, 3", "jacobian_of_camera, 1"],
+            "pose_of_camera",
+        ),
+    ] {
+        let called = with(options);
+        assert_eq!(called.status, 0, "{options:?}: {}", called.err);
+        for name in of_c {
+            assert!(called.out.contains(&format!("void arm_{name}(")), "{options:?}: {name}");
+        }
+        for call in of_casadi {
+            assert!(called.out.contains(&format!("arm_external({call}, 1)")), "{options:?}: {call}");
+        }
+        assert!(called.said().contains(note), "{options:?}: {}", called.err);
+    }
+}

@@ -118,6 +118,41 @@ fn c_passes_its_tests() {
             assert_eq!(output.status.code(), Some(1), "{right}: {}", said(&output));
         }
     }
+    // so is the step of Runge-Kutta with its derivatives, also of parameters at run time
+    let robots: [&[&str]; 2] = [&["docs/desk_arm.yaml", "--run-time", "upper,fore"], &["robots/planar2.yaml"]];
+    for (robot, real) in robots.into_iter().zip(["float", "double"]) {
+        let step = ["emit", "--lang", "c", "--tests", "--runge-kutta", "--real", real];
+        let code = fine(&[&step[..], robot].concat());
+        let Some(output) = tested_c(&folder, &code) else { return };
+        assert!(output.status.success() && said(&output).contains("4 tests, 0 wrong"), "{robot:?}: {}", said(&output));
+        let wrong = [
+            ("(qdd[0][i] + (middle + middle))", "(qdd[0][i] + middle)", "runge_kutta_step, state"),
+            ("(first[i][j] + (middle + middle))", "(first[i][j] + middle)", "runge_kutta_step_derivatives, state"),
+            // single precision has too few digits for what is of the order of the step
+            ("duration * change", "(duration - duration) * change", "runge_kutta_step_derivatives, state"),
+        ];
+        for (right, wrong, what) in wrong.into_iter().take(if real == "float" { 2 } else { 3 }) {
+            assert!(code.contains(right), "{right}: {code}");
+            let Some(output) = tested_c(&folder, &code.replace(right, wrong)) else { return };
+            assert!(output.status.code() == Some(1) && said(&output).contains(what), "{right}: {}", said(&output));
+        }
+    }
+    let alone = ["emit", "robots/planar2.yaml", "--lang", "c", "--tests", "--runge-kutta"];
+    let code = fine(&[&alone[..], &["--function", "forward_dynamics"]].concat());
+    let Some(output) = tested_c(&folder, &code) else { return };
+    assert!(output.status.success() && said(&output).contains("2 tests, 0 wrong"), "{}", said(&output));
+    // a follower that turns: its offset is an angle, and `d` may vary at run time
+    let gripper = fs::read_to_string(Path::new(ROOT).join("docs/gripper.yaml")).expect("a gripper");
+    let prismatic = "type: prismatic\n    dh: {theta: 0, d: 0, a: 0, alpha: -pi/2}";
+    let revolute = "type: revolute\n    dh: {theta: 0, d: reach, a: 0, alpha: -pi/2}";
+    assert!(gripper.contains(prismatic) && gripper.contains("offset: 0}"));
+    let turning = (gripper.replace(prismatic, revolute).replace("offset: 0}", "offset: 0.2}"))
+        .replace("joints:\n", "parameters: {reach: 0.1}\njoints:\n");
+    fs::write(folder.join("turning.yaml"), turning).expect("written");
+    let turning = folder.join("turning.yaml").display().to_string();
+    let code = fine(&["emit", &turning, "--lang", "c", "--tests", "--run-time", "reach", "--real", "double"]);
+    let Some(output) = tested_c(&folder, &code) else { return };
+    assert!(code.contains("reach") && output.status.success(), "{}", said(&output));
     // the code and the runtime agree where the rotation of the base is one, to the last digit
     let contacts = |real| {
         let functions = ["--function", "forward_dynamics_in_contact,tip_accelerations"];

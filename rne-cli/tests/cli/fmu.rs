@@ -132,6 +132,10 @@ fn what_cannot_be_an_fmu_is_refused() {
     let path = out.to_str().expect("UTF-8");
     fails(2, &["export", "planar1", "--fmu", "4", "-o", path], &["4", "2, 3"]);
     fails(2, &["export", "planar1", "--fmu", "-o", "-"], &["--fmu needs the name of a file, such as -o arm.fmu"]);
+    for (file, name) in [("planar1", "planar1.fmu"), ("docs/desk_arm.yaml", "desk_arm.fmu"), ("-", "arm.fmu")] {
+        let said = format!("error: --fmu needs the name of the file that it writes: add -o {name}");
+        fails(2, &["export", file, "--fmu"], &[&said]);
+    }
     fails(2, &["export", "planar1", "--fmu", "-o", "arm.zip.urdf"], &["arm.zip.fmu"]);
     for option in ["--inverse", "--no-build", "--rotors"] {
         fails(2, &["export", "planar1", "--urdf", option], &[option, "is for FMUs", "--fmu"]);

@@ -48,11 +48,22 @@ fn topics_are_explained() {
     let help = fine(&["explain", "--help"]);
     let topics: Vec<&str> = help.lines().filter_map(|line| line.strip_prefix("  rne explain ")).collect();
     assert!(topics.len() >= 5, "{help}");
-    for topic in topics.iter().filter_map(|line| line.split(' ').next()) {
-        let text = if topic.contains('_') { fine(&["explain", topic, "puma560"]) } else { fine(&["explain", topic]) };
+    for topic in topics.iter().filter_map(|line| line.split("  ").next()) {
+        let words: Vec<&str> = ["explain"].into_iter().chain(topic.split(' ')).collect();
+        let text = fine(&words);
         assert!(text.lines().count() > 3 && text.lines().all(|line| line.width() <= 80), "{topic}: {text}");
     }
     assert!(fine(&["explain", "functions"]).contains("\ninverse_dynamics_derivatives\n"));
+    let on_one_line = |text: String| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for robot in [None, Some("puma560")] {
+        let step = on_one_line(fine(&["explain", "euler_step"].into_iter().chain(robot).collect::<Vec<_>>()));
+        assert!(step.starts_with("euler_step A step of the semi-implicit Euler method under torques"), "{step}");
+        assert!(step.contains("--function euler_step` takes the options --q --qd --tau --duration."), "{step}");
+    }
+    let of_sines = on_one_line(fine(&["explain", "inverse_dynamics_from_sin_cos"]));
+    assert!(of_sines.contains("takes the options --q --qd --qdd."), "{of_sines}");
+    assert!(fine(&["explain", "runge_kutta_step"]).contains("rne emit FILE --lang c --runge-kutta"));
+    fails(2, &["explain", "euler_stp"], &["did you mean euler_step?"]);
     assert!(fine(&["explain", "hold-out"]).contains("rne identify FILE LOG --hold-out 0.3"));
     assert!(fine(&["explain", "mcx2"]).starts_with("mcx2 is a moment of mass of link 2, in kg m"));
     // with a robot a name in the code comes first

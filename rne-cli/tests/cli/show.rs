@@ -129,7 +129,8 @@ fn joints_and_steps_that_are_not_there() {
     for step in ["0", "8", "x"] {
         fails(2, &["show", robot, "--step", step], &["1 angular velocity", "7 torque"]);
     }
-    fails(2, &["show", robot, "--function", "torques"], &["inverse_dynamics", "bias_torques"]);
+    fails(2, &["show", robot, "--function", "torques"], &["did you mean inverse_dynamics?"]);
+    fails(2, &["show", robot, "--function", "bias"], &["bias_torques", "rne explain functions lists all functions"]);
     fails(2, &["show", robot, "--form", "eight_steps"], &["seven_steps"]);
     fails(2, &["show", robot, "--keep", "speed"], &["velocity"]);
 }
@@ -255,7 +256,7 @@ fn counts_of_some_functions() {
     let without_motors = fine(&["ops", robot, "--json"]);
     assert!(!without_motors.contains("actuator_torques"));
     fails(2, &["ops", robot, "--tricks", "--function", "mass_matrix"], &["--tricks", "--function"]);
-    fails(2, &["ops", robot, "--function", "torques"], &["mass_matrix"]);
+    fails(2, &["ops", robot, "--function", "torques"], &["did you mean inverse_dynamics?"]);
 }
 
 #[test]

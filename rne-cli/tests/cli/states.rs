@@ -118,7 +118,7 @@ fn single(robot: &str, function: Function, columns: &[String], state: &[f64]) ->
     {
         give(option, list(prefix));
     }
-    give("--duration", list("step"));
+    give("--duration", list("duration"));
     give("--wrench", list("force").zip(list("moment")).map(|(force, moment)| format!("{force},{moment}")));
     give("--base-omega", list("base_omega").or_else(|| list("omega")));
     give("--base-omega-dot", list("base_omega_dot"));
@@ -169,6 +169,9 @@ fn every_function_is_that_of_single_states() {
                 // a body
                 state[mass + 4..mass + 7].iter_mut().for_each(|moment| *moment = 3.0 + moment.abs());
             }
+            if let Some(duration) = place("duration") {
+                state[duration] = state[duration].abs();
+            }
             // rotations, row by row
             for prefix in ["base_rotation", "pose_"] {
                 let places = columns.iter().enumerate().filter(|(_, column)| column.starts_with(prefix));
@@ -211,6 +214,35 @@ fn every_function_is_that_of_single_states() {
             let error = found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             assert!(error <= 1e-12 * scale, "{name}: {found:?} is not {expected:?}");
         }
+    }
+}
+
+/// The column of a duration has the name of the option, or the name of generated code.
+#[test]
+fn a_duration_has_two_names() {
+    let arguments = ["eval", "planar1", "--function", "euler_step", "--states", "-"];
+    assert_eq!(columns("planar1", "euler_step"), ["q1", "qd1", "tau1", "duration"]);
+    let table = |name: &str, duration: &str| format!("tau1,{name},q1,qd1\n1,{duration},0.5,2\n");
+    let found = rne_reading(&arguments, &table("duration", "0.01"));
+    assert!(found.status == 0 && found.out.lines().count() == 2, "{found:?}");
+    assert_eq!(rne_reading(&arguments, &table("step", "0.01")).out, found.out);
+}
+
+/// A duration that is not above zero is refused in a table and as an option.
+#[test]
+fn a_duration_is_positive() {
+    let arguments = ["eval", "planar1", "--function", "euler_step", "--states", "-"];
+    let table = |name: &str, duration: &str| format!("tau1,{name},q1,qd1\n1,{duration},0.5,2\n");
+    for (name, duration) in [("duration", "0"), ("step", "-1")] {
+        let refused = rne_reading(&arguments, &table(name, duration));
+        let said = format!("<standard input>:2: the duration `{name}` is {duration} s; it must be above 0 s");
+        assert!(refused.status == 1 && refused.said().contains(&said), "{refused:?}");
+    }
+    let single = ["eval", "planar1", "--function", "euler_step", "--q", "0.5", "--qd", "2", "--tau", "1"];
+    assert_eq!(rne(&[&single[..], &["--duration", "1/100"]].concat()).status, 0);
+    for duration in ["0", "-1", "-0.0", "nan", "inf", "0.01,0.02"] {
+        let said = ["'--duration <H>': write a number of seconds above 0, such as 0.01"];
+        fails(2, &[&single[..], &["--duration", duration]].concat(), &said);
     }
 }
 

@@ -157,8 +157,13 @@ pub(super) fn places(program: &Program) -> Vec<String> {
 
 /// The numbers of a result that is a variable.
 pub(crate) fn result_elements(program: &Program, variable: &str) -> Vec<String> {
+    layout_elements(&program.layout(), variable)
+}
+
+/// The numbers of a variable with this layout, in order.
+pub(crate) fn layout_elements(layout: &Layout, variable: &str) -> Vec<String> {
     let mut places = Vec::new();
-    elements(&program.layout(), variable, ".", &mut places);
+    elements(layout, variable, ".", &mut places);
     places
 }
 

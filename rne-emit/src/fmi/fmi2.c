@@ -127,14 +127,9 @@ EXPORT fmi2Status FMI(GetRealOutputDerivatives)(fmi2Component c, const fmi2Value
 
 EXPORT fmi2Status FMI(DoStep)(fmi2Component c, fmi2Real time, fmi2Real duration, fmi2Boolean no_set)
 {
-    Model *model = &((Instance *)c)->model;
+    const char *wrong = stepped(&((Instance *)c)->model, time, duration);
     ignored(c, no_set);
-    model->is_evaluated = 0;
-    if (!integrate(model->values, duration)) {
-        return failed(c, "the motion does not stay finite, or a step is not positive");
-    }
-    model->values[TIME] = time + duration;
-    return fmi2OK;
+    return status(c, wrong == NULL, wrong);
 }
 
 EXPORT fmi2Status FMI(CancelStep)(fmi2Component c)

@@ -235,15 +235,11 @@ EXPORT fmi3Status FMI(DoStep)(fmi3Instance i, fmi3Float64 time, fmi3Float64 dura
                               fmi3Float64 *last_time)
 {
     Model *model = &((Instance *)i)->model;
+    const char *wrong = stepped(model, time, duration);
     ignored(i, no_set);
     *event = *terminate = *early_return = false;
-    *last_time = time;
-    model->is_evaluated = 0;
-    if (!integrate(model->values, duration)) {
-        return failed(i, "the motion does not stay finite, or a step is not positive");
-    }
-    *last_time = model->values[TIME] = time + duration;
-    return fmi3OK;
+    *last_time = (wrong == NULL) ? model->values[TIME] : time;
+    return status(i, wrong == NULL, wrong);
 }
 
 EXPORT fmi3Status FMI(ActivateModelPartition)(fmi3Instance i, fmi3ValueReference clock, fmi3Float64 time)

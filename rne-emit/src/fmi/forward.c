@@ -39,13 +39,16 @@ static void runge_kutta_step(double *v, double h)
     }
 }
 
-// Equal steps that are not longer than the parameter `step`; 0 if the motion does not stay finite.
-static int integrate(double *v, double duration)
+// Equal steps that are not longer than the parameter `step`. Returns what is wrong, or NULL.
+static const char *integrate(double *v, double duration)
 {
     const double ratio = duration / v[STEP];
     long count, i;
-    if (!(v[STEP] > 0.0) || !(ratio >= 0.0 && ratio < 1e9)) {
-        return 0;
+    if (!(v[STEP] > 0.0)) {
+        return "the parameter step is not above 0 s";
+    }
+    if (!(ratio < 1e9)) {
+        return "the step is 1e9 times as long as the parameter step, or longer; give a shorter step";
     }
     count = (long)ratio;
     // a quotient that rounding makes larger than a whole number
@@ -55,5 +58,5 @@ static int integrate(double *v, double duration)
     for (i = 0; i < count; i++) {
         runge_kutta_step(v, duration / (double)count);
     }
-    return are_finite(v + Q, STATES);
+    return are_finite(v + Q, STATES) ? NULL : "the motion does not stay finite during the step";
 }

@@ -16,7 +16,10 @@ FILLED    PREFIX_inverse_dynamics_derivatives_with_payload(
     PREFIX_mass_matrix_with_payload(v + Q, v + PAYLOADMASS_ARGUMENT, blocks[2]);
 }
 
-static int integrate(double *v, double duration)
+// Returns what is wrong with the inputs, or NULL. There is nothing to integrate.
+static const char *integrate(double *v, double duration)
 {
-    return are_finite(v, COUNT) && duration >= 0.0;
+    const int is_finite = are_finite(v + Q, TAU - Q) && are_finite(v + PARAMETERS, COUNT - PARAMETERS);
+    (void)duration;
+    return is_finite ? NULL : "an input or a parameter is not finite";
 }

@@ -76,6 +76,33 @@ static int is_among(unsigned reference, int first)
     return reference >= (unsigned)first && reference < (unsigned)(first + N);
 }
 
+// The part of a time by which a step may begin too early: masters add up the same times in different ways.
+#define TIME_TOLERANCE 1e-6
+
+// A step of co-simulation from `time` on. Returns what is wrong, or NULL. A step that is refused changes nothing.
+static const char *stepped(Model *model, double time, double duration)
+{
+    const double now = model->values[TIME];
+    const double size = (now < 0.0 ? -now : now) + duration;
+    const char *wrong;
+    if (!are_finite(&time, 1)) {
+        return "the time at which the step begins is not finite";
+    }
+    if (!(duration >= 0.0) || !are_finite(&duration, 1)) {
+        return "the step size is negative or not finite; it must be 0 s or more";
+    }
+    if (now - time > TIME_TOLERANCE * size) {
+        return "the step begins before the end of the last step; time cannot go backwards without a reset or a stored "
+               "state";
+    }
+    model->is_evaluated = 0;
+    wrong = integrate(model->values, duration);
+    if (wrong == NULL) {
+        model->values[TIME] = time + duration;
+    }
+    return wrong;
+}
+
 static int get(Model *model, const unsigned *references, size_t count, double *values)
 {
     size_t i;

@@ -2,12 +2,14 @@
 
 use std::fmt::Write;
 
-use rne_codegen::{Function, Layout, Program};
+use rne_codegen::{Function, Layout, Program, Sizes};
 use rne_model::Robot;
 
 use super::{Golden, Law, floor, program, results};
 use crate::Precision;
-use crate::c::{Additions, JointFriction, Prefix, array_name, element_type, elements_of, inputs, result_elements};
+use crate::c::{
+    Additions, JointFriction, Prefix, array_name, element_type, elements_of, inputs, layout_elements, result_elements,
+};
 use crate::parameters::{self};
 use crate::wrap::{WIDTH, fill};
 
@@ -37,6 +39,10 @@ pub fn c_tests(
     functions.extend(Law::of(programs).filter_map(|law| tests.law(law)));
     functions.extend(additions.friction.map(|frictions| tests.friction(frictions)));
     functions.extend(additions.limits.then(|| tests.limits()));
+    let steps =
+        [("runge_kutta_step", Function::EulerStep), ("runge_kutta_step_derivatives", Function::EulerStepDerivatives)];
+    let is_there = |at: &usize| additions.runge_kutta && (*at == 0 || tests.has(Function::ForwardDynamicsDerivatives));
+    functions.extend((0..2).filter(is_there).filter_map(|at| tests.step(at, steps[at])));
     let (mut bodies, mut calls) = (String::new(), String::new());
     for (name, body) in &functions {
         let _ = write!(bodies, "\n{body}");
@@ -260,6 +266,57 @@ impl Tests<'_> {
         let call = format!("{}_limit_torques(given[state], found);", self.prefix);
         // the limits are the same constants here and there
         self.joints("limit_torques", &call, &table.replace("\n};", "\n    };"), &expected, "0.0")
+    }
+
+    fn has(&self, function: Function) -> bool {
+        program(self.programs, function).is_some()
+    }
+
+    /// The function that compares a step of the Runge-Kutta method, or its derivatives, with values: its name and its
+    /// text. The result is that of a step of another method. Of positions and velocities, the test compares what the
+    /// step changes, because the step is short.
+    fn step(&self, at: usize, (what, of): (&str, Function)) -> Option<(String, String)> {
+        let accelerations = program(self.programs, Function::ForwardDynamics)?;
+        let expected: Vec<&[f64]> = self.golden.iter().map(|state| state.steps[at].as_slice()).collect();
+        let count = expected.first()?.len();
+        if expected.iter().any(|numbers| numbers.is_empty()) {
+            return None;
+        }
+        let (real, prefix, states) = (self.precision.c_type(), self.prefix, expected.len());
+        let layout = of.layout(Sizes::of(self.robot));
+        let mut copies = String::new();
+        for (index, element) in layout_elements(&layout, "result").iter().enumerate() {
+            let start = element.strip_prefix("result.").filter(|_| at == 0);
+            let start = start.map_or_else(String::new, |start| format!(" - test_{}", start.replace('[', "[state][")));
+            let _ = writeln!(copies, "        found[{index}] = {element}{start};");
+        }
+        // positions and velocities, or the blocks of derivatives, each with a scale of its own
+        let blocks = if at == 0 { 2 } else { 6 };
+        let size = count / blocks;
+        // rounding of terms that cancel, in parts of the tolerance
+        let floors = vec![format!("{:?}", 1e-2 * Golden::STEP); blocks].join(", ");
+        let parameters = if parameters::are_used(accelerations) { ", &test_parameters[state]" } else { "" };
+        // as those of accelerations
+        let parts = if self.precision == Precision::Single { "100.0 * test_tolerance" } else { "test_tolerance" };
+        let text = format!(
+            "static void test_{what}(void)\n{{\n{}    unsigned state;\n    \
+             double scales[{blocks}] = {{{floors}}};\n    \
+             for (state = 0u; state < {states}u; ++state) {{\n        unsigned i;\n        \
+             for (i = 0u; i < {blocks}u; ++i) {{\n            \
+             scales[i] = test_largest(&expected[state][{size}u * i], {size}u, scales[i]);\n        }}\n    }}\n    \
+             for (state = 0u; state < {states}u; ++state) {{\n        unsigned i;\n        \
+             {real} found[{count}];\n        {} result;\n        \
+             {prefix}_{what}(\n            \
+             test_q[state], test_qd[state], test_tau[state], {}{parameters}, &result);\n{copies}        \
+             for (i = 0u; i < {count}u; ++i) {{\n            \
+             test_compare(\"{what}\", state, i, (double)found[i], (double)expected[state][i],\n                \
+             {parts} * scales[i / {size}u]);\n        }}\n    }}\n}}\n",
+            self.table(&format!("    static const {real} expected[{states}][{count}]"), &expected)
+                .replace("\n};", "\n    };"),
+            element_type(prefix, self.precision, &layout),
+            self.precision.literal(Golden::STEP).unwrap_or_default(),
+        );
+        Some((format!("test_{what}"), text))
     }
 
     /// A function that compares what `call` writes into `found`, a number per joint, with a row for each state.

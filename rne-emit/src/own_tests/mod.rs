@@ -22,9 +22,16 @@ pub struct Golden {
     /// How large the terms are of which each program makes its numbers, about: what vanishes for this arm is rounding
     /// of them.
     pub sizes: Vec<f64>,
+    /// The changes of the positions and of the velocities by a step of the Runge-Kutta method of the duration
+    /// [`STEP`](Self::STEP), and the derivatives of the step, in the order of their layouts. Empty where the file
+    /// has no `forward_dynamics`, or where there is nothing to compare with.
+    pub steps: [Vec<f64>; 2],
 }
 
 impl Golden {
+    /// The duration of a step, s, which every number type represents.
+    pub const STEP: f64 = 1.0 / 256.0;
+
     /// The numbers of an argument array, by its name.
     fn argument(&self, name: &str) -> &[f64] {
         self.arguments.iter().find(|(known, _)| *known == name).map_or(&[], |(_, numbers)| numbers)
