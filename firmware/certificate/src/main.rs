@@ -15,9 +15,10 @@ mod wasm;
 use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
+use std::thread;
 use std::time::Instant;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, anyhow, ensure};
 use clap::Parser;
 
 use crate::board::Board;
@@ -89,9 +90,24 @@ fn run(arguments: &Arguments) -> Result<ExitCode> {
 /// A scheduler of LLVM that counts registers; see firmware/example/.cargo/config.toml.
 const SCHEDULER: &str = "-Cllvm-args=-pre-RA-sched=list-ilp";
 
+/// Rust takes one processor for the whole program, and so does C; one of both at a time would leave the other idle.
 fn examine(workspace: &Path, sample: bool) -> Result<Report> {
-    let [rustc, gcc, qemu] = [tools::rustc_version()?, tools::gcc_version()?, tools::qemu_version()?];
     let expected = Log::of_host();
+    thread::scope(|scope| {
+        let c = scope.spawn(|| step("C", || c_code::examine(workspace, &expected)));
+        let of_c = || c.join().map_err(|_| anyhow!("C: a panic"))?;
+        examine_beside(workspace, sample, &expected, of_c)
+    })
+}
+
+/// What is not C, and then the rows of C.
+fn examine_beside(
+    workspace: &Path,
+    sample: bool,
+    expected: &Log,
+    of_c: impl FnOnce() -> Result<Vec<Row>>,
+) -> Result<Report> {
+    let [rustc, gcc, qemu] = [tools::rustc_version()?, tools::gcc_version()?, tools::qemu_version()?];
     let mut tables = Vec::new();
     let mut table = |title, about: &str, compiler: String, of, rows| {
         tables.push(Table { title, about: about.to_owned(), compiler, of, rows });
@@ -101,24 +117,23 @@ fn examine(workspace: &Path, sample: bool) -> Result<Report> {
     let m4 = Board { machine: "mps2-an386", flags: &flags, features: &["methods"] };
     let m4 = step("Cortex-M4F", || m4.examine(workspace))?;
     let compiler = format!("{rustc}, `{}`", flags.join(" "));
-    table(report::M4F, M4F, compiler.clone(), "robot", m4.robots(&expected, Agreement::Identical)?);
+    table(report::M4F, M4F, compiler.clone(), "robot", m4.robots(expected, Agreement::Identical)?);
 
     if !sample {
         let m7_flags = ["-Ctarget-cpu=cortex-m7"];
         let m7 = Board { machine: "mps2-an500", flags: &m7_flags, features: &[] };
         let m7 = step("Cortex-M7F", || m7.examine(workspace))?;
         let m7_compiler = format!("{rustc}, `{}`", m7_flags.join(" "));
-        table(report::M7F, M7F, m7_compiler, "robot", m7.robots(&expected, Agreement::Identical)?);
+        table(report::M7F, M7F, m7_compiler, "robot", m7.robots(expected, Agreement::Identical)?);
 
         let fused = Board { machine: "mps2-an386", flags: &flags, features: &["core_float_math"] };
         let fused = step("Cortex-M4F with fused multiply-add", || fused.examine(workspace))?;
-        table(report::FUSED, FUSED, compiler.clone(), "robot", fused.robots(&expected, board::ROUNDING)?);
+        table(report::FUSED, FUSED, compiler.clone(), "robot", fused.robots(expected, board::ROUNDING)?);
     }
-    table(report::METHODS, METHODS, compiler.clone(), "function", m4.methods(&expected)?);
-    table(report::CONTROLLERS, CONTROLLERS, compiler, "robot", m4.controllers(&expected)?);
+    table(report::METHODS, METHODS, compiler.clone(), "function", m4.methods(expected)?);
+    table(report::CONTROLLERS, CONTROLLERS, compiler, "robot", m4.controllers(expected)?);
 
-    let c = step("C", || c_code::examine(workspace, &expected))?;
-    table(report::C, C, format!("{gcc}, `-O2 -ffp-contract=off`"), "robot", c);
+    table(report::C, C, format!("{gcc}, `-O2 -ffp-contract=off`"), "robot", of_c()?);
 
     let runtime = m4.runtime()?;
     if sample {
@@ -126,7 +141,7 @@ fn examine(workspace: &Path, sample: bool) -> Result<Report> {
     }
     let riscv = Some(step("RISC-V", || riscv::examine(workspace))?);
     let wasm = if tools::has_node() {
-        Some(step("WebAssembly", || wasm::examine(workspace, &expected))?)
+        Some(step("WebAssembly", || wasm::examine(workspace, expected))?)
     } else {
         println!("WebAssembly: skipped, there is no Node");
         None
