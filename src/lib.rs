@@ -125,7 +125,7 @@ pub use rne_macro::{
     Actuation, BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics,
     BatchInverseDynamicsDerivatives, BatchMassMatrix, CentreOfMass, CentroidalMomentum, ClosedLoops, ContactDynamics,
     CoriolisMatrix, Energy, EulerStep, EulerStepDerivatives, FloatingBase, FloatingClosedLoops, FloatingEnergy,
-    FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor, ForwardDynamics,
+    FloatingEulerStep, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor, ForwardDynamics,
     ForwardDynamicsDerivatives, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient,
     InverseDynamicsHessian, JacobianDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase,
     PayloadDynamics, Regressor, TipWrenches,
@@ -138,7 +138,7 @@ pub use rne_runtime::{
     BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives,
     BatchMassMatrix, BatchScalar, CentreOfMass, CentroidalMomentum, ClosedLoops, ClosureStep, ComputedTorque, Constant,
     ContactDynamics, CoriolisMatrix, Desired, Dual, Energy, EulerStep, EulerStepDerivatives, FloatingAccelerations,
-    FloatingBase, FloatingClosedLoops, FloatingEnergy, FloatingIntegratorStep, FloatingIntegratorStepDerivatives,
+    FloatingBase, FloatingClosedLoops, FloatingEnergy, FloatingEulerStep, FloatingIntegratorStep, FloatingIntegratorStepDerivatives, FloatingNextState,
     FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor, FloatingState, FloatingStepDerivatives,
     FloatingTorqueDerivatives, FloatingTorques, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics,
     InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian, JacobianDerivatives,
@@ -154,7 +154,7 @@ pub use rne_runtime::{Arm, LinkTrace, Trace};
 #[cfg(all(feature = "arm", feature = "std"))]
 #[doc(inline)]
 pub use rne_runtime::{
-    BaseParameter, BaseParameters, DynAccelerationDerivatives, DynArm, DynFloatingTorqueDerivatives, DynNextState,
+    BaseParameter, BaseParameters, DynAccelerationDerivatives, DynArm, DynFloatingNextState, DynFloatingTorqueDerivatives, DynNextState,
     DynNextStateDerivatives, DynObserverState, DynStepDerivatives, DynTorqueDerivatives, DynTorqueGradient,
     DynTorqueHessian, DynTrace, LinkParameter, LoadError, WrongJointCount, WrongLength,
 };

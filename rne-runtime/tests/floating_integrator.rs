@@ -168,7 +168,7 @@ fn derivatives_are_those_by_dual_numbers() {
                     derivative: f64::from(u8::from(direction == 2 * NV + joint)),
                 });
                 let state = along(&state, direction);
-                let next = FloatingIntegratorStep::<DOF, NV, 0>::floating_euler_step(
+                let next = FloatingIntegratorStep::<DOF, NV, 0>::floating_quaternion_step(
                     &arm,
                     &state,
                     &tau,
@@ -205,7 +205,7 @@ fn the_base_turns_by_the_exponential_to_third_order() {
     let state = state(&mut numbers);
     let tau: [f64; DOF] = numbers.array(5.0);
     let error = |step: f64| {
-        let next = FloatingIntegratorStep::<DOF, NV, 0>::floating_euler_step(&arm, &state, &tau, &[], &GRAVITY, step);
+        let next = FloatingIntegratorStep::<DOF, NV, 0>::floating_quaternion_step(&arm, &state, &tau, &[], &GRAVITY, step);
         let expected = state.orientation.turned_by(next.twist.angular.map(|x| x * step));
         let pairs = next.orientation.to_wxyz().into_iter().zip(expected.to_wxyz());
         let length: f64 = next.orientation.to_wxyz().iter().map(|x| x * x).sum();
@@ -234,7 +234,7 @@ fn momentum_is_conserved_to_the_order_of_the_method() {
         let error = |steps: u32| {
             let time = 0.1;
             let end = (0..steps).fold(start, |state, _| {
-                FloatingIntegratorStep::<DOF, NV, 0>::floating_euler_step(
+                FloatingIntegratorStep::<DOF, NV, 0>::floating_quaternion_step(
                     &arm,
                     &state,
                     &tau,
@@ -277,7 +277,7 @@ fn the_runge_kutta_step_is_of_fourth_order() {
         assert!((order - 4.0).abs() < 0.3, "{order}");
         // semi-implicit Euler tends to the same motion
         let euler = (0..1000).fold(start, |state, _| {
-            FloatingIntegratorStep::<DOF, NV, 0>::floating_euler_step(&arm, &state, &tau, &[], &GRAVITY, 0.04 / 1000.0)
+            FloatingIntegratorStep::<DOF, NV, 0>::floating_quaternion_step(&arm, &state, &tau, &[], &GRAVITY, 0.04 / 1000.0)
         });
         let difference = all(&euler).iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         println!("semi-implicit Euler: {difference:.1e}");
