@@ -436,7 +436,9 @@ impl Target<'_> {
                     | Record::FloatingTorques
                     | Record::FloatingNextState
                     | Record::FloatingAccelerations => quote!(#krate::#name<#dof, T>),
-                    Record::Pose | Record::Wrench | Record::BaseAcceleration | Record::BaseTwist => quote!(#krate::#name<T>),
+                    Record::Pose | Record::Wrench | Record::BaseAcceleration | Record::BaseTwist => {
+                        quote!(#krate::#name<T>)
+                    }
                 }
             }
         }

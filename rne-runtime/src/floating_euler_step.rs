@@ -10,9 +10,9 @@ use rne_model::FixedFrame;
 use crate::floating_integrator::moved;
 #[cfg(feature = "arm")]
 use crate::pose_log::{dot, times, transposed};
-use crate::{BaseTwist, Pose, Scalar, Wrench};
 #[cfg(feature = "arm")]
 use crate::{Arm, BaseAcceleration, Constant};
+use crate::{BaseTwist, Pose, Scalar, Wrench};
 #[cfg(all(feature = "arm", feature = "std"))]
 use crate::{DynArm, WrongLength};
 
@@ -92,11 +92,7 @@ fn turn<T: Scalar>(angle: &[T; 3]) -> [[T; 3]; 3] {
     let [x2, y2, z2] = [x + x, y + y, z + z];
     let ([xx, yy, zz], [xy, xz, yz], [wx, wy, wz]) =
         ([x2 * x, y2 * y, z2 * z], [x2 * y, x2 * z, y2 * z], [x2 * w, y2 * w, z2 * w]);
-    [
-        [one - (yy + zz), xy - wz, xz + wy],
-        [xy + wz, one - (xx + zz), yz - wx],
-        [xz - wy, yz + wx, one - (xx + yy)],
-    ]
+    [[one - (yy + zz), xy - wz, xz + wy], [xy + wz, one - (xx + zz), yz - wx], [xz - wy, yz + wx, one - (xx + yy)]]
 }
 
 /// B (3 - Bᵀ B) / 2: a step of Newton's method towards the rotation next to B.

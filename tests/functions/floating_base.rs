@@ -132,6 +132,74 @@ fn derivatives_of_joints_on_different_branches_are_no_operations() {
     }
 }
 
+/// The numbers of a state that a step of a robot on a floating base takes and returns.
+struct Floating {
+    pose: Pose<f64>,
+    state: State,
+}
+
+impl Floating {
+    /// The state after some steps without wrenches.
+    fn after(&self, arm: &Arm, steps: usize, step: f64) -> Self {
+        let mut now = Self { pose: self.pose, state: self.state.clone() };
+        for _ in 0..steps {
+            let given = Given { wrench: Wrench::zero(), step, ..now.state.given() }.at(&now.pose);
+            let next = arm.numbers(Function::FloatingEulerStep, &given);
+            let triple = |from: usize| [next[from], next[from + 1], next[from + 2]];
+            now.pose = Pose { rotation: [0, 3, 6].map(triple), translation: triple(9) };
+            now.state.base = BaseMotion { velocity: triple(12), omega: triple(15), ..now.state.base };
+            let (q, qd) = next[18..].split_at(now.state.q.len());
+            (now.state.q, now.state.qd) = (q.to_vec(), qd.to_vec());
+        }
+        now
+    }
+
+    fn numbers(&self) -> Vec<f64> {
+        let Self { pose, state: State { q, qd, base, .. } } = self;
+        [pose.rotation.as_flattened(), &pose.translation, &base.velocity, &base.omega, q, qd].concat()
+    }
+
+    /// Linear and angular momentum about the centre of mass, in world axes.
+    fn momentum(&self, arm: &Arm) -> Vec<f64> {
+        let found = arm.numbers(Function::CentroidalMomentum, &self.state.given());
+        found.chunks(3).flat_map(|part| self.pose.rotation.map(|row| dot(&row, part))).collect()
+    }
+}
+
+/// Without wrenches, gravity alone changes the momentum; the rotation of the base stays one, and the error of the motion
+/// falls by 2 where the step halves.
+#[test]
+fn steps_of_a_floating_base_keep_its_momentum_and_its_rotation() {
+    for maker in Maker::ALL {
+        for (seed, name) in ROBOTS.into_iter().enumerate() {
+            let robot = read(name);
+            let (arm, time) = (Arm::by_no_choice(&robot, maker), 0.02);
+            let mut state = State::random(u64::try_from(seed).expect("small"), robot.dof());
+            state.tau.iter_mut().for_each(|tau| *tau *= 0.1);
+            state.base = BaseMotion { omega: state.base.omega.map(|x| x * 0.1), ..state.base };
+            let start = Floating { pose: state.given().pose(), state };
+            let ends = [200, 400, 800].map(|steps| start.after(&arm, steps, time / f64::from(steps as u32)));
+            let mass = robot.floating_base.as_ref().map_or(0.0, |base| base.mass)
+                + robot.rows().map(|row| row.link.mass).sum::<f64>();
+            let before = start.momentum(&arm);
+            let error = |end: &Floating| {
+                let gained = end.momentum(&arm).into_iter().zip(&before).map(|(after, before)| after - before);
+                let weight = robot.gravity.iter().map(|g| mass * g * time).chain([0.0; 3]);
+                gained.zip(weight).map(|(gained, weight)| (gained - weight).abs()).fold(0.0, f64::max)
+            };
+            let of_momentum = (error(&ends[0]) / error(&ends[1])).log2();
+            let [first, second, third] = ends.each_ref().map(Floating::numbers);
+            let distance = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let order = (distance(&first, &second) / distance(&second, &third)).log2();
+            println!("{maker}, {name}: momentum {of_momentum:.3}, motion {order:.3}");
+            assert!((of_momentum - 1.0).abs() < 0.1 && (order - 1.0).abs() < 0.1, "{maker}, {name}");
+            let rotation = ends[2].pose.rotation_matrix();
+            let error = (rotation.transpose() * rotation - nalgebra::Matrix3::identity()).abs().max();
+            assert!(error < 1e-14 && rotation.determinant() > 0.0, "{maker}, {name}: {error:e}");
+        }
+    }
+}
+
 /// Forces of accelerations are M times them and the bias, and what they make of these forces are the accelerations.
 #[test]
 fn inverse_and_forward_dynamics_are_one_equation() {

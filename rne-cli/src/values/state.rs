@@ -4,8 +4,8 @@ use std::str::FromStr;
 
 use rne::{
     BaseAcceleration, BaseMotion, BaseTwist, DynAccelerationDerivatives, DynArm, DynFloatingNextState,
-    DynFloatingTorqueDerivatives, DynNextState, DynNextStateDerivatives, DynStepDerivatives, DynTorqueDerivatives, DynTorqueGradient,
-    DynTorqueHessian, Payload, Pose, Quaternion, Wrench, WrongLength,
+    DynFloatingTorqueDerivatives, DynNextState, DynNextStateDerivatives, DynStepDerivatives, DynTorqueDerivatives,
+    DynTorqueGradient, DynTorqueHessian, Payload, Pose, Quaternion, Wrench, WrongLength,
 };
 use rne_codegen::{Argument, Capability, Function};
 use rne_model::{Robot, nearest_name};

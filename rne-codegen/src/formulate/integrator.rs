@@ -67,8 +67,7 @@ pub(crate) fn floating_euler_step<'s>(
         let name = |column| Name::matrix(Quantity::NextRotation, 0, row, column);
         outputs.extend(Axis::ALL.into_iter().zip(elements.0).map(|(column, element)| (name(column), element)));
     }
-    let parts =
-        [(Quantity::NextOrigin, origin), (Quantity::NextVelocity, velocity), (Quantity::NextOmega, omega)];
+    let parts = [(Quantity::NextOrigin, origin), (Quantity::NextVelocity, velocity), (Quantity::NextOmega, omega)];
     outputs.extend(parts.into_iter().flat_map(|(part, vector)| components(Name::scalar(part, 0), vector)));
     outputs.extend(euler_step(builder, coordinates, of_joints));
     outputs
@@ -83,7 +82,8 @@ fn turned_by<'s>(builder: &'s Builder, angle: Vector<'s>) -> Matrix<'s> {
     // the unit quaternion
     let (w, vector) = (factor - one, u * factor);
     let ([x, y, z], [x2, y2, z2]) = (vector.0, (vector + vector).0);
-    let ([xx, yy, zz], [xy, xz, yz], [wx, wy, wz]) = ([x2 * x, y2 * y, z2 * z], [x2 * y, x2 * z, y2 * z], [x2 * w, y2 * w, z2 * w]);
+    let ([xx, yy, zz], [xy, xz, yz], [wx, wy, wz]) =
+        ([x2 * x, y2 * y, z2 * z], [x2 * y, x2 * z, y2 * z], [x2 * w, y2 * w, z2 * w]);
     Matrix::from_rows([
         [one - (yy + zz), xy - wz, xz + wy],
         [xy + wz, one - (xx + zz), yz - wx],

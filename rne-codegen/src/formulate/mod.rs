@@ -43,7 +43,7 @@ use crate::coordinates::{Coordinates, scaled};
 use crate::formulate::ldlt::System;
 use crate::formulate::mass_matrix::OfBase;
 use crate::function::{Argument, Function};
-use crate::ir::{Axis, Builder, Cause, Component, Matrix, Name, Quantity, Ref, Symbol, Vector, WithRespectTo};
+use crate::ir::{Axis, Builder, Cause, Component, Name, Quantity, Ref, Symbol, Vector, WithRespectTo};
 
 /// The results of a function of a robot, by name, in the order of its layout. Zeros of the function are put in before
 /// anything is folded.

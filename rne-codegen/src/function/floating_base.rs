@@ -280,7 +280,10 @@ pub(super) const FLOATING_BASE: &[Entry] = &[
         listed: "returned: pose, velocity and angular velocity of the base after the step, then the positions and the \
                  velocities of the joints",
         own: &[
-            Own::names(Quantity::FrameRotation, "rotation of the base: its columns are the axes of frame 0 in the world"),
+            Own::names(
+                Quantity::FrameRotation,
+                "rotation of the base: its columns are the axes of frame 0 in the world",
+            ),
             Own::names(Quantity::FrameOrigin, "origin of frame 0 in the world"),
             Own::names(Quantity::OriginVelocity, "velocity of the origin of frame 0, in its axes"),
             Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
@@ -296,7 +299,11 @@ pub(super) const FLOATING_BASE: &[Entry] = &[
             AnswerTable::of("rotation of the base after the step: the columns are the axes of frame 0", AXES, AXES),
             AnswerTable::of("origin of frame 0 after the step, in the world (m)", Labels::Names(&["origin"]), AXES),
             AnswerTable::of("velocity of this origin (m/s), in axes of frame 0", Labels::Names(&["linear"]), AXES),
-            AnswerTable::of("angular velocity of the base (rad/s), in axes of frame 0", Labels::Names(&["angular"]), AXES),
+            AnswerTable::of(
+                "angular velocity of the base (rad/s), in axes of frame 0",
+                Labels::Names(&["angular"]),
+                AXES,
+            ),
             AnswerTable::of(
                 "position (rad, prismatic: m) and velocity (rad/s, prismatic: m/s) of each joint after the step",
                 Labels::Names(&["q", "qd"]),

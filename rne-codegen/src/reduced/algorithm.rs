@@ -101,12 +101,14 @@ impl Algorithm {
             | Function::ForwardDynamicsDerivativesWithWrenches
             | Function::ForwardDynamicsDerivativesWithPayload
             | Function::EulerStepDerivatives => &[BY_GROUPS, BY_JOINTS],
-            Function::ForwardDynamicsWithPayload | Function::FloatingForwardDynamics | Function::FloatingEulerStep => &[
-                BY_GROUPS,
-                BY_JOINTS,
-                Algorithm::Aba(ExpressedIn::GroupFrame),
-                Algorithm::Aba(ExpressedIn::JointFrame),
-            ],
+            Function::ForwardDynamicsWithPayload | Function::FloatingForwardDynamics | Function::FloatingEulerStep => {
+                &[
+                    BY_GROUPS,
+                    BY_JOINTS,
+                    Algorithm::Aba(ExpressedIn::GroupFrame),
+                    Algorithm::Aba(ExpressedIn::JointFrame),
+                ]
+            }
             Function::ForwardDynamics | Function::InverseMassMatrixTimesTorques | Function::EulerStep => &[
                 BY_GROUPS,
                 BY_JOINTS,
