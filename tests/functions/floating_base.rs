@@ -140,7 +140,7 @@ struct Floating {
 
 impl Floating {
     /// The state after some steps without wrenches.
-    fn after(&self, arm: &Arm, steps: usize, step: f64) -> Self {
+    fn after(&self, arm: &Arm, steps: u32, step: f64) -> Self {
         let mut now = Self { pose: self.pose, state: self.state.clone() };
         for _ in 0..steps {
             let given = Given { wrench: Wrench::zero(), step, ..now.state.given() }.at(&now.pose);
@@ -170,16 +170,16 @@ impl Floating {
 /// falls by 2 where the step halves.
 #[test]
 fn steps_of_a_floating_base_keep_its_momentum_and_its_rotation() {
-    for maker in Maker::ALL {
-        for (seed, name) in ROBOTS.into_iter().enumerate() {
+    for maker in Maker::CODE {
+        for name in ["grid_hyq", "h1"] {
             let robot = read(name);
             let (arm, time) = (Arm::by_no_choice(&robot, maker), 0.02);
-            let mut state = State::random(u64::try_from(seed).expect("small"), robot.dof());
+            let mut state = State::random(1, robot.dof());
             state.tau.iter_mut().for_each(|tau| *tau *= 0.1);
             state.base = BaseMotion { omega: state.base.omega.map(|x| x * 0.1), ..state.base };
             let start = Floating { pose: state.given().pose(), state };
-            let ends = [200, 400, 800].map(|steps| start.after(&arm, steps, time / f64::from(steps as u32)));
-            let mass = robot.floating_base.as_ref().map_or(0.0, |base| base.mass)
+            let ends = [50_u32, 100, 200].map(|steps| start.after(&arm, steps, time / f64::from(steps)));
+            let mass = robot.floating_base.as_ref().map_or(0.0, |base| base.link.mass)
                 + robot.rows().map(|row| row.link.mass).sum::<f64>();
             let before = start.momentum(&arm);
             let error = |end: &Floating| {

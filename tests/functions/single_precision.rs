@@ -59,7 +59,7 @@ impl State {
                 payload,
                 base,
                 base_rotation: base_rotation(),
-                step: STEP,
+                step: T::from_f64(STEP),
             },
         )
     }
