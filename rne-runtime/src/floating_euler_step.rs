@@ -32,8 +32,8 @@ pub struct FloatingNextState<const DOF: usize, T> {
 /// A step of the semi-implicit Euler method of a robot whose base nothing holds, under torques and wrenches that do not
 /// change during the step. The base, the tips and the wrenches are those of [`FloatingBase`](crate::FloatingBase).
 pub trait FloatingEulerStep<const DOF: usize, const TIPS: usize> {
-    /// The state after a step of the duration `step`, s. `pose` is that of frame 0 in the world, `twist` its velocity in
-    /// its axes. Gravity is that of the robot file, in axes of the world.
+    /// The state after a step of the duration `step`, s. `pose` is that of frame 0 in the world, `twist` its velocity
+    /// in its axes. Gravity is that of the robot file, in axes of the world.
     ///
     /// The velocities come first, by the accelerations of [`floating_forward_dynamics`](
     /// crate::FloatingBase::floating_forward_dynamics), those of the origin of frame 0 in world axes. Then this origin
@@ -42,8 +42,8 @@ pub trait FloatingEulerStep<const DOF: usize, const TIPS: usize> {
     ///
     /// The base turns by the unit quaternion (1 - s, 2 u) / (1 + s) with u = h ω / 4 and s = u·u. It needs no root, no
     /// sine and no quotient by an angle, so it is smooth at ω = 0; its angle is h |ω| less (h |ω|)³ / 48, an error of
-    /// higher order than that of the method. The rotation after the step is one to rounding, however many steps came
-    /// before. A `pose` that is no rotation, or a base without mass, gives numbers without a meaning.
+    /// higher order than that of the method. The rotation after the step is orthogonal to rounding, however many steps
+    /// came before. A `pose` that is no rotation, or a base without mass, gives numbers without a meaning.
     #[must_use]
     #[allow(clippy::too_many_arguments)] // a state and what acts on it
     fn floating_euler_step<T: Scalar>(

@@ -50,9 +50,10 @@ pub trait FloatingIntegratorStep<const DOF: usize, const NV: usize, const TIPS: 
     FloatingBase<DOF, NV, TIPS>
 {
     /// A step of the semi-implicit Euler method of duration `step`, s, under torques and wrenches that do not change
-    /// during the step, with the orientation of the base as a quaternion. [`FloatingEulerStep`](
-    /// crate::FloatingEulerStep) has it as a rotation matrix, in one function of the robot. `gravity`: m/s², in world axes; (0, 0, -9.81) where z points up. `wrenches`: as in
-    /// [`floating_bias`](FloatingBase::floating_bias).
+    /// during the step. `gravity`: m/s², in world axes; (0, 0, -9.81) where z points up. `wrenches`: as in
+    /// [`floating_bias`](FloatingBase::floating_bias). The function
+    /// [`floating_euler_step`](crate::FloatingEulerStep::floating_euler_step) computes the same step of a base whose
+    /// orientation is a matrix.
     ///
     /// The velocities come first, those of the origin of frame 0 in world axes. Then the position moves with the new
     /// velocity, the joints with theirs, and the base turns by the new angular velocity in its axes. The error of a
@@ -188,9 +189,9 @@ impl<const DOF: usize, const NV: usize, const TIPS: usize, R: FloatingBase<DOF, 
 pub trait FloatingIntegratorStepDerivatives<const DOF: usize, const NV: usize, const TIPS: usize>:
     FloatingBase<DOF, NV, TIPS> + FloatingInverseDynamicsDerivatives<DOF, NV, TIPS>
 {
-    /// The derivatives of [`floating_quaternion_step`](FloatingIntegratorStep::floating_quaternion_step) by the state and by the
-    /// torques, exact up to rounding: the derivatives of the accelerations are -M⁻¹ times those of the wrench on the
-    /// base and of the torques.
+    /// The derivatives of [`floating_quaternion_step`](FloatingIntegratorStep::floating_quaternion_step) by the state
+    /// and by the torques, exact up to rounding: the derivatives of the accelerations are -M⁻¹ times those of the
+    /// wrench on the base and of the torques.
     #[must_use]
     fn floating_euler_step_derivatives<T: Scalar>(
         &self,

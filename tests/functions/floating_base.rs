@@ -166,8 +166,8 @@ impl Floating {
     }
 }
 
-/// Without wrenches, gravity alone changes the momentum; the rotation of the base stays one, and the error of the motion
-/// falls by 2 where the step halves.
+/// Without wrenches, gravity alone changes the momentum. The rotation of the base stays orthogonal. The error of the
+/// motion falls by 2 where the step halves.
 #[test]
 fn steps_of_a_floating_base_keep_its_momentum_and_its_rotation() {
     for maker in Maker::CODE {

@@ -156,8 +156,8 @@ macro_rules! returned {
     (FloatingNextState) => {
         "the pose after the step, a homogeneous matrix of shape (4, 4) or (N, 4, 4), the velocity of the base, linear \
          then angular, of shape (6,) or (N, 6), and the positions and the velocities of the joints, of shape (n,) or \
-         (N, n); `out` is one array of shape (18 + 2 n,) or (N, 18 + 2 n) of all numbers, with the rows of the rotation \
-         and the origin first."
+         (N, n); `out` is one array of shape (18 + 2 n,) or (N, 18 + 2 n). It begins with the rows of the rotation and \
+         the origin."
     };
     (MomentumAndRate) => {
         "momentum and rate, two arrays of shape (n,) or (N, n); `out` is one array of shape (2, n) or (N, 2, n)."

@@ -42,8 +42,8 @@ pub(crate) fn euler_step<'s>(
     [positions, rates].concat()
 }
 
-/// The pose, the velocity and the angular velocity of a base that nothing holds after a step, then the positions and the
-/// velocities of the joints; by the accelerations of the base, less gravity, and of the coordinates.
+/// The pose, the velocity and the angular velocity of a base that nothing holds after a step, then the positions and
+/// the velocities of the joints; by the accelerations of the base, less gravity, and of the coordinates.
 pub(crate) fn floating_euler_step<'s>(
     builder: &'s Builder,
     coordinates: &Coordinates,

@@ -376,14 +376,14 @@ macro_rules! functions {
             FloatingEulerStep = floating_euler_step(
                 q: Positions, qd: Rates, tau: Torques, pose: BasePose, twist: BaseTwist, step: Step, wrenches: Wrenches
             ) -> FloatingNextState:
-                "A step of the semi-implicit Euler method when nothing holds the base: pose, velocities and joints after it.",
+                "A step of the semi-implicit Euler method where nothing holds the base: its state and that of the joints.",
                 "pose: of frame 0 in the world, in whose axes the robot file has gravity. twist: as in \
-                 floating_kinetic_energy. step: as in euler_step. wrenches: as in inverse_dynamics_with_wrenches; they do \
-                 not change during the step. The velocities come first, by the accelerations of \
-                 floating_forward_dynamics; then the origin of frame 0, the base and the joints move with the new ones. \
-                 The base turns by the unit quaternion (1 - s, 2 u) / (1 + s) with u = h omega / 4 and s = u·u, and its \
-                 rotation stays one however many steps follow. A base without mass gives numbers that mean nothing or \
-                 are not finite.";
+                 floating_kinetic_energy. step: as in euler_step. wrenches: as in inverse_dynamics_with_wrenches; they \
+                 do not change during the step. The velocities come first, by the accelerations of \
+                 floating_forward_dynamics; then the origin of frame 0, the base and the joints move with the new \
+                 ones. The base turns by the unit quaternion (1 - s, 2 u) / (1 + s) with u = h omega / 4 and s = u·u. \
+                 The rotation after the step is orthogonal to rounding, however many steps came before. A base without \
+                 mass gives numbers that mean nothing or are not finite.";
         }
     };
 }
