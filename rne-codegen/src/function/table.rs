@@ -376,7 +376,7 @@ macro_rules! functions {
             FloatingEulerStep = floating_euler_step(
                 q: Positions, qd: Rates, tau: Torques, pose: BasePose, twist: BaseTwist, step: Step, wrenches: Wrenches
             ) -> FloatingNextState:
-                "A step of the semi-implicit Euler method where nothing holds the base: its state and that of the joints.",
+                "A step of the semi-implicit Euler method where nothing holds the base: the state after it.",
                 "pose: of frame 0 in the world, in whose axes the robot file has gravity. twist: as in \
                  floating_kinetic_energy. step: as in euler_step. wrenches: as in inverse_dynamics_with_wrenches; they \
                  do not change during the step. The velocities come first, by the accelerations of \
