@@ -4,7 +4,10 @@
 //! Pinocchio, whose states have a quaternion and spatial vectors.
 
 use nalgebra::Vector3;
-use rne::{BaseMotion, Pose, Quaternion, Wrench};
+use rne::{
+    BaseMotion, BaseTwist, FloatingEulerStep, FloatingIntegratorStep, FloatingNextState, FloatingState, Pose,
+    Quaternion, Wrench,
+};
 use rne_codegen::{Argument, Compiler, Factorization, Form, Function, Output, Value};
 use rne_model::{Contact, Reader, Robot};
 
@@ -197,6 +200,40 @@ fn steps_of_a_floating_base_keep_its_momentum_and_its_rotation() {
             let error = (rotation.transpose() * rotation - nalgebra::Matrix3::identity()).abs().max();
             assert!(error < 1e-14 && rotation.determinant() > 0.0, "{maker}, {name}: {error:e}");
         }
+    }
+}
+
+/// Two joints and one tip.
+#[derive(rne::FloatingBase, rne::FloatingEulerStep)]
+#[robot(path = "../../docs/satellite.yaml", form = "reduced")]
+struct Satellite;
+
+/// Many derived steps with a rotation matrix are those with a quaternion, by derived accelerations.
+#[test]
+fn derived_steps_with_a_matrix_are_those_with_a_quaternion() {
+    let State { q, qd, tau, wrench, base, .. } = State::random(5, 2);
+    let [q, qd, tau] = [q, qd, tau].map(|x| [x[0], x[1]]);
+    let pose = Pose { rotation: base_rotation(), translation: [0.3, -0.2, 0.1] };
+    let twist = BaseTwist { linear: [0.4, 0.7, -0.5], angular: base.omega.map(|x| 0.1 * x) };
+    let orientation = Quaternion::of_rotation(&pose.rotation);
+    let (mut matrix, step) = (FloatingNextState { pose, twist, q, qd }, 1e-3);
+    let mut quaternion = FloatingState { orientation, position: pose.translation, twist, q, qd };
+    for _ in 0..200 {
+        let FloatingNextState { pose, twist, q, qd } = matrix;
+        matrix = Satellite.floating_euler_step(&q, &qd, &tau, &pose, &twist, step, &[wrench]);
+        let next = FloatingIntegratorStep::<2, 8, 1>::floating_quaternion_step;
+        quaternion = next(&Satellite, &quaternion, &tau, &[wrench], &[0.0; 3], step);
+    }
+    for (found, expected) in [
+        (matrix.pose.rotation.as_flattened(), quaternion.orientation.rotation().as_flattened()),
+        (&matrix.pose.translation, &quaternion.position),
+        (&matrix.twist.linear, &quaternion.twist.linear),
+        (&matrix.twist.angular, &quaternion.twist.angular),
+        (&matrix.q, &quaternion.q),
+        (&matrix.qd, &quaternion.qd),
+    ] {
+        let error = error_on_scale(found, expected, 0.0);
+        assert!(error <= TOLERANCE, "{error:e}: {found:?} {expected:?}");
     }
 }
 
