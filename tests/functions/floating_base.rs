@@ -237,6 +237,21 @@ fn derived_steps_with_a_matrix_are_those_with_a_quaternion() {
     }
 }
 
+/// A step takes the error of a rotation away: what is left is its square.
+#[test]
+fn a_step_makes_a_rotation_orthogonal() {
+    let State { q, qd, tau, wrench, base, .. } = State::random(6, 2);
+    let [q, qd, tau] = [q, qd, tau].map(|x| [x[0], x[1]]);
+    let twist = BaseTwist { linear: base.velocity, angular: base.omega };
+    for error in [1e-4, -1e-4] {
+        let rotation = base_rotation::<f64>().map(|row| row.map(|x| x * (1.0 + error)));
+        let pose = Pose { rotation, translation: [0.0; 3] };
+        let next = Satellite.floating_euler_step(&q, &qd, &tau, &pose, &twist, 0.1, &[wrench]).pose.rotation_matrix();
+        let left = (next.transpose() * next - nalgebra::Matrix3::identity()).abs().max();
+        assert!(left < 4.0 * error * error, "{left:e}");
+    }
+}
+
 /// Forces of accelerations are M times them and the bias, and what they make of these forces are the accelerations.
 #[test]
 fn inverse_and_forward_dynamics_are_one_equation() {
