@@ -182,6 +182,7 @@ fn all_derives_of_seven_joints_build() {
                         | Capability::InverseDynamicsHessian
                         | Capability::EulerStep
                         | Capability::EulerStepDerivatives
+                        | Capability::FloatingEulerStep
                 )
         };
         let functions = Function::OF_TREES.into_iter().filter(|&function| !is_left_out(function));

@@ -70,10 +70,8 @@ impl State {
         BaseTwist { linear: self.base.velocity, angular: self.base.omega }
     }
 
-    /// No rotation: the energy is linear in its elements.
     fn pose(&self) -> Pose<f64> {
-        let BaseMotion { omega, omega_dot, velocity, acceleration, .. } = self.base;
-        Pose { rotation: [omega, omega_dot, acceleration], translation: velocity }
+        Pose { rotation: ROTATION, translation: self.base.omega_dot }
     }
 
     fn arguments(&self) -> Arguments<'_, f64> {
@@ -86,7 +84,7 @@ impl State {
             payload: *payload,
             base: [base.omega, base.omega_dot, base.acceleration, base.gravity],
             velocity: base.velocity,
-            pose: [base.omega, base.omega_dot, base.acceleration, base.velocity].as_flattened().try_into().unwrap(),
+            pose: [ROTATION.as_flattened(), &base.omega_dot].concat().try_into().unwrap(),
             // so that the changes of a step are those of a second
             step: 1.0,
             base_rotation: std::array::from_fn(|at| base_rotation(base)[at / 3][at % 3]),
@@ -144,6 +142,11 @@ fn compare(u: &mut Unstructured<'_>) -> Result<()> {
         Function::EulerStep => {
             let rates = interpreted[robot.dof()..].iter().zip(&state.qd).map(|(next, qd)| next - qd);
             accelerate(&arm, Function::ForwardDynamics, &state, &rates.collect::<Vec<_>>())
+                .expect("arrays of the right length")
+        }
+        Function::FloatingEulerStep => {
+            let accelerations = accelerations_of_step(&robot, &state, &interpreted);
+            accelerate(&arm, Function::FloatingForwardDynamics, &state, &accelerations)
                 .expect("arrays of the right length")
         }
         Function::EulerStepDerivatives => {
@@ -209,6 +212,17 @@ fn accelerate(
     Ok(misses.fold(0.0, f64::max) <= 1e-11 * largest)
 }
 
+/// The accelerations of a step of a second where nothing holds the base, by the way of its origin.
+fn accelerations_of_step(robot: &Robot, state: &State, next: &[f64]) -> Vec<f64> {
+    let (pose, twist) = (state.pose(), state.twist());
+    let driven = [0, 1, 2].map(|axis| next[9 + axis] - pose.translation[axis] - robot.gravity[axis]);
+    let linear =
+        (0..3).map(|axis| (0..3).map(|row| pose.rotation[row][axis] * driven[row]).sum::<f64>() - twist.linear[axis]);
+    let angular = next[15..18].iter().zip(&twist.angular).map(|(next, omega)| next - omega);
+    let joints = next[18 + state.qd.len()..].iter().zip(&state.qd).map(|(next, qd)| next - qd);
+    linear.chain(angular).chain(joints).collect()
+}
+
 /// Whether a matrix is the inverse of M: its columns are compared as accelerations are.
 fn inverts(arm: &DynArm, State { q, .. }: &State, inverse: &[f64]) -> std::result::Result<bool, WrongLength> {
     if !inverse.iter().all(|element| element.is_finite()) {
@@ -238,6 +252,9 @@ fn operators_of_c(robot: &Robot, program: &Program) {
     let counted = program.operations();
     assert_eq!((count(&["*"]), count(&["+", "-"]), count(&["/"])), (counted.mul, counted.add, counted.div), "{}", body);
 }
+
+/// The rotation of the base in the world.
+const ROTATION: [[f64; 3]; 3] = [[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]];
 
 /// Numbers in the place of a rotation, of vectors that no function takes beside it.
 const fn base_rotation(base: &BaseMotion<f64>) -> [[f64; 3]; 3] {
@@ -307,6 +324,11 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
         Function::EulerStepDerivatives => {
             let by = arm.euler_step_derivatives(q, qd, tau, 1.0)?;
             [by.q, by.qd].into_iter().flat_map(|by| [by.dq, by.dqd, by.dtau].concat().concat()).collect()
+        }
+        Function::FloatingEulerStep => {
+            let next = arm.floating_euler_step(q, qd, tau, &state.pose(), &state.twist(), 1.0, &[*wrench])?;
+            let twist = [next.twist.linear, next.twist.angular].concat();
+            pose(&next.pose).chain(twist).chain(next.q).chain(next.qd).collect()
         }
         Function::TorqueHessian => {
             let hessian = arm.torque_hessian(q, qd, qdd, tau)?;

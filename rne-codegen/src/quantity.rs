@@ -417,6 +417,14 @@ quantities! {
     Duration:                   "h",         Alone,     0, false, "", "s", "duration of the step";
     NextPosition:               "next_q",    Joint,     8, true,  "", "rad|m", "position after the step";
     NextRate:                   "next_qd",   Joint,     8, true,  "", "rad/s|m/s", "velocity after the step";
+    NextRotation:               "next_r",    Matrix,    8, true,  "", "",
+        "rotation of the base after the step: its columns are the axes of frame 0 in the world";
+    NextOrigin:                 "next_p",    Vector,    8, true,  "", "m",
+        "origin of frame 0 in the world after the step";
+    NextVelocity:               "next_v",    Vector,    8, true,  "", "m/s",
+        "its velocity after the step, in axes of frame 0";
+    NextOmega:                  "next_w",    Vector,    8, true,  "", "rad/s",
+        "angular velocity of the base after the step, in axes of frame 0";
 }
 
 impl Quantity {

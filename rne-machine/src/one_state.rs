@@ -122,6 +122,7 @@ macro_rules! methods {
             /// # Errors
             /// When an argument does not have one element per joint or tip, when a payload has a mass below zero, or
             /// when the function cannot be compiled for this robot.
+            #[allow(clippy::too_many_arguments)] // those of the table
             pub fn $name<T: Number>(
                 &self,
                 $($argument: taken!($kind),)*

@@ -3,8 +3,10 @@
 use core::array;
 
 use rne_codegen::Layout;
-use rne_runtime::{BaseAcceleration, Wrench};
-pub use rne_runtime::{DynFloatingTorqueDerivatives as FloatingTorqueDerivatives, Pose};
+use rne_runtime::{BaseAcceleration, BaseTwist, Wrench};
+pub use rne_runtime::{
+    DynFloatingNextState as FloatingNextState, DynFloatingTorqueDerivatives as FloatingTorqueDerivatives, Pose,
+};
 
 /// One number.
 pub type Number<T> = T;
@@ -216,4 +218,5 @@ records! {
     ClosureStep { passive, residual } TorqueGradient { dq, dqd, dqdd }
     AccelerationDerivatives { dq, dqd, dtau } TorqueHessian { dq_dq, dq_dqd, dqd_dqd, dq_dqdd }
     NextState { q, qd } StepDerivatives { dq, dqd, dtau } NextStateDerivatives { q, qd }
+    BaseTwist { linear, angular } FloatingNextState { pose, twist, q, qd }
 }

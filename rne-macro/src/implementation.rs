@@ -434,8 +434,11 @@ impl Target<'_> {
                     | Record::NextStateDerivatives
                     | Record::MomentumAndRate
                     | Record::FloatingTorques
+                    | Record::FloatingNextState
                     | Record::FloatingAccelerations => quote!(#krate::#name<#dof, T>),
-                    Record::Pose | Record::Wrench | Record::BaseAcceleration => quote!(#krate::#name<T>),
+                    Record::Pose | Record::Wrench | Record::BaseAcceleration | Record::BaseTwist => {
+                        quote!(#krate::#name<T>)
+                    }
                 }
             }
         }

@@ -393,6 +393,20 @@ pub fn derive_euler_step_derivatives(input: TokenStream) -> TokenStream {
     expand::capability(Capability::EulerStepDerivatives, input.into()).into()
 }
 
+/// Implements the trait `FloatingEulerStep` for a struct: a step of the semi-implicit Euler method where nothing holds
+/// the base.
+///
+/// The base is the link `floating_base` of the robot file; without that key the base has no mass. The tips are those of
+/// `FloatingBase`.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations, `FLOATING_EULER_STEP_OPERATIONS`; `DOF`, names and limits come with
+/// `InverseDynamics`.
+#[proc_macro_derive(FloatingEulerStep, attributes(robot))]
+pub fn derive_floating_euler_step(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::FloatingEulerStep, input.into()).into()
+}
+
 /// Implements the trait `ClosedLoops` for a struct: a robot whose file has `loops` with a cut joint.
 ///
 /// The tips are the frames of the list `tips` of the robot file in its order, or the tip frame alone. Other derives

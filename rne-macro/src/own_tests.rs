@@ -51,6 +51,7 @@ pub(crate) fn of_capability(capability: Capability) -> &'static [&'static str] {
         | Capability::FloatingKinematics
         | Capability::ContactDynamics
         | Capability::FloatingInverseDynamicsDerivatives
+        | Capability::FloatingEulerStep
         | Capability::ClosedLoops
         | Capability::FloatingClosedLoops => &[],
     }

@@ -51,7 +51,9 @@ pub trait FloatingIntegratorStep<const DOF: usize, const NV: usize, const TIPS: 
 {
     /// A step of the semi-implicit Euler method of duration `step`, s, under torques and wrenches that do not change
     /// during the step. `gravity`: m/s², in world axes; (0, 0, -9.81) where z points up. `wrenches`: as in
-    /// [`floating_bias`](FloatingBase::floating_bias).
+    /// [`floating_bias`](FloatingBase::floating_bias). The function
+    /// [`floating_euler_step`](crate::FloatingEulerStep::floating_euler_step) computes the same step of a base whose
+    /// orientation is a matrix.
     ///
     /// The velocities come first, those of the origin of frame 0 in world axes. Then the position moves with the new
     /// velocity, the joints with theirs, and the base turns by the new angular velocity in its axes. The error of a
@@ -61,7 +63,7 @@ pub trait FloatingIntegratorStep<const DOF: usize, const NV: usize, const TIPS: 
     /// sine and no quotient by an angle, so it is smooth at ω = 0; its angle is h |ω| less (h |ω|)³ / 48, an error of
     /// higher order than that of the method. The result has the length 1 to rounding, however many steps came before.
     #[must_use]
-    fn floating_euler_step<T: Scalar>(
+    fn floating_quaternion_step<T: Scalar>(
         &self,
         state: &FloatingState<DOF, T>,
         tau: &[T; DOF],
@@ -88,7 +90,7 @@ pub trait FloatingIntegratorStep<const DOF: usize, const NV: usize, const TIPS: 
     }
 
     /// A step of the classical Runge-Kutta method, with the arguments of
-    /// [`floating_euler_step`](Self::floating_euler_step). The error of a motion is of order h⁴.
+    /// [`floating_quaternion_step`](Self::floating_quaternion_step). The error of a motion is of order h⁴.
     ///
     /// The method integrates the turn of the base in the coordinates u of the unit quaternion (1 - s, 2 u) / (1 + s)
     /// with s = u·u, the tangent of a quarter of the angle times the axis. They begin at zero in each step, and their
@@ -187,9 +189,9 @@ impl<const DOF: usize, const NV: usize, const TIPS: usize, R: FloatingBase<DOF, 
 pub trait FloatingIntegratorStepDerivatives<const DOF: usize, const NV: usize, const TIPS: usize>:
     FloatingBase<DOF, NV, TIPS> + FloatingInverseDynamicsDerivatives<DOF, NV, TIPS>
 {
-    /// The derivatives of [`floating_euler_step`](FloatingIntegratorStep::floating_euler_step) by the state and by the
-    /// torques, exact up to rounding: the derivatives of the accelerations are -M⁻¹ times those of the wrench on the
-    /// base and of the torques.
+    /// The derivatives of [`floating_quaternion_step`](FloatingIntegratorStep::floating_quaternion_step) by the state
+    /// and by the torques, exact up to rounding: the derivatives of the accelerations are -M⁻¹ times those of the
+    /// wrench on the base and of the torques.
     #[must_use]
     fn floating_euler_step_derivatives<T: Scalar>(
         &self,
@@ -216,7 +218,7 @@ pub trait FloatingIntegratorStepDerivatives<const DOF: usize, const NV: usize, c
             solve(&mass, &inverse, &mut x);
             x
         };
-        let next = self.floating_euler_step(state, tau, wrenches, gravity, step);
+        let next = self.floating_quaternion_step(state, tau, wrenches, gravity, step);
         let change = Change::new(state, &next, &found.base.linear, step);
         let still = [[T::zero(); NV]; 2];
         let column = |part: usize, at: usize| {
@@ -284,7 +286,7 @@ fn fill<const ROWS: usize, const COLUMNS: usize, T: Scalar>(
 }
 
 /// x + h times what changes it.
-fn moved<const N: usize, T: Scalar>(x: &[T; N], change: &[T; N], step: T) -> [T; N] {
+pub(crate) fn moved<const N: usize, T: Scalar>(x: &[T; N], change: &[T; N], step: T) -> [T; N] {
     from_fn(|i| x[i] + step * change[i])
 }
 

@@ -40,6 +40,7 @@ mod error;
 #[cfg(feature = "arm")]
 mod floating_base;
 mod floating_derivatives;
+mod floating_euler_step;
 mod floating_integrator;
 #[cfg(feature = "arm")]
 mod floating_kinematics;
@@ -141,6 +142,9 @@ pub use error::{LoadError, WrongJointCount, WrongLength};
 #[cfg(feature = "std")]
 pub use floating_derivatives::DynFloatingTorqueDerivatives;
 pub use floating_derivatives::{FloatingInverseDynamicsDerivatives, FloatingTorqueDerivatives};
+#[cfg(all(feature = "arm", feature = "std"))]
+pub use floating_euler_step::DynFloatingNextState;
+pub use floating_euler_step::{FloatingEulerStep, FloatingNextState};
 pub use floating_integrator::{
     FloatingIntegratorStep, FloatingIntegratorStepDerivatives, FloatingState, FloatingStepDerivatives,
 };

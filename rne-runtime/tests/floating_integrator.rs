@@ -5,12 +5,12 @@ mod common;
 
 use std::array::from_fn;
 
-use common::{Numbers, assert_close, link, six_joints};
+use common::{Numbers, SIX_BASE, assert_close, link, six_joints};
 use rne_model::Convention::{Modified, Standard};
 use rne_runtime::{
     Arm, BaseAcceleration, BaseMotion, BaseTwist, Dual, FloatingAccelerations, FloatingBase, FloatingIntegratorStep,
-    FloatingIntegratorStepDerivatives, FloatingInverseDynamicsDerivatives, FloatingState, FloatingStepDerivatives,
-    FloatingTorqueDerivatives, FloatingTorques, Quaternion, Scalar, Wrench,
+    FloatingIntegratorStepDerivatives, FloatingInverseDynamicsDerivatives, FloatingNextState, FloatingState,
+    FloatingStepDerivatives, FloatingTorqueDerivatives, FloatingTorques, Pose, Quaternion, Scalar, Wrench,
 };
 
 const DOF: usize = 6;
@@ -168,7 +168,7 @@ fn derivatives_are_those_by_dual_numbers() {
                     derivative: f64::from(u8::from(direction == 2 * NV + joint)),
                 });
                 let state = along(&state, direction);
-                let next = FloatingIntegratorStep::<DOF, NV, 0>::floating_euler_step(
+                let next = FloatingIntegratorStep::<DOF, NV, 0>::floating_quaternion_step(
                     &arm,
                     &state,
                     &tau,
@@ -205,7 +205,8 @@ fn the_base_turns_by_the_exponential_to_third_order() {
     let state = state(&mut numbers);
     let tau: [f64; DOF] = numbers.array(5.0);
     let error = |step: f64| {
-        let next = FloatingIntegratorStep::<DOF, NV, 0>::floating_euler_step(&arm, &state, &tau, &[], &GRAVITY, step);
+        let next =
+            FloatingIntegratorStep::<DOF, NV, 0>::floating_quaternion_step(&arm, &state, &tau, &[], &GRAVITY, step);
         let expected = state.orientation.turned_by(next.twist.angular.map(|x| x * step));
         let pairs = next.orientation.to_wxyz().into_iter().zip(expected.to_wxyz());
         let length: f64 = next.orientation.to_wxyz().iter().map(|x| x * x).sum();
@@ -234,7 +235,7 @@ fn momentum_is_conserved_to_the_order_of_the_method() {
         let error = |steps: u32| {
             let time = 0.1;
             let end = (0..steps).fold(start, |state, _| {
-                FloatingIntegratorStep::<DOF, NV, 0>::floating_euler_step(
+                FloatingIntegratorStep::<DOF, NV, 0>::floating_quaternion_step(
                     &arm,
                     &state,
                     &tau,
@@ -250,6 +251,38 @@ fn momentum_is_conserved_to_the_order_of_the_method() {
         let order = (error(200) / error(400)).log2();
         println!("order {order:.3}");
         assert!((order - 1.0).abs() < 0.1, "{order}");
+    }
+}
+
+/// The step with a rotation matrix is that with a quaternion, over many steps.
+#[test]
+fn the_step_with_a_matrix_is_that_with_a_quaternion() {
+    let mut numbers = Numbers::new(85);
+    for arm in arms() {
+        let mut with_quaternion = state(&mut numbers);
+        let tau: [f64; DOF] = numbers.array(1.0);
+        let State { orientation, position, twist, q, qd } = with_quaternion;
+        let pose = Pose { rotation: orientation.rotation(), translation: position };
+        let mut with_matrix = FloatingNextState { pose, twist, q, qd };
+        for _ in 0..100 {
+            with_quaternion = FloatingIntegratorStep::<DOF, NV, 0>::floating_quaternion_step(
+                &arm,
+                &with_quaternion,
+                &tau,
+                &[],
+                &SIX_BASE.gravity,
+                0.001,
+            );
+            let FloatingNextState { pose, twist, q, qd } = with_matrix;
+            with_matrix = arm.0.floating_euler_step::<f64, NV, 0>([&q, &qd, &tau], (&pose, &twist), 0.001, (&[], &[]));
+        }
+        let rotation = with_quaternion.orientation.rotation();
+        assert_close("rotation", with_matrix.pose.rotation.as_flattened(), rotation.as_flattened());
+        assert_close("origin", &with_matrix.pose.translation, &with_quaternion.position);
+        assert_close("velocity", &with_matrix.twist.linear, &with_quaternion.twist.linear);
+        assert_close("angular velocity", &with_matrix.twist.angular, &with_quaternion.twist.angular);
+        assert_close("positions", &with_matrix.q, &with_quaternion.q);
+        assert_close("velocities", &with_matrix.qd, &with_quaternion.qd);
     }
 }
 
@@ -277,7 +310,14 @@ fn the_runge_kutta_step_is_of_fourth_order() {
         assert!((order - 4.0).abs() < 0.3, "{order}");
         // semi-implicit Euler tends to the same motion
         let euler = (0..1000).fold(start, |state, _| {
-            FloatingIntegratorStep::<DOF, NV, 0>::floating_euler_step(&arm, &state, &tau, &[], &GRAVITY, 0.04 / 1000.0)
+            FloatingIntegratorStep::<DOF, NV, 0>::floating_quaternion_step(
+                &arm,
+                &state,
+                &tau,
+                &[],
+                &GRAVITY,
+                0.04 / 1000.0,
+            )
         });
         let difference = all(&euler).iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         println!("semi-implicit Euler: {difference:.1e}");

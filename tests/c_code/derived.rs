@@ -2,11 +2,11 @@
 
 use rne::{
     Actuation, BaseMotion, BaseTwist, CentreOfMass, CentroidalMomentum, ContactDynamics, CoriolisMatrix, Energy,
-    EulerStep, EulerStepDerivatives, FloatingBase, FloatingEnergy, FloatingInverseDynamicsDerivatives,
-    FloatingKinematics, FloatingRegressor, ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics,
-    InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian, JacobianDerivatives, JointWrenches,
-    Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Pose, Regressor, Scalar, TipWrenches,
-    Wrench,
+    EulerStep, EulerStepDerivatives, FloatingBase, FloatingEnergy, FloatingEulerStep,
+    FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor, ForwardDynamics,
+    ForwardDynamicsDerivatives, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient,
+    InverseDynamicsHessian, JacobianDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase,
+    PayloadDynamics, Pose, Regressor, Scalar, TipWrenches, Wrench,
 };
 use rne_codegen::Form;
 pub(crate) use rne_codegen::Function;
@@ -52,6 +52,7 @@ pub(crate) trait Everything<const DOF: usize, const NV: usize, const BODIES: usi
     + InverseDynamicsHessian<DOF>
     + EulerStep<DOF>
     + EulerStepDerivatives<DOF>
+    + FloatingEulerStep<DOF, 1>
 {
 }
 
@@ -76,7 +77,7 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, const BODIES: usize, T:
     let base = BaseMotion { omega, omega_dot, velocity: [T::zero(); 3], acceleration, gravity };
     // numbers that stand one after the other, as C reads them
     let twist = BaseTwist { linear: moment, angular: omega };
-    let pose_of_base = Pose { rotation: [omega, omega_dot, acceleration], translation: gravity };
+    let pose_of_base = Pose { rotation: given.rotation, translation: gravity };
     match function {
         Function::InverseDynamics => robot.inverse_dynamics(q, qd, qdd).to_vec(),
         Function::InverseDynamicsWithWrench => {
@@ -148,6 +149,12 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, const BODIES: usize, T:
         Function::EulerStepDerivatives => {
             let by = robot.euler_step_derivatives(q, qd, tau, T::from_f64(0.03125));
             [by.q, by.qd].into_iter().flat_map(|by| [by.dq, by.dqd, by.dtau].map(flat).concat()).collect()
+        }
+        Function::FloatingEulerStep => {
+            let step = T::from_f64(0.03125);
+            let next = robot.floating_euler_step(q, qd, tau, &pose_of_base, &twist, step, &[Wrench { force, moment }]);
+            let twist = [next.twist.linear, next.twist.angular].concat();
+            [pose(&next.pose), twist, next.q.to_vec(), next.qd.to_vec()].concat()
         }
         Function::JointWrenches => {
             let wrenches = robot.joint_wrenches(q, qd, qdd);
@@ -242,6 +249,7 @@ macro_rules! robot {
                 rne::InverseDynamicsHessian,
                 rne::EulerStep,
                 rne::EulerStepDerivatives,
+                rne::FloatingEulerStep,
             )]
             #[robot(path = $path, form = $form, inline)]
             pub(crate) struct Robot;

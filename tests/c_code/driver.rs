@@ -125,7 +125,10 @@ impl Driver<'_> {
         let _ = writeln!(text, "    const {real} *payload = &given[{}];", joints.len() * n + 3 * vectors.len() + 2);
         let rows = joints.len() * n + 30;
         let _ = writeln!(text, "    const {real} (*base_rotation)[3] = (const {real} (*)[3])&given[{rows}];");
-        for name in joints.iter().chain(&vectors).chain(&["payload", "base_rotation"]) {
+        let _ = writeln!(text, "    {real} pose[12];\n    unsigned i;");
+        let _ =
+            writeln!(text, "    for (i = 0u; i < 12u; ++i) pose[i] = i < 9u ? given[{rows}u + i] : gravity[i - 9u];");
+        for name in joints.iter().chain(&vectors).chain(&["payload", "base_rotation", "pose"]) {
             let _ = writeln!(text, "    (void){name};");
         }
         for function in functions {
@@ -174,6 +177,10 @@ impl Driver<'_> {
                     "q, qd, tau"
                 }
                 Function::EulerStep | Function::EulerStepDerivatives => "q, qd, tau, 0.03125f",
+                // omega stands behind the moment
+                Function::FloatingEulerStep => {
+                    &format!("q, qd, tau, pose, moment, 0.03125f, (const {real} (*)[6])force")
+                }
                 Function::TorqueGradient | Function::TorqueHessian => "q, qd, qdd, tau",
                 Function::InverseDynamicsOnMovingBase | Function::FloatingRegressor => {
                     "q, qd, qdd, omega, omega_dot, acceleration, gravity"
@@ -184,8 +191,7 @@ impl Driver<'_> {
                 Function::CentroidalBias => "q, qd, omega",
                 // omega stands behind the moment
                 Function::FloatingKineticEnergy | Function::CentroidalMomentum => "q, qd, moment",
-                // omega, omega_dot, acceleration and gravity
-                Function::FloatingPotentialEnergy => "q, omega",
+                Function::FloatingPotentialEnergy => "q, pose",
                 Function::ForwardDynamicsInContact => "q, qd, tau, omega, base_rotation",
                 Function::TipJacobians => "q, base_rotation",
                 Function::TipAccelerations => "q, qd, omega, base_rotation",
@@ -224,6 +230,7 @@ impl Driver<'_> {
                 Function::TorqueHessian => (format!("{prefix}_hessian x"), "&x"),
                 Function::EulerStep => (format!("{prefix}_next_state x"), "&x"),
                 Function::EulerStepDerivatives => (format!("{prefix}_next_state_derivatives x"), "&x"),
+                Function::FloatingEulerStep => (format!("{prefix}_floating_next_state x"), "&x"),
                 Function::ForwardDynamicsDerivatives
                 | Function::ForwardDynamicsDerivativesWithWrenches
                 | Function::ForwardDynamicsDerivativesWithPayload => {

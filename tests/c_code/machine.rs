@@ -72,7 +72,7 @@ impl States {
             ("base_acceleration", vector(4)),
             ("base_gravity", vector(5)),
             ("twist", rows(&|state| state.vectors[1..3].concat())),
-            ("pose", rows(&|state| state.vectors[2..6].concat())),
+            ("pose", rows(&|state| [&state.rotation.concat()[..], &state.vectors[5]].concat())),
             ("base_rotation", rows(&|state| state.rotation.concat())),
         ];
         Self { each, rows }
@@ -103,7 +103,7 @@ fn interpreted(interpreter: &Interpreter, state: &State) -> Vec<f64> {
         payload: payload(state),
         base,
         velocity: moment,
-        pose: state.vectors[2..6].as_flattened().try_into().expect("twelve"),
+        pose: [state.rotation.as_flattened(), &state.vectors[5]].concat().try_into().expect("twelve"),
         step: 0.03125,
         base_rotation: state.rotation.as_flattened().try_into().expect("nine"),
         ..of_joints

@@ -109,7 +109,7 @@ pub(crate) fn stubs() -> String {
             | Returned::FloatingTorqueDerivatives
             | Returned::TorqueGradient
             | Returned::AccelerationDerivatives => "tuple[Floats, Floats, Floats]",
-            Returned::TorqueHessian => "tuple[Floats, Floats, Floats, Floats]",
+            Returned::TorqueHessian | Returned::FloatingNextState => "tuple[Floats, Floats, Floats, Floats]",
             _ => "Floats",
         };
         // a pose of the tip has the name that it has at a frame, too

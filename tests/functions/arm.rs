@@ -47,6 +47,7 @@ pub(crate) struct Given<'a, T> {
     pub(crate) payload: Payload<T>,
     pub(crate) base: BaseMotion<T>,
     pub(crate) base_rotation: [[T; 3]; 3],
+    pub(crate) step: T,
 }
 
 impl<'a, T: Scalar> Given<'a, T> {
@@ -54,7 +55,7 @@ impl<'a, T: Scalar> Given<'a, T> {
         let zero = [T::zero(); 3];
         let (wrench, payload) = (Wrench::zero(), Payload::none());
         let base = BaseMotion::fixed(zero);
-        Self { q, qd, qdd, tau: &[], wrench, payload, base, base_rotation: base_rotation() }
+        Self { q, qd, qdd, tau: &[], wrench, payload, base, base_rotation: base_rotation(), step: T::from_f64(STEP) }
     }
 
     /// The velocity of a base that nothing holds.
@@ -62,16 +63,15 @@ impl<'a, T: Scalar> Given<'a, T> {
         BaseTwist { linear: self.base.velocity, angular: self.base.omega }
     }
 
-    /// Where this base stands: no function takes a pose and a motion of the base, so that they share their numbers.
+    /// Where this base stands: no function takes a pose and a gravity, so that they share their numbers.
     pub(crate) fn pose(&self) -> Pose<T> {
-        let BaseMotion { omega, omega_dot, acceleration, gravity, .. } = self.base;
-        Pose { rotation: [omega, omega_dot, acceleration], translation: gravity }
+        Pose { rotation: self.base_rotation, translation: self.base.gravity }
     }
 
     /// At a pose of the base.
     pub(crate) fn at(self, pose: &Pose<T>) -> Self {
-        let ([omega, omega_dot, acceleration], gravity) = (pose.rotation, pose.translation);
-        Self { base: BaseMotion { omega, omega_dot, acceleration, gravity, ..self.base }, ..self }
+        let base = BaseMotion { gravity: pose.translation, ..self.base };
+        Self { base, base_rotation: pose.rotation, ..self }
     }
 }
 
@@ -213,7 +213,7 @@ impl Arm {
             base: [omega, omega_dot, acceleration, gravity].map(|vector| vector.map(Number)),
             velocity: velocity.map(Number),
             pose: pose.collect::<Vec<_>>().try_into().unwrap_or_else(|_| unreachable!("twelve")),
-            step: Number(T::from_f64(STEP)),
+            step: Number(given.step),
             base_rotation: std::array::from_fn(|at| Number(given.base_rotation[at / 3][at % 3])),
             ..Arguments::of_joints(&q, &qd, &qdd, Number(T::zero()))
         };
@@ -380,7 +380,7 @@ pub(crate) fn at_tips<T: Copy>(tips: usize, wrench: &Wrench<T>) -> Vec<Wrench<T>
 /// What the runtime returns, as a row of numbers.
 #[allow(clippy::too_many_lines)] // an arm for each function
 pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Given<'_, T>) -> Vec<T> {
-    let Given { q, qd, qdd, tau, ref wrench, ref payload, ref base, ref base_rotation } = *given;
+    let Given { q, qd, qdd, tau, ref wrench, ref payload, ref base, ref base_rotation, step } = *given;
     let poses = |poses: Vec<Pose<T>>| -> Vec<T> {
         poses.iter().flat_map(|pose| [flat(pose.rotation), pose.translation.to_vec()].concat()).collect()
     };
@@ -434,10 +434,16 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
         Function::TorqueHessian => {
             arm.torque_hessian(q, qd, qdd, tau).map(|by| flat([by.dq_dq, by.dq_dqd, by.dqd_dqd, by.dq_dqdd].concat()))
         }
-        Function::EulerStep => arm.euler_step(q, qd, tau, T::from_f64(STEP)).map(|next| [next.q, next.qd].concat()),
+        Function::EulerStep => arm.euler_step(q, qd, tau, step).map(|next| [next.q, next.qd].concat()),
         Function::EulerStepDerivatives => arm
-            .euler_step_derivatives(q, qd, tau, T::from_f64(STEP))
+            .euler_step_derivatives(q, qd, tau, step)
             .map(|by| [by.q, by.qd].into_iter().flat_map(|by| flat([by.dq, by.dqd, by.dtau].concat())).collect()),
+        Function::FloatingEulerStep => {
+            arm.floating_euler_step(q, qd, tau, &given.pose(), &given.twist(), step, &wrenches).map(|next| {
+                let base = [flat(next.pose.rotation), next.pose.translation.into()].concat();
+                [base, next.twist.linear.into(), next.twist.angular.into(), next.q, next.qd].concat()
+            })
+        }
         Function::JointWrenches => arm
             .joint_wrenches(q, qd, qdd)
             .map(|wrenches| wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment].concat()).collect()),

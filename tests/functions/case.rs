@@ -8,7 +8,7 @@ use rne::{BaseMotion, Dual, Payload, Wrench};
 use rne_codegen::Form;
 use rne_model::{Inertia, Motor, Robot};
 
-use crate::arm::{Arm, Given, Maker, base_rotation};
+use crate::arm::{Arm, Given, Maker, STEP, base_rotation};
 use crate::check::Worst;
 use crate::robots;
 
@@ -104,6 +104,7 @@ impl Case {
             payload: *payload,
             base: *base,
             base_rotation: base_rotation(),
+            step: STEP,
         }
     }
 

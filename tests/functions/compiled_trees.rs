@@ -42,7 +42,7 @@ fn of_state(robot: &Robot, state: &State) -> Vec<(&'static str, Vec<f64>)> {
         ("base_acceleration", base.acceleration.to_vec()),
         ("base_gravity", base.gravity.to_vec()),
         ("twist", [base.velocity, base.omega].concat()),
-        ("pose", [base.omega, base.omega_dot, base.acceleration, base.gravity].concat()),
+        ("pose", [&base_rotation().concat()[..], &base.gravity].concat()),
         ("base_rotation", base_rotation().concat()),
     ]
 }

@@ -4,7 +4,7 @@
 use rne::{BaseMotion, Dual, Payload, Scalar, Wrench};
 use rne_codegen::Function;
 
-use crate::arm::{Arm, Given, base_rotation, of_runtime};
+use crate::arm::{Arm, Given, STEP, base_rotation, of_runtime};
 use crate::tree_functions::State;
 
 /// The argument by which a function is derived.
@@ -70,6 +70,7 @@ fn numbers<T: Scalar>(arm: &Arm, function: Function, state: &State, scalar: impl
             gravity: still(base.gravity),
         },
         base_rotation: base_rotation(),
+        step: T::from_f64(STEP),
     };
     of_runtime(&arm.runtime, function, &given)
 }

@@ -4,7 +4,7 @@
 //! Shipped and dense robots by their plan files, random ones by the choices of a build without one.
 
 use fastrand::Rng;
-use rne::{BaseMotion, Payload, Wrench};
+use rne::{BaseMotion, Payload, Pose, Quaternion, Wrench};
 use rne_codegen::{Argument, Form, Function};
 use rne_model::{Dh, Robot};
 
@@ -15,7 +15,7 @@ use crate::golden::ROBOTS;
 use crate::tree_functions::contact_condition;
 
 /// Functions whose seven steps are the runtime's operations, in its order.
-const SAME_BITS: [Function; 36] = [
+const SAME_BITS: [Function; 37] = [
     Function::InverseDynamics,
     Function::InverseDynamicsWithWrench,
     Function::InverseDynamicsWithPayload,
@@ -45,6 +45,7 @@ const SAME_BITS: [Function; 36] = [
     Function::FloatingMassMatrix,
     Function::FloatingBias,
     Function::FloatingForwardDynamics,
+    Function::FloatingEulerStep,
     Function::CentroidalMomentumMatrix,
     Function::CentroidalBias,
     Function::FloatingKineticEnergy,
@@ -159,6 +160,34 @@ fn without_step_of_derivatives<'a>(given: &Given<'_, f64>, found: &'a [f64]) -> 
     (Function::ForwardDynamicsDerivatives, accelerations, positions, moved, 1.0)
 }
 
+/// The accelerations of a step where nothing holds the base, and how far the step is from that of these accelerations.
+fn without_step_of_floating_base(arm: &Arm, given: &Given<'_, f64>, found: &[f64]) -> (Vec<f64>, f64) {
+    let (base, joints) = found.split_at(18);
+    let (positions, rates) = joints.split_at(given.q.len());
+    let triple = |from: usize| [base[from], base[from + 1], base[from + 2]];
+    let (Pose { rotation, translation }, twist) = (given.pose(), given.twist());
+    let moved = |x: &[f64], by: &[f64]| x.iter().zip(by).map(|(x, by)| x + STEP * by).collect::<Vec<_>>();
+    let rate = |next: &[f64], x: &[f64]| next.iter().zip(x).map(|(next, x)| (next - x) / STEP).collect::<Vec<_>>();
+    let (next, omega) = (nalgebra::Matrix3::from_row_slice(&base[..9]), triple(15));
+    // R' v' is the velocity in world axes
+    let in_world = next * nalgebra::Vector3::from(triple(12));
+    let driven = in_world - nalgebra::Vector3::from(arm.robot.gravity) * STEP;
+    // the transpose, as it takes columns
+    let driven = nalgebra::Matrix3::from(rotation) * driven;
+    let accelerations = [rate(driven.as_slice(), &twist.linear), rate(&omega, &twist.angular), rate(rates, given.qd)];
+    let [x, y, z] = omega.map(|x| x * STEP / 4.0);
+    let half = Quaternion { w: 1.0, x, y, z };
+    let turned = Quaternion::of_rotation(&rotation).then(&half).then(&half).to_wxyz();
+    let length = turned.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let turned = Quaternion::from_wxyz(turned.map(|x| x / length)).rotation();
+    let error = [
+        error_on_scale(&base[..9], turned.as_flattened(), 0.0),
+        error_on_scale(&base[9..12], &moved(&translation, in_world.as_slice()), largest(&translation)),
+        error_on_scale(positions, &moved(given.q, rates), largest(given.q)),
+    ];
+    (accelerations.concat(), error.into_iter().fold(0.0, f64::max))
+}
+
 /// How far accelerations in contact are from those expected, of the condition of the system.
 fn error_in_contact(arm: &Arm, given: &Given<'_, f64>, found: &[f64], expected: &[f64]) -> f64 {
     let runtime = |function| of_runtime(&arm.runtime, function, given);
@@ -254,6 +283,12 @@ pub(crate) fn error(
             let of_positions = || error_on_scale(positions, &moved, scale);
             if is_finite { of_accelerations.max(of_positions()) } else { of_accelerations }
         }
+        Function::FloatingEulerStep if !found.iter().all(|x| x.is_finite()) => 0.0,
+        Function::FloatingEulerStep => {
+            let (accelerations, of_step) = without_step_of_floating_base(arm, given, found);
+            let of = Function::FloatingForwardDynamics;
+            of_step.max(error(arm, maker, of, given, &accelerations, tolerance))
+        }
         Function::ForwardDynamics
         | Function::InverseMassMatrix
         | Function::InverseMassMatrixTimesTorques
@@ -301,8 +336,17 @@ pub(crate) fn compare_at_states(arm: &Arm, maker: Maker, worst: &mut Worst) {
         let [omega, omega_dot, velocity, acceleration, gravity] = [(); 5].map(|()| triple());
         let base = BaseMotion { omega, omega_dot, velocity, acceleration, gravity };
         let payload = payload(&mut rng);
-        let given =
-            Given { q: &q, qd: &qd, qdd: &qdd, tau: &tau, wrench, payload, base, base_rotation: base_rotation() };
+        let given = Given {
+            q: &q,
+            qd: &qd,
+            qdd: &qdd,
+            tau: &tau,
+            wrench,
+            payload,
+            base,
+            base_rotation: base_rotation(),
+            step: STEP,
+        };
         compare(arm, maker, &given, TOLERANCE, worst);
     }
 }

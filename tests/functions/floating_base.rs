@@ -4,7 +4,10 @@
 //! Pinocchio, whose states have a quaternion and spatial vectors.
 
 use nalgebra::Vector3;
-use rne::{BaseMotion, Pose, Quaternion, Wrench};
+use rne::{
+    BaseMotion, BaseTwist, FloatingEulerStep, FloatingIntegratorStep, FloatingNextState, FloatingState, Pose,
+    Quaternion, Wrench,
+};
 use rne_codegen::{Argument, Compiler, Factorization, Form, Function, Output, Value};
 use rne_model::{Contact, Reader, Robot};
 
@@ -129,6 +132,123 @@ fn derivatives_of_joints_on_different_branches_are_no_operations() {
         }
         println!("{form}: {elements} elements, {} operations", program.operations().total());
         assert!(elements <= 270, "{form}: {elements}");
+    }
+}
+
+/// The numbers of a state that a step of a robot on a floating base takes and returns.
+struct Floating {
+    pose: Pose<f64>,
+    state: State,
+}
+
+impl Floating {
+    /// The state after some steps without wrenches.
+    fn after(&self, arm: &Arm, steps: u32, step: f64) -> Self {
+        let mut now = Self { pose: self.pose, state: self.state.clone() };
+        for _ in 0..steps {
+            let given = Given { wrench: Wrench::zero(), step, ..now.state.given() }.at(&now.pose);
+            let next = arm.numbers(Function::FloatingEulerStep, &given);
+            let triple = |from: usize| [next[from], next[from + 1], next[from + 2]];
+            now.pose = Pose { rotation: [0, 3, 6].map(triple), translation: triple(9) };
+            now.state.base = BaseMotion { velocity: triple(12), omega: triple(15), ..now.state.base };
+            let (q, qd) = next[18..].split_at(now.state.q.len());
+            (now.state.q, now.state.qd) = (q.to_vec(), qd.to_vec());
+        }
+        now
+    }
+
+    fn numbers(&self) -> Vec<f64> {
+        let Self { pose, state: State { q, qd, base, .. } } = self;
+        [pose.rotation.as_flattened(), &pose.translation, &base.velocity, &base.omega, q, qd].concat()
+    }
+
+    /// Linear and angular momentum about the centre of mass, in world axes.
+    fn momentum(&self, arm: &Arm) -> Vec<f64> {
+        let found = arm.numbers(Function::CentroidalMomentum, &self.state.given());
+        found.chunks(3).flat_map(|part| self.pose.rotation.map(|row| dot(&row, part))).collect()
+    }
+}
+
+/// Without wrenches, gravity alone changes the momentum. The rotation of the base stays orthogonal. The error of the
+/// motion falls by 2 where the step halves.
+#[test]
+fn steps_of_a_floating_base_keep_its_momentum_and_its_rotation() {
+    for maker in Maker::CODE {
+        for name in ["grid_hyq", "h1"] {
+            let robot = read(name);
+            let (arm, time) = (Arm::by_no_choice(&robot, maker), 0.02);
+            let mut state = State::random(1, robot.dof());
+            state.tau.iter_mut().for_each(|tau| *tau *= 0.1);
+            state.base = BaseMotion { omega: state.base.omega.map(|x| x * 0.1), ..state.base };
+            let start = Floating { pose: state.given().pose(), state };
+            let ends = [50_u32, 100, 200].map(|steps| start.after(&arm, steps, time / f64::from(steps)));
+            let mass = robot.floating_base.as_ref().map_or(0.0, |base| base.link.mass)
+                + robot.rows().map(|row| row.link.mass).sum::<f64>();
+            let before = start.momentum(&arm);
+            let error = |end: &Floating| {
+                let gained = end.momentum(&arm).into_iter().zip(&before).map(|(after, before)| after - before);
+                let weight = robot.gravity.iter().map(|g| mass * g * time).chain([0.0; 3]);
+                gained.zip(weight).map(|(gained, weight)| (gained - weight).abs()).fold(0.0, f64::max)
+            };
+            let of_momentum = (error(&ends[0]) / error(&ends[1])).log2();
+            let [first, second, third] = ends.each_ref().map(Floating::numbers);
+            let distance = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let order = (distance(&first, &second) / distance(&second, &third)).log2();
+            println!("{maker}, {name}: momentum {of_momentum:.3}, motion {order:.3}");
+            assert!((of_momentum - 1.0).abs() < 0.1 && (order - 1.0).abs() < 0.1, "{maker}, {name}");
+            let rotation = ends[2].pose.rotation_matrix();
+            let error = (rotation.transpose() * rotation - nalgebra::Matrix3::identity()).abs().max();
+            assert!(error < 1e-14 && rotation.determinant() > 0.0, "{maker}, {name}: {error:e}");
+        }
+    }
+}
+
+/// Two joints and one tip.
+#[derive(rne::FloatingBase, rne::FloatingEulerStep)]
+#[robot(path = "../../docs/satellite.yaml", form = "reduced")]
+struct Satellite;
+
+/// Many derived steps with a rotation matrix are those with a quaternion, by derived accelerations.
+#[test]
+fn derived_steps_with_a_matrix_are_those_with_a_quaternion() {
+    let State { q, qd, tau, wrench, base, .. } = State::random(5, 2);
+    let [q, qd, tau] = [q, qd, tau].map(|x| [x[0], x[1]]);
+    let pose = Pose { rotation: base_rotation(), translation: [0.3, -0.2, 0.1] };
+    let twist = BaseTwist { linear: [0.4, 0.7, -0.5], angular: base.omega.map(|x| 0.1 * x) };
+    let orientation = Quaternion::of_rotation(&pose.rotation);
+    let (mut matrix, step) = (FloatingNextState { pose, twist, q, qd }, 1e-3);
+    let mut quaternion = FloatingState { orientation, position: pose.translation, twist, q, qd };
+    for _ in 0..200 {
+        let FloatingNextState { pose, twist, q, qd } = matrix;
+        matrix = Satellite.floating_euler_step(&q, &qd, &tau, &pose, &twist, step, &[wrench]);
+        let next = FloatingIntegratorStep::<2, 8, 1>::floating_quaternion_step;
+        quaternion = next(&Satellite, &quaternion, &tau, &[wrench], &[0.0; 3], step);
+    }
+    for (found, expected) in [
+        (matrix.pose.rotation.as_flattened(), quaternion.orientation.rotation().as_flattened()),
+        (&matrix.pose.translation, &quaternion.position),
+        (&matrix.twist.linear, &quaternion.twist.linear),
+        (&matrix.twist.angular, &quaternion.twist.angular),
+        (&matrix.q, &quaternion.q),
+        (&matrix.qd, &quaternion.qd),
+    ] {
+        let error = error_on_scale(found, expected, 0.0);
+        assert!(error <= TOLERANCE, "{error:e}: {found:?} {expected:?}");
+    }
+}
+
+/// A step takes the error of a rotation away: what is left is its square.
+#[test]
+fn a_step_makes_a_rotation_orthogonal() {
+    let State { q, qd, tau, wrench, base, .. } = State::random(6, 2);
+    let [q, qd, tau] = [q, qd, tau].map(|x| [x[0], x[1]]);
+    let twist = BaseTwist { linear: base.velocity, angular: base.omega };
+    for error in [1e-4, -1e-4] {
+        let rotation = base_rotation::<f64>().map(|row| row.map(|x| x * (1.0 + error)));
+        let pose = Pose { rotation, translation: [0.0; 3] };
+        let next = Satellite.floating_euler_step(&q, &qd, &tau, &pose, &twist, 0.1, &[wrench]).pose.rotation_matrix();
+        let left = (next.transpose() * next - nalgebra::Matrix3::identity()).abs().max();
+        assert!(left < 4.0 * error * error, "{left:e}");
     }
 }
 

@@ -45,8 +45,17 @@ fn of_random_arms(form: Form, arms: u64, tolerance: f64) {
         let (q, qd, zeros) = (array(&mut rng), array(&mut rng), vec![0.0; robot.dof()]);
         let wrench = Wrench { force: triple(&mut rng), moment: triple(&mut rng) };
         let (payload, base) = (Payload::none(), BaseMotion::fixed([0.0; 3]));
-        let given =
-            Given { q: &q, qd: &qd, qdd: &zeros, tau: &zeros, wrench, payload, base, base_rotation: base_rotation() };
+        let given = Given {
+            q: &q,
+            qd: &qd,
+            qdd: &zeros,
+            tau: &zeros,
+            wrench,
+            payload,
+            base,
+            base_rotation: base_rotation(),
+            step: 0.5,
+        };
         // those of the list, and a link frame
         for frame in robot.frame_ids().take(4) {
             let at = robot.clone().at_frame(frame);

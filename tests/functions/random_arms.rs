@@ -14,7 +14,7 @@ use rne_codegen::{Form, Function, Program, Sizes};
 use rne_emit::Precision;
 use rne_model::Robot;
 
-use crate::arm::{Arm, Given, Maker};
+use crate::arm::{Arm, Given, Maker, STEP};
 use crate::arms;
 use crate::check::Worst;
 use crate::compiler::Compiler;
@@ -117,6 +117,7 @@ fn at<R>(state: &State, ask: impl FnOnce(&Given<'_, f64>) -> R) -> R {
         payload,
         base,
         base_rotation: rotation,
+        step: STEP,
     })
 }
 

@@ -7,7 +7,7 @@ use rne::{BaseMotion, Scalar, Wrench};
 use rne_codegen::Function;
 use rne_model::Robot;
 
-use crate::arm::{Arm, Given, Maker, base_rotation};
+use crate::arm::{Arm, Given, Maker, STEP, base_rotation};
 use crate::case::largest;
 use crate::check::ROOT;
 use crate::golden::ROBOTS;
@@ -50,7 +50,17 @@ impl State {
         let (wrench, payload) = (Wrench { force, moment }, states::payload(payload));
         arm.numbers(
             function,
-            &Given { q: &q, qd: &qd, qdd: &qdd, tau: &tau, wrench, payload, base, base_rotation: base_rotation() },
+            &Given {
+                q: &q,
+                qd: &qd,
+                qdd: &qdd,
+                tau: &tau,
+                wrench,
+                payload,
+                base,
+                base_rotation: base_rotation(),
+                step: T::from_f64(STEP),
+            },
         )
     }
 }

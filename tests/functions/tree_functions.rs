@@ -2,7 +2,7 @@
 //! with the mass matrix, by the solution of nalgebra.
 
 use fastrand::Rng;
-use nalgebra::{DMatrix, Matrix3, Vector3};
+use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3};
 use rne::{BaseMotion, Payload, Wrench};
 use rne_codegen::{Argument, Function};
 use rne_model::{Contact, FixedFrame, Robot};
@@ -42,7 +42,17 @@ impl State {
 
     pub(crate) fn given(&self) -> Given<'_, f64> {
         let Self { q, qd, qdd, tau, wrench, payload, base } = self;
-        Given { q, qd, qdd, tau, wrench: *wrench, payload: *payload, base: *base, base_rotation: base_rotation() }
+        Given {
+            q,
+            qd,
+            qdd,
+            tau,
+            wrench: *wrench,
+            payload: *payload,
+            base: *base,
+            base_rotation: base_rotation(),
+            step: STEP,
+        }
     }
 }
 
@@ -155,6 +165,24 @@ fn in_contact(robot: &Robot, state: &State) -> Vec<f64> {
     [&solution.as_slice()[..size], &wrenches].concat()
 }
 
+/// The state after a step: the base turns about ω by four times the arc tangent of h |ω| / 4.
+fn next_of_floating_base(robot: &Robot, state: &State) -> Vec<f64> {
+    let State { q, qd, base, .. } = state;
+    let accelerations = expected(robot, Function::FloatingForwardDynamics, state);
+    let (pose, place) = (state.given().pose(), |from: usize| Vector3::from_column_slice(&accelerations[from..][..3]));
+    let rotation = Matrix3::from(pose.rotation).transpose();
+    let omega = Vector3::from(base.omega) + place(3) * STEP;
+    let velocity = rotation * (Vector3::from(base.velocity) + place(0) * STEP) + Vector3::from(robot.gravity) * STEP;
+    let angle = 4.0 * (omega.norm() * STEP / 4.0).atan();
+    let turn = UnitQuaternion::from_scaled_axis(omega.normalize() * angle).to_rotation_matrix();
+    let turned = rotation * turn.matrix();
+    let origin = Vector3::from(pose.translation) + velocity * STEP;
+    let moved = |x: &[f64], by: &[f64]| x.iter().zip(by).map(|(x, by)| x + STEP * by).collect::<Vec<_>>();
+    let rates = moved(qd, &accelerations[6..]);
+    let of_base = [turned.transpose().as_slice(), origin.as_slice(), turned.tr_mul(&velocity).as_slice()].concat();
+    [of_base, omega.as_slice().to_vec(), moved(q, &rates), rates].concat()
+}
+
 /// The products of the rows of a matrix, which are as long as `x`, with it.
 fn times_rows(rows: &[f64], x: &[f64]) -> Vec<f64> {
     rows.chunks(x.len()).map(|row| row.iter().zip(x).map(|(a, b)| a * b).sum()).collect()
@@ -253,6 +281,7 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
             let right = DMatrix::from_fn(6 + dof, 1, |row, _| applied(row) - bias[row]);
             matrix.lu().solve(&right).map_or_else(|| vec![f64::NAN; 6 + dof], |x| x.as_slice().to_vec())
         }
+        Function::FloatingEulerStep => next_of_floating_base(robot, state),
         Function::ForwardDynamicsInContact => in_contact(robot, state),
         Function::CentroidalMomentumMatrix => {
             let columns = floating_mass_matrix(robot, q);
@@ -453,7 +482,7 @@ pub(crate) fn magnification(robot: &Robot, function: Function, state: &State, ex
     }
     let loaded = function.takes(Argument::Payload).then_some(&state.payload);
     let matrix = match function {
-        Function::FloatingForwardDynamics => floating_mass_matrix(robot, &state.q),
+        Function::FloatingForwardDynamics | Function::FloatingEulerStep => floating_mass_matrix(robot, &state.q),
         Function::ForwardDynamicsInContact => {
             let mass = floating_mass_matrix(robot, &state.q);
             conditioning(&mass)?;

@@ -153,6 +153,12 @@ macro_rules! returned {
         "A and B, of shape (2 n, 2 n) and (2 n, n), or (N, 2 n, 2 n) and (N, 2 n, n). `out` has their blocks: shape \
          (2, 3, n, n) or (N, 2, 3, n, n), of the positions and of the velocities, by q, by qd and by tau."
     };
+    (FloatingNextState) => {
+        "the pose after the step, a homogeneous matrix of shape (4, 4) or (N, 4, 4), the velocity of the base, linear \
+         then angular, of shape (6,) or (N, 6), and the positions and the velocities of the joints, of shape (n,) or \
+         (N, n); `out` is one array of shape (18 + 2 n,) or (N, 18 + 2 n). It begins with the rows of the rotation and \
+         the origin."
+    };
     (MomentumAndRate) => {
         "momentum and rate, two arrays of shape (n,) or (N, n); `out` is one array of shape (2, n) or (N, 2, n)."
     };
@@ -225,13 +231,25 @@ macro_rules! method {
     };
     // without wrenches no tip exerts anything
     (FloatingBias $name:ident (q: Positions, qd: Rates, omega: BaseVelocity, wrenches: Wrenches) $($rest:tt)*) => {
-        of_floating_base! { FloatingBias $name (q: Positions, qd: Rates) $($rest)* }
+        of_floating_base! { FloatingBias $name (q: Positions, qd: Rates, omega: BaseVelocity) $($rest)* }
     };
     (
         FloatingForwardDynamics $name:ident
             (q: Positions, qd: Rates, tau: Torques, omega: BaseVelocity, wrenches: Wrenches) $($rest:tt)*
     ) => {
-        of_floating_base! { FloatingForwardDynamics $name (q: Positions, qd: Rates, tau: Torques) $($rest)* }
+        of_floating_base! {
+            FloatingForwardDynamics $name (q: Positions, qd: Rates, tau: Torques, omega: BaseVelocity) $($rest)*
+        }
+    };
+    (
+        FloatingEulerStep $name:ident (
+            q: Positions, qd: Rates, tau: Torques, pose: BasePose, twist: BaseTwist, step: Step, wrenches: Wrenches
+        ) $($rest:tt)*
+    ) => {
+        of_floating_base! {
+            FloatingEulerStep $name
+                (q: Positions, qd: Rates, tau: Torques, pose: BasePose, twist: BaseTwist, step: Step) $($rest)*
+        }
     };
     (
         $variant:ident $name:ident
@@ -239,7 +257,7 @@ macro_rules! method {
             $($rest:tt)*
     ) => {
         of_floating_base! {
-            $variant $name (q: Positions, passive: Passive, qd: Rates, tau: Torques) $($rest)*
+            $variant $name (q: Positions, passive: Passive, qd: Rates, tau: Torques, omega: BaseVelocity) $($rest)*
         }
     };
     (
@@ -339,7 +357,7 @@ macro_rules! on_moving_base {
     };
 }
 
-/// A function of a base that turns and that nothing holds; without wrenches no tip exerts anything.
+/// A function of a base that moves and that nothing holds; without wrenches no tip exerts anything.
 macro_rules! of_floating_base {
     (
         $variant:ident $name:ident ($($argument:ident: $kind:ident),*) $returned:ident $summary:literal $details:literal
@@ -349,17 +367,14 @@ macro_rules! of_floating_base {
             #[doc = $summary]
             ///
             #[doc = $details]
-            /// `omega` has the shape (3,) or (N, 3).
-            ///
             #[doc = concat!($(about!($kind),)* about!(Wrenches))]
             #[doc = concat!("Without `wrenches` no tip exerts anything.\n\nReturns ", returned!($returned))]
-            #[pyo3(signature = ($($argument,)* omega, wrenches=None, *, parameters=None, out=None))]
+            #[pyo3(signature = ($($argument,)* wrenches=None, *, parameters=None, out=None))]
             #[allow(clippy::too_many_arguments)] // those of Python
             fn $name<'py>(
                 &self,
                 py: Python<'py>,
                 $($argument: &Bound<'py, PyAny>,)*
-                omega: &Bound<'py, PyAny>,
                 wrenches: Option<&Bound<'py, PyAny>>,
                 parameters: Option<&Bound<'py, PyAny>>,
                 out: Option<&Bound<'py, PyAny>>,
@@ -367,7 +382,6 @@ macro_rules! of_floating_base {
                 let nothing = PyDict::new(py).into_any();
                 let given = vec![
                     $(given!(self, $argument: $kind),)*
-                    Given { name: "omega", parts: &[], elements: 3, value: omega.clone() },
                     self.of_tips("wrenches", wrenches.unwrap_or(&nothing))?,
                 ];
                 self.compute(py, Function::$variant, given, parameters, out)

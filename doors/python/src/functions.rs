@@ -24,7 +24,7 @@ fn shape(function: Function, arm: &CompiledArm) -> Vec<usize> {
             // homogeneous matrices
             Layout::Record(Record::Pose, _) => shape.extend([4, 4]),
             // force, then moment
-            Layout::Record(Record::Wrench | Record::BaseAcceleration, _) => shape.push(6),
+            Layout::Record(Record::Wrench | Record::BaseAcceleration | Record::BaseTwist, _) => shape.push(6),
             Layout::Record(
                 Record::TorqueDerivatives
                 | Record::MomentumAndRate
@@ -38,6 +38,7 @@ fn shape(function: Function, arm: &CompiledArm) -> Vec<usize> {
                 | Record::NextState
                 | Record::StepDerivatives
                 | Record::NextStateDerivatives
+                | Record::FloatingNextState
                 | Record::ClosureStep,
                 parts,
             ) => {
@@ -55,6 +56,7 @@ fn shape(function: Function, arm: &CompiledArm) -> Vec<usize> {
         | Record::FloatingAccelerations
         | Record::AccelerationsAndWrenches
         | Record::FloatingTorqueDerivatives
+        | Record::FloatingNextState
         | Record::ClosureStep,
         _,
     ) = layout
@@ -141,6 +143,23 @@ fn of_last_axis<'py>(array: &Bound<'py, PyAny>, elements: Range<usize>) -> PyRes
     array.get_item(PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), slice])?)
 }
 
+/// The homogeneous matrix of a pose whose twelve numbers stand first in each result.
+fn homogeneous<'py, T: Element>(
+    result: &Bound<'py, PyArrayDyn<T>>,
+    many: Option<usize>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let (py, states) = (result.py(), Vec::from_iter(many));
+    let part = |elements, columns: usize| {
+        let rows = [&states[..], &[3, columns]].concat();
+        of_last_axis(result.as_any(), elements)?.call_method1("reshape", (rows,))
+    };
+    let above = py.import("numpy")?.call_method1("concatenate", ((part(0..9, 3)?, part(9..12, 1)?), -1))?;
+    let widths: Vec<[usize; 2]> = states.iter().map(|_| [0, 0]).chain([[0, 1], [0, 0]]).collect();
+    let matrix = py.import("numpy")?.call_method1("pad", (above, widths))?;
+    matrix.set_item((PyEllipsis::get(py), 3, 3), 1.0)?;
+    Ok(matrix)
+}
+
 /// The array of all results as the user has them: records are tuples of arrays.
 fn as_python<'py, T: Element>(
     arm: &CompiledArm,
@@ -183,6 +202,13 @@ fn as_python<'py, T: Element>(
                 of_last_axis(result.as_any(), joints..joints + 6 * tips)?.call_method1("reshape", (rows,))?;
             let [base, accelerations] = [0..6, 6..joints].map(|part| of_last_axis(result.as_any(), part));
             Ok(PyTuple::new(py, [base?, accelerations?, wrenches])?.into_any())
+        }
+        Layout::Record(Record::FloatingNextState, _) => {
+            let dof = arm.dof();
+            let parts = [12..18, 18..18 + dof, 18 + dof..18 + 2 * dof].map(|part| of_last_axis(result.as_any(), part));
+            let [twist, positions, velocities] = parts;
+            let pose = homogeneous(&result, many)?;
+            Ok(PyTuple::new(py, [pose, twist?, positions?, velocities?])?.into_any())
         }
         // A and B, of the blocks by q, by q̇ and by τ of the positions, then of the velocities
         Layout::Record(Record::NextStateDerivatives, _) => {

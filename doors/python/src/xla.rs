@@ -77,7 +77,9 @@ pub(crate) fn results(arm: &CompiledArm, function: Function) -> Vec<(Vec<usize>,
                 vec![([&[*length], &shape[..]].concat(), *is_pose)]
             }
             Layout::Record(Record::Pose, _) => vec![(vec![], true)],
-            Layout::Record(Record::Wrench | Record::BaseAcceleration, _) => vec![(vec![layout.len()], false)],
+            Layout::Record(Record::Wrench | Record::BaseAcceleration | Record::BaseTwist, _) => {
+                vec![(vec![layout.len()], false)]
+            }
             Layout::Record(_, parts) => parts.iter().flat_map(of).collect(),
         }
     }

@@ -131,3 +131,34 @@ def test_a_state_alone_is_the_same_among_many():
         for state in (0, N - 1):
             one = getattr(ARM, function)(*(argument[state] for argument in arguments))
             assert np.shape(one) == shape and np.array_equal(one, many[state]), function
+
+
+def test_a_step_moves_the_base_by_its_velocities():
+    pose, step = poses(), 0.01
+    # rotations
+    pose[:, :3, :3] *= np.linalg.det(pose[:, :3, :3])[:, None, None]
+    given = (q, qd, tau, pose, TWIST, step)
+    found, twist, positions, rates = ARM.floating_euler_step(*given)
+    base, accelerations = ARM.floating_forward_dynamics(q, qd, tau, omega)
+    rotation, next_rotation = pose[:, :3, :3], found[:, :3, :3]
+    in_world = times(rotation, velocity + step * base[:, :3]) + step * np.array(ARM.gravity)
+    close(times(next_rotation, twist[:, :3]), in_world)
+    close(found[:, :3, 3], pose[:, :3, 3] + step * in_world)
+    assert np.array_equal(found[:, 3], np.tile([0, 0, 0, 1], (N, 1)))
+    turning = omega + step * base[:, 3:]
+    close(twist[:, 3:], turning)
+    # Rodrigues
+    axis = turning / np.linalg.norm(turning, axis=1)[:, None]
+    angle = 4 * np.arctan(step * np.linalg.norm(turning, axis=1) / 4)[:, None, None]
+    cross = np.cross(axis[:, None, :], np.eye(3)).transpose(0, 2, 1)
+    turn = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    close(next_rotation, rotation @ turn)
+    close(rates, qd + step * accelerations)
+    close(positions, q + step * rates)
+    numbers = np.empty((N, 18 + 2 * ARM.dof))
+    ARM.floating_euler_step(*given, out=numbers)
+    flat = [next_rotation.reshape(N, 9), found[:, :3, 3], twist, positions, rates]
+    assert np.array_equal(numbers, np.concatenate(flat, axis=1))
+    alone = ARM.floating_euler_step(q[3], qd[3], tau[3], pose[3], TWIST[3], step, None)
+    for part, many in zip(alone, (found, twist, positions, rates)):
+        assert part.shape == many.shape[1:] and np.array_equal(part, many[3])

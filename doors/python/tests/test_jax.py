@@ -126,11 +126,14 @@ def test_functions_of_a_floating_base_and_of_trees_give_the_numbers_of_the_arm()
     functions, random = arm.jax(), np.random.default_rng(4)
     q, qd, qdd = states(arm, 4)
     omega, wrenches = random.normal(size=(4, 3)), random.normal(size=(4, len(arm.tips), 6))
+    pose, twist = np.tile(np.eye(4), (4, 1, 1)), random.normal(size=(4, 6))
     for found, expected in [
         (functions.floating_forward_dynamics(q, qd, qdd, omega, wrenches),
          arm.floating_forward_dynamics(q, qd, qdd, omega, wrenches)),
         (functions.inverse_dynamics_with_wrenches(q, qd, qdd, wrenches),
          arm.inverse_dynamics_with_wrenches(q, qd, qdd, wrenches)),
+        (functions.floating_euler_step(q, qd, qdd, pose, twist, 0.01, wrenches),
+         arm.floating_euler_step(q, qd, qdd, pose, twist, 0.01, wrenches)),
     ]:
         pairs = zip(found, expected) if isinstance(expected, tuple) else [(found, expected)]
         for one, other in pairs:

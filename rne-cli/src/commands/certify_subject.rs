@@ -334,7 +334,7 @@ fn program_call(program: &Program, prefix: &str, passive: &[f32]) -> Result<Call
                 call.before.push(format!("const float twist[6] = {{{}}};", numbers(&twist)));
                 ("const float *", "twist")
             }
-            // only an energy takes it, which is no array
+            // an energy takes it and a step, which are no arrays
             Argument::BasePose => return Err(not_called(program)),
             Argument::BaseVelocity => {
                 call.before.push(format!("const float omega[3] = {{{}}};", numbers(&accuracy::BASE[0])));

@@ -60,7 +60,7 @@ pub(crate) struct Arguments {
     /// Joint torques for forward_dynamics, N m or N
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     tau: Option<List>,
-    /// Duration of the step for euler_step, s
+    /// Duration of the step of an integrator, s
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = duration())]
     duration: Option<List>,
     /// Multipliers for torque_gradient, torque_hessian

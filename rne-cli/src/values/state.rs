@@ -3,9 +3,9 @@
 use std::str::FromStr;
 
 use rne::{
-    BaseAcceleration, BaseMotion, BaseTwist, DynAccelerationDerivatives, DynArm, DynFloatingTorqueDerivatives,
-    DynNextState, DynNextStateDerivatives, DynStepDerivatives, DynTorqueDerivatives, DynTorqueGradient,
-    DynTorqueHessian, Payload, Pose, Quaternion, Wrench, WrongLength,
+    BaseAcceleration, BaseMotion, BaseTwist, DynAccelerationDerivatives, DynArm, DynFloatingNextState,
+    DynFloatingTorqueDerivatives, DynNextState, DynNextStateDerivatives, DynStepDerivatives, DynTorqueDerivatives,
+    DynTorqueGradient, DynTorqueHessian, Payload, Pose, Quaternion, Wrench, WrongLength,
 };
 use rne_codegen::{Argument, Capability, Function};
 use rne_model::{Robot, nearest_name};
@@ -318,7 +318,8 @@ records! {
     BaseAcceleration { linear, angular } DynFloatingTorqueDerivatives { dq, dqd, domega }
     DynTorqueGradient { dq, dqd, dqdd } DynAccelerationDerivatives { dq, dqd, dtau }
     DynTorqueHessian { dq_dq, dq_dqd, dqd_dqd, dq_dqdd } DynNextState { q, qd }
-    DynStepDerivatives { dq, dqd, dtau } DynNextStateDerivatives { q, qd }
+    DynStepDerivatives { dq, dqd, dtau } DynNextStateDerivatives { q, qd } BaseTwist { linear, angular }
+    DynFloatingNextState { pose, twist, q, qd }
 }
 
 /// Positions of the dependent joints of closed loops: those that close the loops, from the given ones. A Newton step

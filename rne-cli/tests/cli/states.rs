@@ -65,6 +65,8 @@ fn flat(value: &Value, numbers: &mut Vec<f64>) {
         // in their order, which is not that of their names
         Value::Object(parts) => {
             let names = [
+                "pose",
+                "twist",
                 "q",
                 "qd",
                 "rotation",
@@ -97,7 +99,8 @@ fn single(robot: &str, function: Function, columns: &[String], state: &[f64]) ->
         let is_of = |column: &&String| {
             column.strip_prefix(prefix).is_some_and(|rest| {
                 let is_axis = ["_x", "_y", "_z", "x", "y", "z"].contains(&rest);
-                rest.is_empty() || rest.parse::<usize>().is_ok() || is_axis || prefix == "base_rotation"
+                let is_whole = rest.is_empty() && prefix == "step";
+                is_whole || rest.parse::<usize>().is_ok() || is_axis || prefix == "base_rotation"
             })
         };
         let numbers: Vec<String> = columns

@@ -402,7 +402,7 @@ pub(crate) fn identity(builder: &Builder) -> Matrix<'_> {
 }
 
 /// Gravity in frame 0. The trace records that a zero component is due to the direction of gravity.
-fn gravity<'s>(builder: &'s Builder, robot: &Robot) -> Vector<'s> {
+pub(crate) fn gravity<'s>(builder: &'s Builder, robot: &Robot) -> Vector<'s> {
     let [x, y, z] = robot.gravity;
     let component = |axis: Axis, value| {
         let written = robot.run_time.formula(Entry::Gravity(axis as usize));

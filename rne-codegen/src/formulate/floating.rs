@@ -2,12 +2,18 @@
 
 use crate::coordinates::Coordinates;
 use crate::formulate::ldlt::{self, System};
-use crate::formulate::{Outputs, components, square};
+use crate::formulate::{Frame, Outputs, components, square};
 use crate::ir::{Axis, Builder, Matrix, Name, Quantity, Symbol, Vector, WithRespectTo};
 
 /// The rotation of the base: an argument.
 pub(crate) fn base_rotation(builder: &Builder) -> Matrix<'_> {
     Matrix::from_elements(Name::of_base_rotation().map(|name| builder.argument(name)))
+}
+
+/// The pose of the base: an argument.
+pub(crate) fn pose_of_base(builder: &Builder) -> Frame<'_> {
+    let [rotation @ .., x, y, z] = Name::of_pose().map(|name| builder.argument(name));
+    Frame { rotation: Matrix::from_elements(rotation), origin: Vector([x, y, z]) }
 }
 
 /// The force and the moment on a base that nothing holds.

@@ -1,8 +1,22 @@
 //! The step of the semi-implicit Euler method, and its derivatives: q̇' = q̇ + h q̈, then q' = q + h q̇'.
+//!
+//! A base that nothing holds has the pose R, p in the world. Its velocity v, its angular velocity ω and their rates a
+//! (less gravity) and ω̇ are in axes of frame 0, gravity g is in those of the world:
+//!
+//! ```text
+//! ω' = ω + h ω̇;  w = R (v + h a) + h g;  p' = p + h w
+//! u = h ω' / 4;  s = u·u;  E: the rotation of the unit quaternion (1 - s, 2 u) / (1 + s)
+//! B = R E;  R' = B (3 - Bᵀ B) / 2;  v' = R'ᵀ w
+//! ```
+//!
+//! All of it is rational. R' is a step of Newton's method towards the rotation next to B, so that rounding does not
+//! gather over many steps.
+
+use std::array::from_fn;
 
 use crate::coordinates::Coordinates;
-use crate::formulate::{Outputs, square};
-use crate::ir::{Builder, Name, Quantity, Symbol, WithRespectTo};
+use crate::formulate::{Frame, Outputs, components, pose_of_base, square, vector};
+use crate::ir::{Axis, Builder, Cause, Matrix, Name, Quantity, Symbol, Vector, WithRespectTo};
 
 /// The duration h.
 pub(crate) fn duration(builder: &Builder) -> Symbol<'_> {
@@ -13,7 +27,7 @@ pub(crate) fn duration(builder: &Builder) -> Symbol<'_> {
 pub(crate) fn euler_step<'s>(
     builder: &'s Builder,
     coordinates: &Coordinates,
-    accelerations: &Outputs<'s>,
+    accelerations: &[(Name, Symbol<'s>)],
 ) -> Outputs<'s> {
     let step = duration(builder);
     let (mut positions, mut rates) = (Vec::new(), Vec::new());
@@ -26,6 +40,67 @@ pub(crate) fn euler_step<'s>(
         rates.push((Name::scalar(Quantity::NextRate, joint + 1), rate));
     }
     [positions, rates].concat()
+}
+
+/// The pose, the velocity and the angular velocity of a base that nothing holds after a step, then the positions and
+/// the velocities of the joints; by the accelerations of the base, less gravity, and of the coordinates.
+pub(crate) fn floating_euler_step<'s>(
+    builder: &'s Builder,
+    coordinates: &Coordinates,
+    gravity: Vector<'s>,
+    accelerations: &Outputs<'s>,
+) -> Outputs<'s> {
+    let (of_base, of_joints) = accelerations.split_at(6);
+    let [linear, angular] = [0, 3].map(|from| Vector(from_fn(|axis| of_base[from + axis].1)));
+    let [velocity, omega] = [Quantity::OriginVelocity, Quantity::Omega].map(|quantity| vector(builder, quantity, 0));
+    let Frame { rotation, origin } = pose_of_base(builder);
+    let (line, step) = (builder.joint(0), duration(builder));
+    let moved = |x: Vector<'s>, change: Vector<'s>| x + change * step;
+    let omega = line.vector(Quantity::NextOmega, || moved(omega, angular));
+    let in_world = line.within(Quantity::NextOrigin, || moved(rotation * moved(velocity, linear), gravity));
+    let origin = line.vector(Quantity::NextOrigin, || moved(origin, in_world));
+    let rotation =
+        line.matrix(Quantity::NextRotation, || next_to(builder, rotation * turned_by(builder, omega * step)));
+    let velocity = line.vector(Quantity::NextVelocity, || rotation.transpose() * in_world);
+    let mut outputs = Outputs::new();
+    for (row, elements) in Axis::ALL.into_iter().zip(rotation.0) {
+        let name = |column| Name::matrix(Quantity::NextRotation, 0, row, column);
+        outputs.extend(Axis::ALL.into_iter().zip(elements.0).map(|(column, element)| (name(column), element)));
+    }
+    let parts = [(Quantity::NextOrigin, origin), (Quantity::NextVelocity, velocity), (Quantity::NextOmega, omega)];
+    outputs.extend(parts.into_iter().flat_map(|(part, vector)| components(Name::scalar(part, 0), vector)));
+    outputs.extend(euler_step(builder, coordinates, of_joints));
+    outputs
+}
+
+/// The rotation by which a frame turns in a step; `angle` is h ω.
+fn turned_by<'s>(builder: &'s Builder, angle: Vector<'s>) -> Matrix<'s> {
+    let one = builder.entry(Name::scalar(Quantity::One, 0), 1.0);
+    let u = angle * builder.constant(0.25, Cause::Arithmetic);
+    let inverse = builder.quotient(one, one + u.dot(u));
+    let factor = inverse + inverse;
+    // the unit quaternion
+    let (w, vector) = (factor - one, u * factor);
+    let ([x, y, z], [x2, y2, z2]) = (vector.0, (vector + vector).0);
+    let ([xx, yy, zz], [xy, xz, yz], [wx, wy, wz]) =
+        ([x2 * x, y2 * y, z2 * z], [x2 * y, x2 * z, y2 * z], [x2 * w, y2 * w, z2 * w]);
+    Matrix::from_rows([
+        [one - (yy + zz), xy - wz, xz + wy],
+        [xy + wz, one - (xx + zz), yz - wx],
+        [xz - wy, yz + wx, one - (xx + yy)],
+    ])
+}
+
+/// The rotation next to a matrix that is one but for rounding.
+fn next_to<'s>(builder: &'s Builder, near: Matrix<'s>) -> Matrix<'s> {
+    let half = builder.entry(Name::scalar(Quantity::Half, 0), 0.5);
+    let on_diagonal = builder.constant(1.5, Cause::Arithmetic);
+    let columns = near.transpose().0;
+    let element = |row: usize, column: usize| {
+        let product = columns[row.min(column)].dot(columns[row.max(column)]) * half;
+        if row == column { on_diagonal - product } else { -product }
+    };
+    near * Matrix::from_rows(from_fn(|row| from_fn(|column| element(row, column))))
 }
 
 /// The derivatives of the next positions by q, by q̇ and by τ, then those of the next velocities. `by_state` are those

@@ -25,7 +25,7 @@ pub(crate) use arm::{Arm, Body, Link, Mount};
 pub(crate) use closure::Closure;
 pub(crate) use contact::Contacts;
 pub(crate) use floating::{
-    base_rotation, floating_derivatives, floating_forward_dynamics, floating_mass_matrix, on_base,
+    base_rotation, floating_derivatives, floating_forward_dynamics, floating_mass_matrix, on_base, pose_of_base,
     sensitivity_of_floating_base,
 };
 pub(crate) use joint::{Joint, JointState, Wrench};
@@ -43,7 +43,7 @@ use crate::coordinates::{Coordinates, scaled};
 use crate::formulate::ldlt::System;
 use crate::formulate::mass_matrix::OfBase;
 use crate::function::{Argument, Function};
-use crate::ir::{Axis, Builder, Cause, Component, Matrix, Name, Quantity, Ref, Symbol, Vector, WithRespectTo};
+use crate::ir::{Axis, Builder, Cause, Component, Name, Quantity, Ref, Symbol, Vector, WithRespectTo};
 
 /// The results of a function of a robot, by name, in the order of its layout. Zeros of the function are put in before
 /// anything is folded.
@@ -97,11 +97,14 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::FloatingMassMatrix | Function::FloatingMassMatrixOfLoops => {
             floating_mass_matrix(builder, &derivation.system(), &derivation.floating_half())
         }
-        Function::FloatingForwardDynamics | Function::FloatingForwardDynamicsOfLoops => floating_forward_dynamics(
+        Function::FloatingForwardDynamics | Function::FloatingForwardDynamicsOfLoops => {
+            derivation.floating_accelerations()
+        }
+        Function::FloatingEulerStep => integrator::floating_euler_step(
             builder,
-            &derivation.system(),
-            &derivation.floating_half(),
-            derivation.floating_torques(),
+            derivation.coordinates(),
+            derivation.arm.gravity,
+            &derivation.floating_accelerations(),
         ),
         Function::CentroidalMomentumMatrix => {
             centroid::momentum_matrix(builder, &derivation.system(), &derivation.of_base().0)
@@ -216,9 +219,10 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let base = if function.takes(Argument::Base) {
             let motion = [Quantity::Omega, Quantity::OmegaDot, Quantity::Acceleration];
             Motion::of_base(&arm, motion.map(|quantity| vector(quantity, 0)), vector(Quantity::Gravity, 0))
-        } else if function.takes(Argument::BaseTwist) {
+        } else if function.takes(Argument::BaseTwist) && !function.takes(Argument::Step) {
             Motion::of_twist(&arm, [Quantity::OriginVelocity, Quantity::Omega].map(|quantity| vector(quantity, 0)))
-        } else if function.takes(Argument::BaseVelocity) {
+        } else if function.takes(Argument::BaseVelocity) || function.takes(Argument::BaseTwist) {
+            // accelerations do not depend on the linear velocity
             let nothing = builder.zeros(Cause::NoAcceleration);
             Motion::of_base(&arm, [vector(Quantity::Omega, 0), nothing, nothing], builder.zeros(Cause::NoAcceleration))
         } else {
@@ -278,6 +282,11 @@ impl<'s, 'r> Derivation<'s, 'r> {
     /// The coordinates and links of a mass matrix that is solved by.
     fn system(&self) -> System<'_> {
         System::new(self.builder.function, self.coordinates(), self.arm.links.iter().map(|link| link.parent))
+    }
+
+    /// The accelerations of a base that nothing holds and of the joints, by the torques.
+    fn floating_accelerations(&self) -> Outputs<'s> {
+        floating_forward_dynamics(self.builder, &self.system(), &self.floating_half(), self.floating_torques())
     }
 
     /// The upper half of M with the rows of a base that nothing holds.
@@ -386,9 +395,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
     }
 
     fn floating_potential_energy(&self) -> Outputs<'s> {
-        let [rows @ .., x, y, z] = Name::of_pose().map(|name| self.builder.argument(name));
-        let rotation = Matrix::from_rows([0, 3, 6].map(|row| [rows[row], rows[row + 1], rows[row + 2]]));
-        let pose = Frame { rotation, origin: Vector([x, y, z]) };
+        let pose = pose_of_base(self.builder);
         let energy = energy::floating_potential(&self.arm, &pose, &self.frames_in_frame_0(), &self.centres());
         vec![(Name::scalar(Quantity::PotentialEnergy, 0), energy)]
     }

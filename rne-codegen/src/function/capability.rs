@@ -66,6 +66,8 @@ named! {
         EulerStep = "EulerStep",
         /// Its derivatives.
         EulerStepDerivatives = "EulerStepDerivatives",
+        /// A step of this method where nothing holds the base.
+        FloatingEulerStep = "FloatingEulerStep",
     }
 }
 

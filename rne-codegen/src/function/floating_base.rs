@@ -275,4 +275,47 @@ pub(super) const FLOATING_BASE: &[Entry] = &[
         ]),
         ..Entry::of(Function::FloatingInverseDynamicsDerivatives, Capability::FloatingInverseDynamicsDerivatives)
     },
+    Entry {
+        output: "next",
+        listed: "returned: pose, velocity and angular velocity of the base after the step, then the positions and the \
+                 velocities of the joints",
+        own: &[
+            Own::names(
+                Quantity::FrameRotation,
+                "rotation of the base: its columns are the axes of frame 0 in the world",
+            ),
+            Own::names(Quantity::FrameOrigin, "origin of frame 0 in the world"),
+            Own::names(Quantity::OriginVelocity, "velocity of the origin of frame 0, in its axes"),
+            Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
+            Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
+            Own::of(Quantity::NextOmega, |_| "angular velocity of the base after the step".to_owned()),
+            Own::of(Quantity::NextOrigin, |_| "origin of frame 0 after the step".to_owned()),
+            Own::of(Quantity::NextRotation, |_| "rotation of the base after the step".to_owned()),
+            Own::of(Quantity::NextVelocity, |_| "velocity of the origin of frame 0 after the step".to_owned()),
+            Own::of(Quantity::NextRate, |joint| format!("velocity of joint {joint} after the step")),
+            Own::of(Quantity::NextPosition, |joint| format!("position of joint {joint} after the step")),
+        ],
+        answer: Answer::Tables(&[
+            AnswerTable::of("rotation of the base after the step: the columns are the axes of frame 0", AXES, AXES),
+            AnswerTable::of("origin of frame 0 after the step, in the world (m)", Labels::Names(&["origin"]), AXES),
+            AnswerTable::of("velocity of this origin (m/s), in axes of frame 0", Labels::Names(&["linear"]), AXES),
+            AnswerTable::of(
+                "angular velocity of the base (rad/s), in axes of frame 0",
+                Labels::Names(&["angular"]),
+                AXES,
+            ),
+            AnswerTable::of(
+                "position (rad, prismatic: m) and velocity (rad/s, prismatic: m/s) of each joint after the step",
+                Labels::Names(&["q", "qd"]),
+                Labels::Joints,
+            ),
+        ]),
+        divides: Some(
+            "the result of the step is not finite: the mass matrix is singular \
+             (a joint or the base moves no mass), or the state is too large",
+        ),
+        inverts_mass: true,
+        feels_rotors: true,
+        ..Entry::of(Function::FloatingEulerStep, Capability::FloatingEulerStep)
+    },
 ];

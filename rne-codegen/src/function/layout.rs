@@ -27,6 +27,7 @@ const ACCELERATIONS: Shape = Shape::Record(Record::FloatingAccelerations, &[BASE
 const ROWS_BY_JOINT: Shape = Shape::Array(Length::Velocities, &VECTOR);
 const PASSIVE: Shape = Shape::Array(Length::Passive, &Shape::Number);
 const POSE: Shape = Shape::Record(Record::Pose, &[Shape::Array(Length::Fixed(3), &TRIPLE), TRIPLE]);
+const TWIST: Shape = Shape::Record(Record::BaseTwist, &[TRIPLE, TRIPLE]);
 
 /// The shapes of results, by the names that they have in the list of functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,6 +96,8 @@ pub enum Returned {
     NextState,
     /// Twice three matrices.
     NextStateDerivatives,
+    /// A pose, a linear and an angular velocity, and two vectors.
+    FloatingNextState,
 }
 
 impl Returned {
@@ -140,6 +143,7 @@ impl Returned {
             Self::NextStateDerivatives => {
                 &Shape::Record(Record::NextStateDerivatives, &[BY_STATE_AND_TORQUES, BY_STATE_AND_TORQUES])
             }
+            Self::FloatingNextState => &Shape::Record(Record::FloatingNextState, &[POSE, TWIST, VECTOR, VECTOR]),
             Self::AccelerationsAndWrenches => {
                 &Shape::Record(Record::AccelerationsAndWrenches, &[ACCELERATIONS, Shape::Array(Length::Tips, &WRENCH)])
             }
@@ -277,6 +281,10 @@ pub enum Record {
     StepDerivatives,
     /// Derivatives of the positions and of the velocities after a step.
     NextStateDerivatives,
+    /// Linear and angular.
+    BaseTwist,
+    /// Pose and velocity of the base, positions and velocities of the joints after a step.
+    FloatingNextState,
 }
 
 impl Record {
@@ -300,6 +308,8 @@ impl Record {
             Self::NextState => "NextState",
             Self::StepDerivatives => "StepDerivatives",
             Self::NextStateDerivatives => "NextStateDerivatives",
+            Self::BaseTwist => "BaseTwist",
+            Self::FloatingNextState => "FloatingNextState",
         }
     }
 
@@ -312,7 +322,7 @@ impl Record {
             Self::TorqueDerivatives => &["dq", "dqd"],
             Self::MomentumAndRate => &["momentum", "rate"],
             Self::FloatingTorques => &["wrench", "tau"],
-            Self::BaseAcceleration => &["linear", "angular"],
+            Self::BaseAcceleration | Self::BaseTwist => &["linear", "angular"],
             Self::FloatingAccelerations => &["base", "qdd"],
             Self::AccelerationsAndWrenches => &["accelerations", "wrenches_on_robot"],
             Self::FloatingTorqueDerivatives => &["dq", "dqd", "domega"],
@@ -321,6 +331,7 @@ impl Record {
             Self::AccelerationDerivatives | Self::StepDerivatives => &["dq", "dqd", "dtau"],
             Self::NextState | Self::NextStateDerivatives => &["q", "qd"],
             Self::TorqueHessian => &["dq_dq", "dq_dqd", "dqd_dqd", "dq_dqdd"],
+            Self::FloatingNextState => &["pose", "twist", "q", "qd"],
         }
     }
 }

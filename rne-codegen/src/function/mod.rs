@@ -180,7 +180,8 @@ impl Function {
     /// Whether it is a function of a robot whose base nothing holds.
     #[must_use]
     pub const fn is_of_floating_base(self) -> bool {
-        self.capability().has_velocities() || matches!(self.capability(), Capability::FloatingEnergy)
+        self.capability().has_velocities()
+            || matches!(self.capability(), Capability::FloatingEnergy | Capability::FloatingEulerStep)
     }
 
     /// Whether it is a function of a robot with closed loops.

@@ -373,6 +373,17 @@ macro_rules! functions {
                 "q.dq[i][j], q.dqd[i][j], q.dtau[i][j]: of position i after the step, by joint j; qd.dq and so on: of \
                  velocity i after the step. With the state x = (q, q̇), the matrices A and B of δx' = A δx + B δτ are \
                  made of these blocks.";
+            FloatingEulerStep = floating_euler_step(
+                q: Positions, qd: Rates, tau: Torques, pose: BasePose, twist: BaseTwist, step: Step, wrenches: Wrenches
+            ) -> FloatingNextState:
+                "A step of the semi-implicit Euler method where nothing holds the base: the state after it.",
+                "pose: of frame 0 in the world, in whose axes the robot file has gravity. twist: as in \
+                 floating_kinetic_energy. step: as in euler_step. wrenches: as in inverse_dynamics_with_wrenches; they \
+                 do not change during the step. The velocities come first, by the accelerations of \
+                 floating_forward_dynamics; then the origin of frame 0, the base and the joints move with the new \
+                 ones. The base turns by the unit quaternion (1 - s, 2 u) / (1 + s) with u = h omega / 4 and s = u·u. \
+                 The rotation after the step is orthogonal to rounding, however many steps came before. A base without \
+                 mass gives numbers that mean nothing or are not finite.";
         }
     };
 }

@@ -2,6 +2,7 @@
 
 use rne_model::Robot;
 
+use crate::formulate::arm::gravity;
 use crate::formulate::ldlt::System;
 use crate::formulate::mass_matrix::OfBase;
 use crate::formulate::{self, Closure, Contacts, Outputs, adjoint, centroid, contact, integrator, square, torque_by};
@@ -100,12 +101,14 @@ impl Algorithm {
             | Function::ForwardDynamicsDerivativesWithWrenches
             | Function::ForwardDynamicsDerivativesWithPayload
             | Function::EulerStepDerivatives => &[BY_GROUPS, BY_JOINTS],
-            Function::ForwardDynamicsWithPayload | Function::FloatingForwardDynamics => &[
-                BY_GROUPS,
-                BY_JOINTS,
-                Algorithm::Aba(ExpressedIn::GroupFrame),
-                Algorithm::Aba(ExpressedIn::JointFrame),
-            ],
+            Function::ForwardDynamicsWithPayload | Function::FloatingForwardDynamics | Function::FloatingEulerStep => {
+                &[
+                    BY_GROUPS,
+                    BY_JOINTS,
+                    Algorithm::Aba(ExpressedIn::GroupFrame),
+                    Algorithm::Aba(ExpressedIn::JointFrame),
+                ]
+            }
             Function::ForwardDynamics | Function::InverseMassMatrixTimesTorques | Function::EulerStep => &[
                 BY_GROUPS,
                 BY_JOINTS,
@@ -205,6 +208,17 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
         Some(of_base?.gathered(coordinates).above(builder, coordinates.upper_half(builder, joints)))
     };
     let of_base = || Some(crba::mass_matrix(arm).1?.gathered(coordinates));
+    let floating_accelerations = || {
+        let Algorithm::Aba(_) = algorithm else {
+            let (half, bias) = (floating_half()?, of_floating_base());
+            return Some(formulate::floating_forward_dynamics(builder, &system(), &half, bias));
+        };
+        let (of_base, of_joints) = aba::forward_dynamics(arm);
+        let [linear, angular] = of_base?;
+        let of_base = linear.0.into_iter().chain(angular.0).enumerate();
+        let named = of_base.map(|(row, x)| (system().name(Quantity::RateDot, row), x)).collect();
+        Some([named, by_joint(Quantity::RateDot, of_joints)].concat())
+    };
     let named = |name: Name, symbol: Symbol<'s>| (name, builder.name(name, symbol));
     Some(match (builder.function, algorithm) {
         (Function::GravityTorques | Function::GravityTorquesWithPayload, Algorithm::Crba(_)) => {
@@ -345,15 +359,10 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
         (Function::FloatingMassMatrix | Function::FloatingMassMatrixOfLoops, _) => {
             formulate::floating_mass_matrix(builder, &system(), &floating_half()?)
         }
-        (Function::FloatingForwardDynamics, Algorithm::Aba(_)) => {
-            let (of_base, of_joints) = aba::forward_dynamics(arm);
-            let [linear, angular] = of_base?;
-            let of_base = linear.0.into_iter().chain(angular.0).enumerate();
-            let named = of_base.map(|(row, x)| (system().name(Quantity::RateDot, row), x)).collect();
-            [named, by_joint(Quantity::RateDot, of_joints)].concat()
-        }
-        (Function::FloatingForwardDynamics | Function::FloatingForwardDynamicsOfLoops, _) => {
-            formulate::floating_forward_dynamics(builder, &system(), &floating_half()?, of_floating_base())
+        (Function::FloatingForwardDynamics | Function::FloatingForwardDynamicsOfLoops, _) => floating_accelerations()?,
+        (Function::FloatingEulerStep, _) => {
+            let gravity = builder.unnamed(|| gravity(builder, robot));
+            integrator::floating_euler_step(builder, coordinates, gravity, &floating_accelerations()?)
         }
         (Function::ForwardDynamicsInContact, _) => {
             let contacts = Contacts::new(builder, robot);

@@ -263,6 +263,13 @@ const fn about(record: Record) -> &'static str {
              velocity i, column j is joint j."
         }
         Record::NextStateDerivatives => "Derivatives of the positions and of the velocities after a step.",
+        Record::BaseTwist => {
+            "Velocity of the origin of frame 0, m/s, and angular velocity of the base, rad/s, in its axes."
+        }
+        Record::FloatingNextState => {
+            "Pose and velocity of the base, positions, rad or m, and velocities, rad/s or m/s, of the joints after a \
+             step."
+        }
         Record::TorqueDerivatives => "Torques by positions and by velocities; row i is torque i, column j is joint j.",
     }
 }

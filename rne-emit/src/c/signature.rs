@@ -115,6 +115,8 @@ pub fn record_name(prefix: &str, record: Record) -> String {
         Record::NextState => "next_state",
         Record::StepDerivatives => "step_derivatives",
         Record::NextStateDerivatives => "next_state_derivatives",
+        Record::BaseTwist => "base_twist",
+        Record::FloatingNextState => "floating_next_state",
     };
     format!("{prefix}_{name}")
 }

@@ -436,6 +436,11 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
         """Derivatives of `euler_step` by q, by q̇ and by τ: the linear model of a step."""
+    def floating_euler_step(
+        self, q: Joints, qd: Joints, tau: Joints, pose: ArrayLike, twist: ArrayLike, step: ArrayLike, wrenches: ArrayLike | dict[str, ArrayLike] | None = ..., *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats, Floats, Floats]:
+        """A step of the semi-implicit Euler method where nothing holds the base: the state after it."""
     # <!-- end -->
     def runge_kutta_step(
         self, q: Joints, qd: Joints, tau: Joints, step: ArrayLike, *, steps: int = ...,

@@ -1,0 +1,165 @@
+//! The step of the semi-implicit Euler method of a robot whose base nothing holds, with the rotation of the base as a
+//! matrix.
+
+use core::array::from_fn;
+
+#[cfg(feature = "arm")]
+use rne_model::FixedFrame;
+
+#[cfg(feature = "arm")]
+use crate::floating_integrator::moved;
+#[cfg(feature = "arm")]
+use crate::pose_log::{dot, times, transposed};
+#[cfg(feature = "arm")]
+use crate::{Arm, BaseAcceleration, Constant};
+use crate::{BaseTwist, Pose, Scalar, Wrench};
+#[cfg(all(feature = "arm", feature = "std"))]
+use crate::{DynArm, WrongLength};
+
+/// The state of a robot whose base nothing holds, after a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FloatingNextState<const DOF: usize, T> {
+    /// The pose of frame 0 in the world.
+    pub pose: Pose<T>,
+    /// The velocity of frame 0, in its axes, m/s and rad/s.
+    pub twist: BaseTwist<T>,
+    /// Positions of the joints, rad or m.
+    pub q: [T; DOF],
+    /// Velocities of the joints, rad/s or m/s.
+    pub qd: [T; DOF],
+}
+
+/// A step of the semi-implicit Euler method of a robot whose base nothing holds, under torques and wrenches that do not
+/// change during the step. The base, the tips and the wrenches are those of [`FloatingBase`](crate::FloatingBase).
+pub trait FloatingEulerStep<const DOF: usize, const TIPS: usize> {
+    /// The state after a step of the duration `step`, s. `pose` is that of frame 0 in the world, `twist` its velocity
+    /// in its axes. Gravity is that of the robot file, in axes of the world.
+    ///
+    /// The velocities come first, by the accelerations of [`floating_forward_dynamics`](
+    /// crate::FloatingBase::floating_forward_dynamics), those of the origin of frame 0 in world axes. Then this origin
+    /// and the joints move with the new velocities, and the base turns by the new angular velocity in its axes. The
+    /// error of a motion is of order h.
+    ///
+    /// The base turns by the unit quaternion (1 - s, 2 u) / (1 + s) with u = h ω / 4 and s = u·u. It needs no root, no
+    /// sine and no quotient by an angle, so it is smooth at ω = 0; its angle is h |ω| less (h |ω|)³ / 48, an error of
+    /// higher order than that of the method. The rotation after the step is orthogonal to rounding, however many steps
+    /// came before. A `pose` that is no rotation, or a base without mass, gives numbers without a meaning.
+    #[must_use]
+    #[allow(clippy::too_many_arguments)] // a state and what acts on it
+    fn floating_euler_step<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        tau: &[T; DOF],
+        pose: &Pose<T>,
+        twist: &BaseTwist<T>,
+        step: T,
+        wrenches: &[Wrench<T>; TIPS],
+    ) -> FloatingNextState<DOF, T>;
+}
+
+/// The pose and the velocity of the base after a step; `gravity` is in world axes.
+#[cfg(feature = "arm")]
+fn next_of_base<T: Scalar>(
+    (pose, twist): (&Pose<T>, &BaseTwist<T>),
+    acceleration: &BaseAcceleration<T>,
+    gravity: &[T; 3],
+    step: T,
+) -> (Pose<T>, BaseTwist<T>) {
+    let angular = moved(&twist.angular, &acceleration.angular, step);
+    let linear = moved(&twist.linear, &acceleration.linear, step);
+    let in_world = moved(&times(&pose.rotation, &linear), gravity, step);
+    let turned = product(&pose.rotation, &turn(&angular.map(|x| x * step)));
+    let rotation = next_rotation(&turned);
+    let linear = times(&transposed(&rotation), &in_world);
+    let translation = moved(&pose.translation, &in_world, step);
+    (Pose { rotation, translation }, BaseTwist { linear, angular })
+}
+
+#[cfg(feature = "arm")]
+fn product<T: Scalar>(a: &[[T; 3]; 3], b: &[[T; 3]; 3]) -> [[T; 3]; 3] {
+    transposed(&transposed(b).map(|column| times(a, &column)))
+}
+
+/// The rotation by the unit quaternion (1 - s, 2 u) / (1 + s) with s = u·u and 4 u = `angle`.
+#[cfg(feature = "arm")]
+fn turn<T: Scalar>(angle: &[T; 3]) -> [[T; 3]; 3] {
+    let one = T::one();
+    let u = angle.map(|x| x * T::from_f64(0.25));
+    let inverse = one / (one + dot(&u, &u));
+    let factor = inverse + inverse;
+    let (w, [x, y, z]) = (factor - one, u.map(|x| x * factor));
+    let [x2, y2, z2] = [x + x, y + y, z + z];
+    let ([xx, yy, zz], [xy, xz, yz], [wx, wy, wz]) =
+        ([x2 * x, y2 * y, z2 * z], [x2 * y, x2 * z, y2 * z], [x2 * w, y2 * w, z2 * w]);
+    [[one - (yy + zz), xy - wz, xz + wy], [xy + wz, one - (xx + zz), yz - wx], [xz - wy, yz + wx, one - (xx + yy)]]
+}
+
+/// B (3 - Bᵀ B) / 2: a step of Newton's method towards the rotation next to B.
+#[cfg(feature = "arm")]
+fn next_rotation<T: Scalar>(near: &[[T; 3]; 3]) -> [[T; 3]; 3] {
+    let (half, columns) = (T::from_f64(0.5), transposed(near));
+    let element = |row: usize, column: usize| {
+        let product = dot(&columns[row.min(column)], &columns[row.max(column)]) * half;
+        if row == column { T::from_f64(1.5) - product } else { -product }
+    };
+    product(near, &from_fn(|row| from_fn(|column| element(row, column))))
+}
+
+/// An arm that does not know its tips takes them with the wrenches.
+#[cfg(feature = "arm")]
+impl<const DOF: usize, S: Constant> Arm<DOF, S> {
+    /// As [`FloatingEulerStep::floating_euler_step`], at these tips; `NV` is `DOF` + 6.
+    #[must_use]
+    pub fn floating_euler_step<T: Scalar, const NV: usize, const TIPS: usize>(
+        &self,
+        [q, qd, tau]: [&[T; DOF]; 3],
+        base: (&Pose<T>, &BaseTwist<T>),
+        step: T,
+        at_tips: (&[FixedFrame<S>; TIPS], &[Wrench<T>; TIPS]),
+    ) -> FloatingNextState<DOF, T> {
+        let found = self.floating_forward_dynamics::<T, NV, TIPS>(q, qd, tau, &base.1.angular, at_tips);
+        let (pose, twist) = next_of_base(base, &found.base, &self.mechanism().gravity.map(S::to), step);
+        let qd = moved(qd, &found.qdd, step);
+        FloatingNextState { pose, twist, q: moved(q, &qd, step), qd }
+    }
+}
+
+/// [`FloatingNextState`] of a [`DynArm`].
+#[cfg(all(feature = "arm", feature = "std"))]
+#[derive(Clone, Debug, PartialEq)]
+pub struct DynFloatingNextState<T> {
+    /// The pose of frame 0 in the world.
+    pub pose: Pose<T>,
+    /// The velocity of frame 0, in its axes, m/s and rad/s.
+    pub twist: BaseTwist<T>,
+    /// Positions of the joints, rad or m.
+    pub q: Vec<T>,
+    /// Velocities of the joints, rad/s or m/s.
+    pub qd: Vec<T>,
+}
+
+#[cfg(all(feature = "arm", feature = "std"))]
+impl<S: Constant> DynArm<S> {
+    /// As [`FloatingEulerStep::floating_euler_step`], with one of `wrenches` for each of the [tips](Self::tips).
+    ///
+    /// # Errors
+    /// When a joint argument does not have one element per joint, or `wrenches` not one element per tip.
+    #[allow(clippy::too_many_arguments)] // a state and what acts on it
+    pub fn floating_euler_step<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        tau: &[T],
+        pose: &Pose<T>,
+        twist: &BaseTwist<T>,
+        step: T,
+        wrenches: &[Wrench<T>],
+    ) -> Result<DynFloatingNextState<T>, WrongLength> {
+        let (base, qdd) = self.floating_forward_dynamics(q, qd, tau, &twist.angular, wrenches)?;
+        let (pose, twist) = next_of_base((pose, twist), &base, &self.mechanism().gravity.map(S::to), step);
+        let moved = |x: &[T], change: &[T]| -> Vec<T> { x.iter().zip(change).map(|(&x, &by)| x + step * by).collect() };
+        let qd = moved(qd, &qdd);
+        Ok(DynFloatingNextState { pose, twist, q: moved(q, &qd), qd })
+    }
+}
