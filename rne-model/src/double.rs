@@ -109,8 +109,8 @@ impl Double {
     }
 }
 
-/// The digits and the decimal exponent of the shortest decimal that reads back as `value`, which is not negative. A whole
-/// number that an `f64` counts up to has the exponent 0.
+/// The digits and the decimal exponent of the shortest decimal that reads back as `value`, which is not negative. A
+/// whole number that an `f64` counts up to has the exponent 0.
 #[must_use]
 pub fn decimal_digits(value: f64) -> (u64, i32) {
     const COUNTED: f64 = 9_007_199_254_740_992.0; // 2⁵³
