@@ -460,8 +460,12 @@ def one_case(driver, case, sizes, counts):
 
 
 def main():
-    with open(os.path.join(HERE, "manifest.json"), encoding="utf-8") as file:
-        manifest = json.load(file)
+    try:
+        with open(os.path.join(HERE, "manifest.json"), encoding="utf-8") as file:
+            manifest = json.load(file)
+    except FileNotFoundError:
+        sys.exit("there is no manifest.json beside this program: `cargo run -p rne-emit --example gpu_folder -- FOLDER` "
+                 "writes a folder with the kernels, their manifest and a copy of this program; run that copy")
     cases = manifest["cases"]
     driver = Driver()
     RESULT.update(device=driver.name, driver=driver.version, attributes=driver.attributes, unit=manifest["unit"])

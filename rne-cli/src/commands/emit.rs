@@ -290,6 +290,20 @@ fn emitted(
     }
 }
 
+/// Refuses rollouts of a robot whose own equations of motion no kernel integrates.
+fn can_be_rolled_out(arguments: &Arguments, robot: &Robot) -> Result<(), Failure> {
+    if !robot.closed.is_empty() {
+        return Err(Failure::usage("a robot with closed loops cannot be rolled out in a kernel"));
+    }
+    if robot.floating_base.is_some() && arguments.functions.is_empty() {
+        return Err(Failure::usage(format_args!(
+            "a robot on a floating base cannot be rolled out in a kernel; {TYPED}--function forward_dynamics{TYPED:#} \
+             rolls out the robot with its base held still"
+        )));
+    }
+    Ok(())
+}
+
 /// The functions asked for, by their names or by other options, that CasADi cannot call.
 fn not_for_casadi(arguments: &Arguments, programs: &[Program]) -> String {
     let is_asked = |program: &&Program| {
@@ -441,6 +455,9 @@ fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failur
     // kernels of a batch want the fewest instructions
     let target = if arguments.lang == Language::Ptx { Target::Throughput } else { Target::Latency };
     let compiler = Compiler::new(&arguments.file, robot).for_target(target);
+    if arguments.rollout {
+        can_be_rolled_out(arguments, robot)?;
+    }
     let functions = functions(arguments, robot);
     let (of_frames, of_arm): (Vec<_>, Vec<_>) = functions.iter().partition(|function| function.of_frame().is_some());
     if !arguments.frames.is_empty() && of_frames.is_empty() {

@@ -387,6 +387,14 @@ fn rollouts_are_kernels_of_ptx() {
     fails(2, &emit, &["--rollout", "is for --lang ptx", "CompiledArm::rollout"]);
     let torques = ["--lang", "ptx", "--function", "inverse_dynamics"];
     fails(2, &[&emit[..], &torques].concat(), &["can be rolled out", "--function forward_dynamics"]);
+    let rolled = |file| ["emit", file, "--lang", "ptx", "--rollout"];
+    let loops = "docs/four_bar.yaml";
+    fails(2, &rolled(loops), &["closed loops cannot be rolled out"]);
+    fails(2, &[&rolled(loops)[..], &["--function", "forward_dynamics"]].concat(), &["closed loops cannot be rolled"]);
+    // not silently that of the arm on a base at rest
+    fails(2, &rolled("docs/satellite.yaml"), &["a floating base cannot be rolled out", "base held still"]);
+    let held = ["--function", "forward_dynamics"];
+    assert!(fine(&[&rolled("docs/satellite.yaml")[..], &held].concat()).contains("satellite_rollout_rows"));
 }
 
 #[test]
