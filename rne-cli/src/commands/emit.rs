@@ -298,7 +298,7 @@ fn can_be_rolled_out(arguments: &Arguments, robot: &Robot) -> Result<(), Failure
     if robot.floating_base.is_some() && arguments.functions.is_empty() {
         return Err(Failure::usage(format_args!(
             "a robot on a floating base cannot be rolled out in a kernel; {TYPED}--function forward_dynamics{TYPED:#} \
-             rolls out the robot with its base held still"
+             rolls out the robot with a locked base"
         )));
     }
     Ok(())

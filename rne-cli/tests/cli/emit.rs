@@ -392,7 +392,7 @@ fn rollouts_are_kernels_of_ptx() {
     fails(2, &rolled(loops), &["closed loops cannot be rolled out"]);
     fails(2, &[&rolled(loops)[..], &["--function", "forward_dynamics"]].concat(), &["closed loops cannot be rolled"]);
     // not silently that of the arm on a base at rest
-    fails(2, &rolled("docs/satellite.yaml"), &["a floating base cannot be rolled out", "base held still"]);
+    fails(2, &rolled("docs/satellite.yaml"), &["a floating base cannot be rolled out", "a locked base"]);
     let held = ["--function", "forward_dynamics"];
     assert!(fine(&[&rolled("docs/satellite.yaml")[..], &held].concat()).contains("satellite_rollout_rows"));
 }
