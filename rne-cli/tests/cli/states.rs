@@ -99,7 +99,7 @@ fn single(robot: &str, function: Function, columns: &[String], state: &[f64]) ->
         let is_of = |column: &&String| {
             column.strip_prefix(prefix).is_some_and(|rest| {
                 let is_axis = ["_x", "_y", "_z", "x", "y", "z"].contains(&rest);
-                let is_whole = rest.is_empty() && prefix == "step";
+                let is_whole = rest.is_empty() && prefix == "duration";
                 is_whole || rest.parse::<usize>().is_ok() || is_axis || prefix == "base_rotation"
             })
         };
