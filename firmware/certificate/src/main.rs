@@ -90,7 +90,7 @@ fn run(arguments: &Arguments) -> Result<ExitCode> {
 /// A scheduler of LLVM that counts registers; see firmware/example/.cargo/config.toml.
 const SCHEDULER: &str = "-Cllvm-args=-pre-RA-sched=list-ilp";
 
-/// Rust takes one processor for the whole program, and so does C; one of both at a time would leave the other idle.
+/// Examines the C code on one processor while the compiler of Rust uses another one.
 fn examine(workspace: &Path, sample: bool) -> Result<Report> {
     let expected = Log::of_host();
     thread::scope(|scope| {
@@ -100,7 +100,7 @@ fn examine(workspace: &Path, sample: bool) -> Result<Report> {
     })
 }
 
-/// What is not C, and then the rows of C.
+/// Examines the code in Rust, and adds the table of the C code; `of_c` waits for the rows of that table.
 fn examine_beside(
     workspace: &Path,
     sample: bool,

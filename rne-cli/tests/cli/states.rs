@@ -78,6 +78,7 @@ fn flat(value: &Value, numbers: &mut Vec<f64>) {
                 "dq",
                 "dqd",
                 "dqdd",
+                "domega",
                 "dtau",
                 "momentum",
                 "rate",
