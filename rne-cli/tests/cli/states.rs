@@ -80,10 +80,16 @@ fn flat(value: &Value, numbers: &mut Vec<f64>) {
                 "dqdd",
                 "domega",
                 "dtau",
+                "dq_dq",
+                "dq_dqd",
+                "dqd_dqd",
+                "dq_dqdd",
                 "momentum",
                 "rate",
             ];
             let of_accelerations = ["accelerations", "base", "linear", "angular", "qdd", "wrenches_on_robot"];
+            let known = |name: &String| names.iter().chain(&of_accelerations).any(|known| known == name);
+            assert!(parts.keys().all(known), "this test does not read all of {:?}", parts.keys());
             names
                 .iter()
                 .chain(&of_accelerations)
