@@ -1,6 +1,7 @@
 //! The step of the semi-implicit Euler method of a robot whose base nothing holds, with the rotation of the base as a
 //! matrix.
 
+#[cfg(feature = "arm")]
 use core::array::from_fn;
 
 #[cfg(feature = "arm")]
