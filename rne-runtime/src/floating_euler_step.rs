@@ -126,8 +126,8 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
     }
 }
 
-/// [`FloatingNextState`] of a [`DynArm`].
-#[cfg(all(feature = "arm", feature = "std"))]
+/// [`FloatingNextState`] of an arm that is known at run time.
+#[cfg(feature = "std")]
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynFloatingNextState<T> {
     /// The pose of frame 0 in the world.

@@ -142,7 +142,7 @@ pub use error::{LoadError, WrongJointCount, WrongLength};
 #[cfg(feature = "std")]
 pub use floating_derivatives::DynFloatingTorqueDerivatives;
 pub use floating_derivatives::{FloatingInverseDynamicsDerivatives, FloatingTorqueDerivatives};
-#[cfg(all(feature = "arm", feature = "std"))]
+#[cfg(feature = "std")]
 pub use floating_euler_step::DynFloatingNextState;
 pub use floating_euler_step::{FloatingEulerStep, FloatingNextState};
 pub use floating_integrator::{
