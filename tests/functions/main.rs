@@ -49,7 +49,6 @@ mod single_precision;
 #[path = "../c_code/states.rs"]
 mod states;
 mod tree_functions;
-mod tree_oracle;
 mod trees;
 mod wrenches;
 mod written;

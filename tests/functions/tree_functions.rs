@@ -6,12 +6,11 @@ use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3};
 use rne::{BaseMotion, Payload, Wrench};
 use rne_codegen::{Argument, Function};
 use rne_model::{Contact, FixedFrame, Robot};
+use tree_oracle::{self as oracle, Motion};
 
 use crate::arm::{Given, STEP, at_tips, base_rotation};
 use crate::case::payload;
 use crate::check::{conditioning, flat};
-use crate::tree_oracle as oracle;
-use crate::tree_oracle::Motion;
 
 #[derive(Clone)]
 pub(crate) struct State {

@@ -8,17 +8,19 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
 
 use nalgebra::{Matrix3, Matrix4, Vector3};
-use rne::{BaseMotion, Payload};
 use rne_model::{Angle, Convention, FixedFrame, JointKind, Motor, Robot, Transform};
+use rne_runtime::{BaseMotion, Payload};
 
 /// A pose along a motion: its value, and its first and second derivative.
-pub(crate) type Jet = [Matrix4<f64>; 3];
+pub type Jet = [Matrix4<f64>; 3];
 
 /// Positions, rates and accelerations of the joints, and the base.
 #[derive(Clone, Copy)]
-pub(crate) struct Motion<'a> {
-    pub(crate) joints: [&'a [f64]; 3],
-    pub(crate) base: BaseMotion<f64>,
+pub struct Motion<'a> {
+    /// Positions, rates and accelerations.
+    pub joints: [&'a [f64]; 3],
+    /// The motion of frame 0, in its axes.
+    pub base: BaseMotion<f64>,
 }
 
 /// A body of a robot: the link that carries it, and its data in a frame there.
@@ -31,10 +33,13 @@ struct Body {
 }
 
 /// What moves a body: force, and moment about its centre of mass; in the axes of the base.
-pub(crate) struct Needed {
-    pub(crate) centre: Vector3<f64>,
-    pub(crate) force: Vector3<f64>,
-    pub(crate) moment: Vector3<f64>,
+pub struct Needed {
+    /// The centre of mass, from the origin of frame 0.
+    pub centre: Vector3<f64>,
+    /// Force, N.
+    pub force: Vector3<f64>,
+    /// Moment about the centre of mass, N m.
+    pub moment: Vector3<f64>,
 }
 
 fn about(axis: usize, sin: f64, cos: f64) -> Matrix4<f64> {
@@ -52,20 +57,6 @@ fn moved(by: [f64; 3]) -> Matrix4<f64> {
     Matrix4::new_translation(&Vector3::from(by))
 }
 
-/// a b. In loops: without optimization, nalgebra's product took two thirds of the time of these tests.
-fn times(a: &Matrix4<f64>, b: &Matrix4<f64>) -> Matrix4<f64> {
-    let (a, b): (&[[f64; 4]; 4], &[[f64; 4]; 4]) = (a.as_ref(), b.as_ref());
-    let mut columns = [[0.0; 4]; 4];
-    for (column, of_b) in columns.iter_mut().zip(b) {
-        for (k, &factor) in of_b.iter().enumerate() {
-            for (sum, x) in column.iter_mut().zip(&a[k]) {
-                *sum += x * factor;
-            }
-        }
-    }
-    Matrix4::from(columns)
-}
-
 fn placed(transform: &Transform) -> Matrix4<f64> {
     let [roll, pitch, yaw] = &transform.rpy;
     moved(transform.xyz) * turned(2, yaw) * turned(1, pitch) * turned(0, roll)
@@ -73,15 +64,11 @@ fn placed(transform: &Transform) -> Matrix4<f64> {
 
 /// What is fixed to a moving frame.
 fn fixed(to: &Jet, at: Matrix4<f64>) -> Jet {
-    to.map(|derivative| times(&derivative, &at))
+    to.map(|derivative| derivative * at)
 }
 
 fn product(a: &Jet, b: &Jet) -> Jet {
-    [
-        times(&a[0], &b[0]),
-        times(&a[1], &b[0]) + times(&a[0], &b[1]),
-        times(&a[2], &b[0]) + times(&a[1], &b[1]) * 2.0 + times(&a[0], &b[2]),
-    ]
+    [a[0] * b[0], a[1] * b[0] + a[0] * b[1], a[2] * b[0] + a[1] * b[1] * 2.0 + a[0] * b[2]]
 }
 
 /// exp(G q), where G is the screw of a joint about or along z.
@@ -134,26 +121,28 @@ fn link(robot: &Robot, index: Option<usize>, motion: &Motion<'_>) -> [Jet; 2] {
     [fixed(&at_joint, moved([0.0, 0.0, row.dh.d]) * behind), point]
 }
 
-pub(crate) fn frame(robot: &Robot, frame: &FixedFrame, motion: &Motion<'_>) -> Jet {
+/// The pose of a frame along a motion.
+pub fn frame(robot: &Robot, frame: &FixedFrame, motion: &Motion<'_>) -> Jet {
     fixed(&link(robot, frame.on, motion)[0], placed(&frame.placement))
 }
 
 /// World → frame 0.
-pub(crate) fn placement_of_base(robot: &Robot) -> Matrix4<f64> {
+pub fn placement_of_base(robot: &Robot) -> Matrix4<f64> {
     placed(&robot.base)
 }
 
 /// The link frame of the table in frame 0.
-pub(crate) fn link_pose(robot: &Robot, index: usize, motion: &Motion<'_>) -> Matrix4<f64> {
+pub fn link_pose(robot: &Robot, index: usize, motion: &Motion<'_>) -> Matrix4<f64> {
     link(robot, Some(index), motion)[0][0]
 }
 
 /// The frame at a joint in frame 0: rotation and reference point.
-pub(crate) fn joint_frame(robot: &Robot, index: usize, motion: &Motion<'_>) -> (Matrix3<f64>, Vector3<f64>) {
+pub fn joint_frame(robot: &Robot, index: usize, motion: &Motion<'_>) -> (Matrix3<f64>, Vector3<f64>) {
     parts(&link(robot, Some(index), motion)[1][0])
 }
 
-pub(crate) fn parts(matrix: &Matrix4<f64>) -> (Matrix3<f64>, Vector3<f64>) {
+/// Rotation and translation.
+pub fn parts(matrix: &Matrix4<f64>) -> (Matrix3<f64>, Vector3<f64>) {
     (matrix.fixed_view::<3, 3>(0, 0).into_owned(), matrix.fixed_view::<3, 1>(0, 3).into_owned())
 }
 
@@ -162,19 +151,19 @@ fn vector_of(skew: &Matrix3<f64>) -> Vector3<f64> {
 }
 
 /// Linear and angular velocity, then acceleration, of a frame at a point of it.
-pub(crate) fn rates(jet: &Jet, point: &Vector3<f64>) -> [[Vector3<f64>; 2]; 2] {
+pub fn rates(jet: &Jet, point: &Vector3<f64>) -> [[Vector3<f64>; 2]; 2] {
     let [(r, _), (r1, p1), (r2, p2)] = [parts(&jet[0]), parts(&jet[1]), parts(&jet[2])];
     let (omega, omega_dot) = (vector_of(&(r1 * r.transpose())), vector_of(&(r2 * r.transpose() + r1 * r1.transpose())));
     [[r1 * point + p1, omega], [r2 * point + p2, omega_dot]]
 }
 
 /// Whether a joint moves a link, or what is on the base.
-pub(crate) fn moves(robot: &Robot, joint: usize, link: Option<usize>) -> bool {
+pub fn moves(robot: &Robot, joint: usize, link: Option<usize>) -> bool {
     std::iter::successors(link, |&link| robot.parent(link)).any(|link| link == joint)
 }
 
 /// Velocity of a point of a frame, and angular velocity, per rate of each joint, on a base that stands still.
-pub(crate) fn jacobian(robot: &Robot, of: &FixedFrame, q: &[f64], point: &Vector3<f64>) -> Vec<[Vector3<f64>; 2]> {
+pub fn jacobian(robot: &Robot, of: &FixedFrame, q: &[f64], point: &Vector3<f64>) -> Vec<[Vector3<f64>; 2]> {
     let zeros = vec![0.0; q.len()];
     let column = |joint: usize| {
         if !moves(robot, joint, of.on) {
@@ -194,13 +183,13 @@ fn moved_by(values: &[f64], joint: usize, step: f64) -> Vec<f64> {
 }
 
 /// The derivative of what is a polynomial of second degree in a rate, at a rate.
-pub(crate) fn by_rate(qd: &[f64], joint: usize, of: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+pub fn by_rate(qd: &[f64], joint: usize, of: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
     odd_part(qd, joint, 1.0, of)
 }
 
 /// The derivative by the position of a joint. The odd part of b₁ sin x + b₂ sin 2 x at π/2 is b₁, that at π/4 is
 /// b₁/√2 + b₂, and the derivative b₁ + 2 b₂.
-pub(crate) fn by_position(robot: &Robot, q: &[f64], joint: usize, of: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+pub fn by_position(robot: &Robot, q: &[f64], joint: usize, of: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
     match robot.joints[joint].row.kind {
         JointKind::Prismatic => odd_part(q, joint, 1.0, of),
         JointKind::Revolute => {
@@ -246,14 +235,14 @@ fn bodies(robot: &Robot, payload: Option<&Payload<f64>>) -> Vec<Body> {
 }
 
 /// Force, and moment about the origin of frame 0, that must act on the base beside gravity.
-pub(crate) fn base_wrench(robot: &Robot, motion: &Motion<'_>) -> [Vector3<f64>; 2] {
+pub fn base_wrench(robot: &Robot, motion: &Motion<'_>) -> [Vector3<f64>; 2] {
     needed(robot, motion, None).iter().fold([Vector3::zeros(); 2], |[force, moment], it| {
         [force + it.force, moment + it.moment + it.centre.cross(&it.force)]
     })
 }
 
 /// What moves each link, and the payload, against gravity.
-pub(crate) fn needed(robot: &Robot, motion: &Motion<'_>, payload: Option<&Payload<f64>>) -> Vec<Needed> {
+pub fn needed(robot: &Robot, motion: &Motion<'_>, payload: Option<&Payload<f64>>) -> Vec<Needed> {
     needed_by(robot, motion, &bodies(robot, payload))
 }
 
@@ -307,14 +296,14 @@ fn units(on: Option<usize>) -> Vec<Body> {
 }
 
 /// The torques of a unit of each inertial parameter of each link: by torque, then by link.
-pub(crate) fn regressor(robot: &Robot, motion: &Motion<'_>) -> Vec<f64> {
+pub fn regressor(robot: &Robot, motion: &Motion<'_>) -> Vec<f64> {
     let units: Vec<Body> = (0..robot.dof()).flat_map(|index| units(Some(index))).collect();
     let parts = torque_parts(robot, motion, &units);
     (0..robot.dof()).flat_map(|joint| parts.iter().map(move |part| part[joint]).collect::<Vec<_>>()).collect()
 }
 
 /// Force and moment on the base, and the torques, of a unit of each inertial parameter of the base and of each link.
-pub(crate) fn floating_regressor(robot: &Robot, motion: &Motion<'_>) -> Vec<f64> {
+pub fn floating_regressor(robot: &Robot, motion: &Motion<'_>) -> Vec<f64> {
     let bodies = [None].into_iter().chain((0..robot.dof()).map(Some));
     let units: Vec<Body> = bodies.flat_map(units).collect();
     let parts = needed_by(robot, motion, &units).into_iter().zip(torque_parts(robot, motion, &units));
@@ -332,7 +321,8 @@ fn rotors(robot: &Robot) -> impl Iterator<Item = f64> {
     robot.joints.iter().map(move |joint| joint.motor.filter(|_| robot.rotors).map_or(0.0, of))
 }
 
-pub(crate) fn torques(robot: &Robot, motion: &Motion<'_>, payload: Option<&Payload<f64>>) -> Vec<f64> {
+/// The torques of the joints, with the weight and the inertia of a payload.
+pub fn torques(robot: &Robot, motion: &Motion<'_>, payload: Option<&Payload<f64>>) -> Vec<f64> {
     let parts = torque_parts(robot, motion, &bodies(robot, payload));
     let of_links = |joint: usize| parts.iter().map(|part| part[joint]).sum::<f64>();
     let of_spins = spin_torques(robot, motion.joints);
@@ -375,7 +365,7 @@ fn spin_torques(robot: &Robot, [q, qd, qdd]: [&[f64]; 3]) -> Vec<f64> {
 }
 
 /// What motors need beside the links: G² Jm q̈ where rotors do not belong to the robot, and friction.
-pub(crate) fn actuator_torques(robot: &Robot, qd: &[f64], qdd: &[f64]) -> Vec<f64> {
+pub fn actuator_torques(robot: &Robot, qd: &[f64], qdd: &[f64]) -> Vec<f64> {
     let of_motor = |(motor, joint): (Motor, usize)| {
         let square = motor.gear_ratio.powi(2);
         let rotor = if robot.rotors { 0.0 } else { motor.inertia };
@@ -386,7 +376,7 @@ pub(crate) fn actuator_torques(robot: &Robot, qd: &[f64], qdd: &[f64]) -> Vec<f6
 }
 
 /// The columns of M: torques of unit accelerations, at rest and without gravity.
-pub(crate) fn mass_matrix(robot: &Robot, q: &[f64], payload: Option<&Payload<f64>>) -> Vec<Vec<f64>> {
+pub fn mass_matrix(robot: &Robot, q: &[f64], payload: Option<&Payload<f64>>) -> Vec<Vec<f64>> {
     let zeros = vec![0.0; q.len()];
     let column = |joint: usize| {
         let unit = moved_by(&zeros, joint, 1.0);
@@ -396,7 +386,7 @@ pub(crate) fn mass_matrix(robot: &Robot, q: &[f64], payload: Option<&Payload<f64
 }
 
 /// ½ Σ m v · v + ω · I ω + 2 v · (ω × R h), and that of rotors.
-pub(crate) fn kinetic_energy(robot: &Robot, q: &[f64], qd: &[f64], payload: Option<&Payload<f64>>) -> f64 {
+pub fn kinetic_energy(robot: &Robot, q: &[f64], qd: &[f64], payload: Option<&Payload<f64>>) -> f64 {
     let zeros = vec![0.0; q.len()];
     let motion = Motion { joints: [q, qd, &zeros], base: BaseMotion::fixed([0.0; 3]) };
     let of_body = |body: &Body| {
@@ -410,7 +400,7 @@ pub(crate) fn kinetic_energy(robot: &Robot, q: &[f64], qd: &[f64], payload: Opti
 }
 
 /// Mass, and first moment from the origin of frame 0.
-pub(crate) fn first_moment(robot: &Robot, q: &[f64]) -> (f64, Vector3<f64>) {
+pub fn first_moment(robot: &Robot, q: &[f64]) -> (f64, Vector3<f64>) {
     let zeros = vec![0.0; q.len()];
     let motion = Motion { joints: [q, &zeros, &zeros], base: BaseMotion::fixed([0.0; 3]) };
     bodies(robot, None).iter().fold((0.0, Vector3::zeros()), |(mass, moment), body| {
