@@ -203,7 +203,8 @@ fn with_dependent(yaml: &str, lists: &[Value]) -> String {
 fn check_random(golden: &[u8]) {
     let golden: Vec<Value> = serde_json::from_slice(golden).expect("JSON");
     let (mut errors, mut refused) = (BTreeMap::new(), BTreeMap::new());
-    for (index, entry) in golden.iter().enumerate() {
+    let one_in = if shipped::is_exhaustive() { 1 } else { 3 };
+    for (index, entry) in golden.iter().enumerate().step_by(one_in) {
         let yaml = entry["yaml"].as_str().expect("a text");
         let states = entry["states"].as_array().expect("states");
         for (function, error) in check(&format!("random mechanism {index}"), &robot(yaml.as_bytes()), states) {
@@ -220,7 +221,7 @@ fn check_random(golden: &[u8]) {
         assert!(report.contains("dependent joint"), "random mechanism {index}, {why}: {report}");
         *refused.entry(why).or_insert(0_usize) += 1;
     }
-    println!("{} random mechanisms, wrong choices refused: {refused:?}", golden.len());
+    println!("one in {one_in} of {} random mechanisms, wrong choices refused: {refused:?}", golden.len());
     for (function, error) in errors {
         println!("{function}: largest error {error:.1e}");
     }
@@ -316,7 +317,7 @@ fn the_machine_computes_closed_loops() {
 /// Motors that move a mechanism in a circle do no work: it comes back with the energy that it had.
 #[test]
 fn a_closed_motion_takes_no_work() {
-    const POINTS: u32 = 128;
+    const POINTS: u32 = 64;
     for name in ROBOTS {
         let robot = robot(&read(&format!("benches/trees/loops/{name}.yaml")));
         let golden: Vec<Value> =
@@ -336,7 +337,7 @@ fn a_closed_motion_takes_no_work() {
             };
             let [q, qd, qdd] =
                 [0, 1, 2].map(|order| (0..middle.len()).map(|joint| motion(joint)[order]).collect::<Vec<f64>>());
-            for _ in 0..8 {
+            for _ in 0..4 {
                 passive = arm.closure_step(&q, &passive).expect("one number per joint").0;
             }
             let arguments = Arguments { passive: &passive, ..Arguments::of_joints(&q, &qd, &qdd, 0.0) };
