@@ -303,7 +303,7 @@ fn bodies_are_the_best_ones() {
 
 /// Five million states, and as many numbers are kept as of a hundred thousand.
 #[test]
-#[ignore = "long: cargo test -p rne-identify --test synthetic -- --ignored"]
+#[ignore = "long: cargo test -p rne-identify --test all -- synthetic --ignored"]
 fn five_million_states_need_no_more_memory() {
     let robot = arm();
     let mut rng = Rng::with_seed(11);
@@ -369,7 +369,7 @@ fn intervals_have_the_truth() {
 }
 
 #[test]
-#[ignore = "long: cargo test -p rne-identify --test synthetic -- --ignored"]
+#[ignore = "long: cargo test -p rne-identify --test all -- synthetic --ignored"]
 fn intervals_have_the_truth_as_often_as_they_say() {
     let found = coverage(1000);
     let mean = found.iter().sum::<f64>() / f64::from(u32::try_from(found.len()).unwrap());

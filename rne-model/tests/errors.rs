@@ -1,10 +1,8 @@
 //! Every error: where it points and what it says.
 
-mod common;
-
 use std::fmt::Write as _;
 
-use common::{BASE, MOST_WORK, found, the_one, with};
+use crate::common::{BASE, MOST_WORK, found, the_one, with};
 use rne_model::{Entry, InertiaReference, Link, Reader, Remedy, Severity};
 
 /// One replacement in the valid file, and the one error it must give: line, column, underlined text, part of message.

@@ -1,11 +1,10 @@
 //! The mistakes that everybody makes once, each with its whole message: what is wrong, where, what to write instead.
 //! `INSTA_UPDATE=always cargo test -p rne-model --test everyday` writes the snapshots.
 
-mod common;
-
 use std::fmt::Write as _;
 
-use common::{found, with};
+use crate::common;
+use crate::common::{found, with};
 
 /// The messages of the valid file with one passage replaced.
 fn messages(cases: &[(&str, &str)]) -> String {

@@ -1,8 +1,7 @@
 //! Named frames: what a file says, and where each mistake is.
 
-mod common;
-
-use common::{found, with};
+use crate::common;
+use crate::common::{found, with};
 use rne_model::{Entry, FixedFrame, FrameId, Reader, Robot, Transform};
 
 /// The valid file with a list `frames` before its joints.

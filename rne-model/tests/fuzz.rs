@@ -1,8 +1,6 @@
 //! Whatever the bytes, the answer is a robot or a report, never a panic, and little work is done for it.
 
-mod common;
-
-use common::BASE;
+use crate::common::BASE;
 use proptest::prelude::*;
 use rne_model::{Reader, Report, is_control};
 

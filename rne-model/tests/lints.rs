@@ -1,8 +1,6 @@
 //! Every lint: where it points, what it says, and what it leaves alone.
 
-mod common;
-
-use common::{BASE, found, the_one, with};
+use crate::common::{BASE, found, the_one, with};
 use rne_model::{Reader, Severity};
 
 /// A mass that is forgotten, unless it is said to be zero.

@@ -1,8 +1,6 @@
 //! Whole messages, as people see them.
 
-mod common;
-
-use common::{found, with};
+use crate::common::{found, with};
 use insta::assert_snapshot;
 
 #[test]

@@ -1,10 +1,8 @@
 //! Run-time parameters: which numbers depend on them and how, and every error.
 
-mod common;
-
 use std::fmt::Write as _;
 
-use common::{BASE, MOST_WORK};
+use crate::common::{BASE, MOST_WORK};
 use rne_model::InertiaElement::{Xx, Xy, Xz, Yy, Yz, Zz};
 use rne_model::{Checked, Diagnostic, Entry, Formula, Reader, Report, Robot, RunTime};
 

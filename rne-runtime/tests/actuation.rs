@@ -1,9 +1,7 @@
 //! What motors add: rotor inertia and friction behind a gear.
 #![cfg(feature = "std")]
 
-mod common;
-
-use common::{relative_error, six_joints};
+use crate::common::{relative_error, six_joints};
 use num_dual::Dual64;
 use rne_model::Convention::Standard;
 use rne_model::Motor;

@@ -1,8 +1,6 @@
 //! What the torques see of the links: ranks that the literature knows, and torques from base parameters alone.
 
-mod common;
-
-use common::{dh, link, model, row, two_links};
+use crate::common::{dh, link, model, row, two_links};
 use rne_model::JointKind::{Prismatic, Revolute};
 use rne_model::{Convention, JointKind, Link, Robot, Row};
 use rne_runtime::{BaseParameters, DynArm};

@@ -1,8 +1,6 @@
 //! The order of operations that generated code repeats to the bit, written out once more from the documentation.
 
-mod common;
-
-use common::{Numbers, six_joints, tool};
+use crate::common::{Numbers, six_joints, tool};
 use nalgebra::{Matrix3, Vector3};
 use rne_model::Convention::{Modified, Standard};
 use rne_model::{Convention, JointKind, Model};

@@ -1,9 +1,7 @@
 //! The arm with a number of joints known at run time has the bits of the one with it known at compile time.
 #![cfg(feature = "std")]
 
-mod common;
-
-use common::{Numbers, SIX_BASE, SIX_Q, SIX_WRENCH, model, one_link, six_joints, tool};
+use crate::common::{Numbers, SIX_BASE, SIX_Q, SIX_WRENCH, model, one_link, six_joints, tool};
 use rne_model::Convention::{Modified, Standard};
 use rne_model::Model;
 use rne_runtime::{Arm, DynArm, InverseDynamics, WrongLength};

@@ -1,9 +1,7 @@
 //! The order in which nalgebra evaluates what the seven steps use. Generated code repeats this order to the bit, so a
 //! release of nalgebra that changed it must fail here first.
 
-mod common;
-
-use common::Numbers;
+use crate::common::Numbers;
 use nalgebra::{Matrix3, Vector3};
 
 /// ((a₀ b₀ + a₁ b₁) + a₂ b₂)

@@ -1,11 +1,9 @@
 //! A step of a robot whose base nothing holds: its derivatives beside dual numbers through the step, the turn of the
 //! base beside the exponential, and conserved momentum.
 
-mod common;
-
 use std::array::from_fn;
 
-use common::{Numbers, SIX_BASE, assert_close, link, six_joints};
+use crate::common::{Numbers, SIX_BASE, assert_close, link, six_joints};
 use rne_model::Convention::{Modified, Standard};
 use rne_runtime::{
     Arm, BaseAcceleration, BaseMotion, BaseTwist, Dual, FloatingAccelerations, FloatingBase, FloatingIntegratorStep,

@@ -1,9 +1,7 @@
 //! Frames on links: against the arm that ends at the frame, against products of 4 × 4 matrices, and against the motion.
 #![cfg(all(feature = "arm", feature = "std"))]
 
-mod common;
-
-use common::{Numbers, SIX_Q, SIX_QD, SIX_WRENCH, six_joints, tool};
+use crate::common::{Numbers, SIX_Q, SIX_QD, SIX_WRENCH, six_joints, tool};
 use rne_model::{Angle, Convention, FixedFrame, Joint, JointKind, Robot, Transform};
 use rne_runtime::{Arm, Dual, DynArm, Kinematics, Pose};
 

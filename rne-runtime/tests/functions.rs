@@ -1,9 +1,7 @@
 //! Every function beyond the torques, in every kind of scalar, for both kinds of arm.
 #![cfg(feature = "std")]
 
-mod common;
-
-use common::{Numbers, SIX_BASE, SIX_Q, SIX_QD, SIX_QDD, model, one_link, relative_error, six_joints, tool};
+use crate::common::{Numbers, SIX_BASE, SIX_Q, SIX_QD, SIX_QDD, model, one_link, relative_error, six_joints, tool};
 use nalgebra::{Isometry3, IsometryMatrix3, Matrix3, Point3, Vector3};
 use num_dual::Dual64;
 use rne_model::Convention::{Modified, Standard};

@@ -1,11 +1,9 @@
 //! Steps of integrators: closed forms, orders of convergence, and derivatives beside dual numbers through the step.
 
-mod common;
-
 use std::array::from_fn;
 use std::f64::consts::PI;
 
-use common::{Numbers, assert_close, link, model, one_link, row, six_joints, two_links};
+use crate::common::{Numbers, assert_close, link, model, one_link, row, six_joints, two_links};
 use rne_model::Convention::{Modified, Standard};
 use rne_model::JointKind;
 use rne_runtime::{

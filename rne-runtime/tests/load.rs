@@ -1,11 +1,9 @@
 //! Robots from robot files.
 #![cfg(feature = "std")]
 
-mod common;
-
 use std::error::Error;
 
-use common::assert_close;
+use crate::common::assert_close;
 use rne_model::Robot;
 use rne_runtime::{Arm, DynArm, InverseDynamics, LoadError, WrongJointCount};
 

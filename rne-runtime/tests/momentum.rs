@@ -2,9 +2,7 @@
 //! kinetic energy.
 #![cfg(feature = "arm")]
 
-mod common;
-
-use common::{Numbers, assert_close, one_link, prismatic_revolute, revolute_prismatic, six_joints, tool};
+use crate::common::{Numbers, assert_close, one_link, prismatic_revolute, revolute_prismatic, six_joints, tool};
 use num_dual::Dual64;
 use rne_model::Convention::{Modified, Standard};
 use rne_model::{Model, Motor};

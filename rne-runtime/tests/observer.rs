@@ -3,11 +3,10 @@
 #![cfg(feature = "std")]
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)] // numbers of joints, single precision
 
-mod common;
-
 use std::f64::consts::TAU;
 
-use common::{Numbers, one_link, six_joints, tool};
+use crate::common;
+use crate::common::{Numbers, one_link, six_joints, tool};
 use rne_model::Convention::{Modified, Standard};
 use rne_model::{Model, Robot};
 use rne_runtime::{

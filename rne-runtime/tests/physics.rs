@@ -1,8 +1,7 @@
 //! What must hold for every arm and state, whatever the formulas.
 
-mod common;
-
-use common::{Numbers, SIX_BASE, SIX_WRENCH, assert_close, relative_error, row, six_joints, tool};
+use crate::common;
+use crate::common::{Numbers, SIX_BASE, SIX_WRENCH, assert_close, relative_error, row, six_joints, tool};
 use nalgebra::{Matrix3, Vector3};
 use num_dual::Dual64;
 use rne_model::Convention::{Modified, Standard};

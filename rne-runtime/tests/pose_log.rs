@@ -1,10 +1,8 @@
 //! The logarithm of poses, near 0 and near π too.
 
-mod common;
-
 use std::f64::consts::PI;
 
-use common::Numbers;
+use crate::common::Numbers;
 use rne_runtime::Pose;
 
 fn cross([a, b, c]: [f64; 3], [x, y, z]: [f64; 3]) -> [f64; 3] {

@@ -1,9 +1,7 @@
 //! One robot, many number types: single precision, SIMD lanes, dual numbers.
 #![cfg(feature = "std")]
 
-mod common;
-
-use common::{Numbers, SIX_Q, SIX_QD, SIX_QDD, SIX_WRENCH, relative_error, six_joints};
+use crate::common::{Numbers, SIX_Q, SIX_QD, SIX_QDD, SIX_WRENCH, relative_error, six_joints};
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use num_dual::Dual64;

@@ -1,9 +1,8 @@
 //! Every number of section 5 of the specification: the acceptance tests.
 #![allow(clippy::unreadable_literal, clippy::excessive_precision)] // the digits as the specification prints them
 
-mod common;
-
-use common::{
+use crate::common;
+use crate::common::{
     Numbers, SIX_BASE, SIX_Q, SIX_QD, SIX_QDD, SIX_WRENCH, assert_close, one_link, prismatic_revolute,
     revolute_prismatic, six_joints, two_links,
 };

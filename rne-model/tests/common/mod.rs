@@ -1,5 +1,5 @@
 //! A valid file and ways to break it.
-#![allow(dead_code, unreachable_pub)] // each test uses its part
+#![allow(unreachable_pub)]
 
 use rne_model::{Diagnostic, Reader, Report};
 

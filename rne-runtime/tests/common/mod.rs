@@ -1,5 +1,4 @@
 //! The arms of the specification's acceptance tests, section 5, and how numbers are compared.
-#![allow(dead_code)] // every test file uses a part of it
 
 use rne_model::JointKind::{Prismatic, Revolute};
 use rne_model::{Angle, Convention, Dh, Inertia, JointKind, Link, Model, Row, Transform};
