@@ -48,6 +48,18 @@ fn files_have_names_of_their_language_and_are_checked() {
 }
 
 #[test]
+fn robots_that_no_kernel_rolls_out_are_told_what_does() {
+    let rollout = ["--lang", "ptx", "--rollout"];
+    let of_loops = ["closed loops cannot be rolled out", "leave --rollout out", "forward_dynamics_of_loops"];
+    fails(2, &[&["emit", "docs/four_bar.yaml"][..], &rollout].concat(), &of_loops);
+    fails(
+        2,
+        &[&["emit", "docs/satellite.yaml"][..], &rollout].concat(),
+        &["floating base", "--function forward_dynamics"],
+    );
+}
+
+#[test]
 fn options_of_other_languages_are_refused() {
     fails(2, &["emit", ROBOT, "--lang", "cuda", "--real", "float"], &["--real", "--lang c", "--lang ptx", "generic"]);
     for option in ["--friction", "--limits", "--names", "--tests", "--with-sin-cos"] {
