@@ -92,8 +92,8 @@ impl fmt::Display for GpuError {
         match self {
             Self::NoDriver { library, reason } => write!(
                 f,
-                "no NVIDIA driver: {} cannot be opened ({reason}). The functions of an arm on a graphics card need a card \
-                 of NVIDIA and its driver; without them, the processor computes the same functions",
+                "no NVIDIA driver: {} cannot be opened ({reason}). The functions of an arm on a graphics card need a \
+                 card of NVIDIA and its driver; without them, the processor computes the same functions",
                 library.display()
             ),
             Self::OldDriver { library, call } => write!(

@@ -247,7 +247,7 @@ real!(f64, u64);
 /// Bytes between arrays, and before the first: a kernel that reads at 0 reads nothing that exists.
 const BETWEEN: u64 = 256;
 
-/// The arrays of a launch, by the address of their first byte: a kernel reads arguments alone, and writes results alone.
+/// The arrays of a launch, by their addresses: a kernel reads arguments alone, and writes results alone.
 struct Arrays {
     parts: BTreeMap<u64, (Vec<u8>, Access)>,
 }
