@@ -251,6 +251,37 @@ fn rollouts_have_the_bits_of_the_processor() {
     compare_rollout::<f32>(&arm.in_form(Form::SevenSteps), Function::ForwardDynamics, Precision::Single, |x| x);
 }
 
+/// What the interpreter must see: kernels that read or write beside their arrays, and addresses of no number.
+#[test]
+fn kernels_beside_their_arrays_are_seen() {
+    let arm = shipped("planar2");
+    let prefix = Prefix::of(arm.robot());
+    let text = |function| {
+        let program = arm.function(function).expect("a function").program();
+        ptx(arm.robot(), std::slice::from_ref(program), Precision::Double, &prefix, &Additions::default())
+            .expect("text")
+    };
+    let good = text(Function::InverseDynamics);
+    let run = |text: &str, end: &str, results: usize, numbers: usize| {
+        let kernel = read(text).remove(&format!("planar2_inverse_dynamics_{end}")).expect("a kernel");
+        let arguments: [Vec<f64>; 3] = [vec![0.5; 10], vec![0.5; numbers], vec![0.5; 10]];
+        std::panic::catch_unwind(|| kernel.run(&arguments, results, 5, 64)).is_ok()
+    };
+    for end in ["columns", "rows"] {
+        let seen = |from: &str, to: &str| {
+            assert!(good.contains(from), "{from}");
+            !run(&good.replace(from, to), end, 10, 10)
+        };
+        assert!(run(&good, end, 10, 10), "{end}");
+        assert!(!run(&good, end, 9, 10) && !run(&good, end, 10, 9), "{end}: arrays that are too short");
+        assert!(seen("@%is_beyond ret;", ""), "{end}: threads beyond the last state");
+        assert!(seen("ld.param.u64 %out, [out]", "ld.param.u64 %out, [in_q]"), "{end}: results over arguments");
+        assert!(seen("ld.param.u64 %in_q, [in_q]", "ld.param.u64 %in_q, [out]"), "{end}: arguments from results");
+        assert!(seen("%in_q, %in_q;\n", "%in_q, %in_q;\n    add.u64 %in_q, %in_q, 4;\n"), "{end}: half a number");
+        assert!(seen("%out, %out;\n", "%out, %out;\n    add.u64 %out, %out, 4;\n"), "{end}: half a result");
+    }
+}
+
 /// A rod that falls, in closed form: nothing of it is written twice.
 #[test]
 fn a_rollout_of_a_slider_is_a_sum() {

@@ -239,12 +239,16 @@ impl GpuArm {
             if every == 0 || every > steps {
                 return Err(GpuError::Range { what: "every", found: every.into(), allowed });
             }
-            let bits = match T::PRECISION {
-                #[allow(clippy::cast_possible_truncation)] // rounded once, as on the processor
-                Precision::Single => u64::from((step as f32).to_bits()),
-                Precision::Double => step.to_bits(),
+            // the steps that the processor takes, too: finite and with a square above zero, once they are rounded
+            let (bits, is_usable) = match T::PRECISION {
+                #[allow(clippy::cast_possible_truncation)]
+                Precision::Single => {
+                    let step = step as f32;
+                    (step.to_bits().into(), step.is_finite() && step * step > 0.0)
+                }
+                Precision::Double => (step.to_bits(), step.is_finite() && step * step > 0.0),
             };
-            if !(step > 0.0 && step.is_finite()) {
+            if !(step > 0.0 && is_usable) {
                 return Err(GpuError::Step(step));
             }
             parameters.extend([bits, steps.into(), every.into()]);

@@ -4,6 +4,7 @@
 //! alone reads; here they are numbers of the same size.
 #![allow(unsafe_code)]
 
+use std::error::Error as _;
 use std::ffi::{CStr, CString, c_char, c_int, c_uint, c_void};
 use std::path::Path;
 
@@ -32,7 +33,7 @@ macro_rules! calls {
                 // program chooses another library, as by LD_LIBRARY_PATH. Initialisers of a driver need nothing.
                 let library = unsafe { Library::new(name) }.map_err(|error| GpuError::NoDriver {
                     library: name.to_owned(),
-                    reason: error.to_string(),
+                    reason: error.source().map_or_else(|| error.to_string(), ToString::to_string),
                 })?;
                 $(
                     // SAFETY: the type is that of the function in `cuda.h`, whose names ending in _v2 fix it. The

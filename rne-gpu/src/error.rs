@@ -83,7 +83,7 @@ pub enum GpuError {
         /// The least and the largest number that are allowed.
         allowed: [u64; 2],
     },
-    /// The duration of a step is not a finite number above zero.
+    /// The duration of a step is not a finite number above zero of the number type of the arrays.
     Step(f64),
 }
 
@@ -92,8 +92,8 @@ impl fmt::Display for GpuError {
         match self {
             Self::NoDriver { library, reason } => write!(
                 f,
-                "no NVIDIA driver: {} was not found ({reason}). The functions of an arm on a graphics card need a card \
-                 of NVIDIA and its driver; without them, the processor computes the same functions",
+                "no NVIDIA driver: {} cannot be opened ({reason}). The functions of an arm on a graphics card need a \
+                 card of NVIDIA and its driver; without them, the processor computes the same functions",
                 library.display()
             ),
             Self::OldDriver { library, call } => write!(
@@ -143,7 +143,11 @@ impl fmt::Display for GpuError {
             Self::Range { what, found, allowed: [least, most] } => {
                 write!(f, "`{what}` is {found}, but it must be from {least} to {most}")
             }
-            Self::Step(step) => write!(f, "`step` is {step} s, but it must be a finite number above zero"),
+            Self::Step(step) => write!(
+                f,
+                "`step` is {step} s, but it must be a finite number above zero, also when it is rounded to the number \
+                 type of the arrays"
+            ),
         }
     }
 }

@@ -130,8 +130,10 @@ impl Arm {
     /// launch.
     /// A call reads the arrays where they are, launches a kernel on the caller's current stream, and does not wait.
     /// `device`: the number of the card. Needs NVIDIA's driver, and neither CUDA's toolkit nor a compiler.
-    #[pyo3(signature = (device=0))]
-    fn gpu<'py>(slf: &Bound<'py, Self>, device: usize) -> PyResult<Bound<'py, PyAny>> {
-        slf.py().import("rne.gpu")?.getattr("Gpu")?.call1((slf, device))
+    #[pyo3(signature = (device=None), text_signature = "($self, device=0)")]
+    fn gpu<'py>(slf: &Bound<'py, Self>, device: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
+        let gpu = slf.py().import("rne.gpu")?.getattr("Gpu")?;
+        // `rne/gpu.py` says what is wrong with a number of a card
+        device.map_or_else(|| gpu.call1((slf,)), |device| gpu.call1((slf, device)))
     }
 }

@@ -225,7 +225,9 @@ def test_wrong_arrays_are_refused(panda):
 
     refused(ValueError, "`q` is not on a graphics card of NVIDIA: copy it there", *[np.zeros((4, 7))] * 3)
     refused(TypeError, "`q` is a list, but it must be an array on a graphics card", [0] * 7, [0] * 7, [0] * 7)
-    refused(TypeError, "`qd` is of builtins, but others are of test_gpu", q, [0] * 7, qdd)
+    refused(TypeError, "`qd` is a list, but it must be an array on a graphics card", q, [0] * 7, qdd)
+    other = on_card(qd.numbers, of=type("Other", (Array,), {"__module__": "other.arrays"}))
+    refused(TypeError, "`qd` is of other, but others are of test_gpu: use one library", q, other, qdd)
     refused(TypeError, "needs `qdd`; it takes q, qd, qdd", q, qd)
     refused(TypeError, "takes q, qd, qdd, each once", q, qd, qdd, q=q)
     refused(TypeError, "`qd` is of float64, but `q` is of float32", q, on_card(np.zeros((4, 7))), qdd)
@@ -240,7 +242,16 @@ def test_wrong_arrays_are_refused(panda):
     refused(ValueError, "`out` shares memory with `qd`", q, qd, qdd, out=qd)
     refused(ValueError, "`out` can only be read", q, qd, qdd, out=on_card(qdd.numbers, flags=["read-only"]))
     refused(ValueError, "it must have 4 states of float32", q, qd, qdd, out=on_card(np.zeros((4, 7))))
-    refused(TypeError, "`inverse_dynamics` takes q", q, qd, qdd, speed=q)
+    refused(TypeError, "`inverse_dynamics` has no argument `speed`; it takes q, qd, qdd", q, qd, qdd, speed=q)
+    refused(TypeError, "this arm has no run-time parameters; `rne.load", q, qd, qdd, parameters=q)
+    refused(TypeError, "takes q, qd, qdd, each once", q, qd, qdd, q)
+    # rows with two bytes between them, and numbers between the addresses of numbers
+    padded = Array(memory((4,), np.dtype([("row", "f4", 7), ("flag", "i2")]))["row"])
+    refused(ValueError, "`qd` is not contiguous", q, padded, qdd)
+    refused(ValueError, "it must have 4 states of float32", q, qd, qdd, out=padded)
+    shifted = Array(memory((4 * 7 * 4 + 2,), "u1")[2:].view("f4").reshape(4, 7))
+    refused(ValueError, "`qd` begins at the address 0x.*, but it must be a multiple of 4 bytes", q, shifted, qdd)
+    refused(ValueError, "`out` begins at the address", q, qd, qdd, out=shifted)
     out = on_card(np.zeros((4, 7), "float32"))
     assert gpu.inverse_dynamics(q, qd, qdd, out=out) is out
     same(out, panda.inverse_dynamics(q.numbers, qd.numbers, qdd.numbers))
@@ -250,12 +261,35 @@ def test_wrong_arrays_are_refused(panda):
         gpu.rollout(q, qd, tau, 0.1, every=4)
     with pytest.raises(ValueError, match=r"`tau` has the shape \(4, 7\), but it must be \(N, T, 7\)"):
         gpu.rollout(q, qd, qdd, 0.1)
-    with pytest.raises(ValueError, match="`step` is 0 s, but it must be a finite number above zero"):
-        gpu.rollout(q, qd, tau, 0)
+    for every in (1.5, "2"):
+        with pytest.raises(TypeError, match=f"`every` is {every!r}, but it must be a whole number"):
+            gpu.rollout(q, qd, tau, 0.1, every=every)
+    # the last two are 0 and infinite in float32
+    for step in (0, -0.1, float("nan"), 1e-60, 1e60):
+        with pytest.raises(ValueError, match="`step` is .* s, but it must be a finite number above zero"):
+            gpu.rollout(q, qd, tau, step)
+    with pytest.raises(TypeError, match="`step` is 'fast', but it must be a number"):
+        gpu.rollout(q, qd, tau, "fast")
+    with pytest.raises(TypeError, match="has no argument `friction`: it has neither friction nor limits, and `Arm.rollout`"):
+        gpu.rollout(q, qd, tau, 0.1, friction=True)
+    with pytest.raises(ValueError, match="`out` has 4 arrays, but it must have 2: for positions and for velocities"):
+        gpu.rollout(q, qd, tau, 0.1, out=[q] * 4)
+    with pytest.raises(ValueError, match="`out` has 1 arrays, but it must have 2"):
+        gpu.rollout(q, qd, tau, 0.1, out=tau)
     with pytest.raises(AttributeError, match="has no function `torques` on a graphics card"):
         gpu.torques(q)
     with pytest.raises(TypeError, match="`kinetic_energy` takes no payload"):
         gpu.kinetic_energy(q, qd, payload=q)
+    with pytest.raises(AttributeError, match="has no function `mass_matrx` on a graphics card; did you mean `mass_matrix`"):
+        gpu.mass_matrx(q)
+    with pytest.raises(ValueError, match="has no function `mass_matrx` on a graphics card; did you mean `mass_matrix`"):
+        gpu.prepare("mass_matrx")
+    with pytest.raises(TypeError, match="`dtype` is half, but it must be float32 or float64"):
+        gpu.prepare(dtype="half")
+    with pytest.raises(ValueError, match="`device` is -1, but it must be the number of a graphics card, counted from 0"):
+        panda.gpu(-1)
+    with pytest.raises(TypeError, match="`device` is 'cuda:0', but it must be a whole number"):
+        panda.gpu("cuda:0")
     with pytest.raises(RuntimeError, match="there is no graphics card 3: this machine has 1, counted from 0"):
         panda.gpu(3)
 
@@ -266,6 +300,21 @@ def test_tensors_of_pytorch():
     command = [sys.executable, ROOT / "benches/gpu/mppi.py", "--fake", LIBRARY, "--samples=33", "--steps=4", "--cycles=3"]
     said = subprocess.run(command, capture_output=True, text=True)
     assert "rollouts of 4 steps per second" in said.stdout and "distance to the goal" in said.stdout, said.stderr
+
+
+def test_what_is_prepared_is_not_translated_again():
+    arm = rne.robots.planar2
+    gpu, (q, qd, tau) = arm.gpu(), (on_card(one) for one in states(arm, 2, "float64"))
+    payload = on_card(np.tile(rne.payload(1.5), (2, 1)))
+    gpu.prepare("mass_matrix", dtype=np.float64, rollout=True)
+    gpu.prepare("inverse_dynamics", dtype=np.float64, rollout=True, payload=True)
+    translations = driver.fakeCount(TRANSLATIONS)
+    gpu.mass_matrix(q)
+    gpu.inverse_dynamics(q, qd, tau, payload=payload)
+    torques = on_card(tau.numbers[:, None])
+    gpu.rollout(q, qd, torques, 0.1)
+    gpu.rollout(q, qd, torques, 0.1, payload=payload)
+    assert driver.fakeCount(TRANSLATIONS) == translations
 
 
 def test_no_state_is_no_launch(panda):
@@ -279,5 +328,6 @@ def test_a_machine_without_a_driver_gives_one_line():
     command = "import rne\ntry: rne.robots.panda.gpu()\nexcept RuntimeError as error: print(error)"
     environment = {**os.environ, "RNE_LIBCUDA": "libcuda-of-nobody.so.1"}
     said = subprocess.run([sys.executable, "-c", command], env=environment, capture_output=True, text=True, check=True)
-    assert said.stdout.startswith("no NVIDIA driver: libcuda-of-nobody.so.1 was not found (")
+    assert said.stdout.startswith("no NVIDIA driver: libcuda-of-nobody.so.1 cannot be opened (")
+    assert "No such file" in said.stdout or sys.platform != "linux"
     assert said.stdout.count("\n") == 1 and said.stderr == ""

@@ -293,7 +293,10 @@ fn emitted(
 /// Refuses rollouts of a robot whose own equations of motion no kernel integrates.
 fn can_be_rolled_out(arguments: &Arguments, robot: &Robot) -> Result<(), Failure> {
     if !robot.closed.is_empty() {
-        return Err(Failure::usage("a robot with closed loops cannot be rolled out in a kernel"));
+        return Err(Failure::usage(format_args!(
+            "a robot with closed loops cannot be rolled out in a kernel; leave {TYPED}--rollout{TYPED:#} out: \
+             {TYPED}--function forward_dynamics_of_loops{TYPED:#} writes a kernel of its accelerations"
+        )));
     }
     if robot.floating_base.is_some() && arguments.functions.is_empty() {
         return Err(Failure::usage(format_args!(

@@ -25,6 +25,22 @@ fn kernels_are_named_after_robot_function_and_order() {
 }
 
 #[test]
+fn the_order_of_parameters_at_run_time_stands_at_the_top() {
+    for lang in ["ptx", "cuda"] {
+        let text = fine(&["emit", "docs/desk_arm.yaml", "--lang", lang, "--run-time", "fore,upper"]);
+        assert!(
+            text.contains("parameters at run time, with their values in the file: fore = 0.3, upper = 0.4"),
+            "{text}"
+        );
+        // lines are broken where they are full
+        let words = text.replace("\n// ", " ");
+        assert!(words.contains(
+            "parameters[2]: Parameters of the robot file that are given at run time, in the order of the list"
+        ));
+    }
+}
+
+#[test]
 fn a_header_for_cuda_is_a_template() {
     let text = fine(&["emit", ROBOT, "--lang", "cuda", "--function", "gravity_torques"]);
     let head =
@@ -45,6 +61,18 @@ fn files_have_names_of_their_language_and_are_checked() {
         fails(1, &[&emit[..], &["--check", &file]].concat(), &["is stale", "--lang", lang]);
         fails(2, &[&emit[..], &["-o", &path(&folder, wrong)]].concat(), &[wrong, name]);
     }
+}
+
+#[test]
+fn robots_that_no_kernel_rolls_out_are_told_what_does() {
+    let rollout = ["--lang", "ptx", "--rollout"];
+    let of_loops = ["closed loops cannot be rolled out", "leave --rollout out", "forward_dynamics_of_loops"];
+    fails(2, &[&["emit", "docs/four_bar.yaml"][..], &rollout].concat(), &of_loops);
+    fails(
+        2,
+        &[&["emit", "docs/satellite.yaml"][..], &rollout].concat(),
+        &["floating base", "--function forward_dynamics"],
+    );
 }
 
 #[test]

@@ -26,7 +26,7 @@ macro_rules! abouts {
         fn about(array: &str) -> &'static str {
             match array {
                 $(stringify!($name) => $about,)*
-                _ => "Parameters of the robot file that are given at run time, in their order.",
+                _ => "Parameters of the robot file that are given at run time, in the order of the list at the top.",
             }
         }
     };

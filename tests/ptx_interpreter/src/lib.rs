@@ -1,7 +1,7 @@
 //! An interpreter of the part of PTX that `rne emit --lang ptx` writes: it knows nothing of programs, so that a test
 //! without a graphics card tells what a kernel computes. What it does not know it refuses by a panic.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// A kernel as it was read.
 #[derive(Debug)]
@@ -244,8 +244,49 @@ macro_rules! real {
 real!(f32, u32);
 real!(f64, u64);
 
-/// Where the first array begins: a kernel that reads at 0 reads nothing that exists.
-const START: usize = 256;
+/// Bytes between arrays, and before the first: a kernel that reads at 0 reads nothing that exists.
+const BETWEEN: u64 = 256;
+
+/// The arrays of a launch, by their addresses: a kernel reads arguments alone, and writes results alone.
+struct Arrays {
+    parts: BTreeMap<u64, (Vec<u8>, Access)>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Access {
+    Read,
+    Write,
+}
+
+impl Arrays {
+    fn add(&mut self, bytes: Vec<u8>, access: Access) -> u64 {
+        let end = self.parts.last_key_value().map_or(0, |(start, (bytes, _))| start + bytes.len() as u64);
+        let start = (end + BETWEEN).next_multiple_of(BETWEEN);
+        self.parts.insert(start, (bytes, access));
+        start
+    }
+
+    /// The array with these bytes, and where they begin in it.
+    fn place(&self, address: u64, bytes: usize, access: Access) -> (u64, usize) {
+        let found = self.parts.range(..=address).next_back();
+        let inside = found.map(|(start, part)| (*start, usize::try_from(address - start).expect("an offset"), part));
+        let inside = inside.filter(|(_, at, part)| at + bytes <= part.0.len() && part.1 == access);
+        inside
+            .map_or_else(|| panic!("{access:?} of {bytes} bytes at {address}: no array"), |(start, at, _)| (start, at))
+    }
+}
+
+impl Memory for Arrays {
+    fn load(&self, address: u64, bytes: usize) -> u64 {
+        let (start, at) = self.place(address, bytes, Access::Read);
+        self.parts[&start].0.load(at as u64, bytes)
+    }
+
+    fn store(&mut self, address: u64, bytes: usize, number: u64) {
+        let (start, at) = self.place(address, bytes, Access::Write);
+        self.parts.get_mut(&start).expect("an array").0.store(at as u64, bytes, number);
+    }
+}
 
 impl Kernel {
     /// Its parameters.
@@ -281,31 +322,26 @@ impl Kernel {
         others: &[u64],
         width: u32,
     ) -> Vec<Vec<T>> {
-        let mut memory = vec![0_u8; START];
+        let mut memory = Arrays { parts: BTreeMap::new() };
         let mut values = Vec::new();
         for array in arguments {
-            values.push(if array.is_empty() { 0 } else { memory.len() as u64 });
-            memory.extend(array.iter().flat_map(|number| number.bits().to_le_bytes()[..T::BYTES].to_vec()));
+            let bytes = array.iter().flat_map(|number| number.bits().to_le_bytes()[..T::BYTES].to_vec()).collect();
+            values.push(if array.is_empty() { 0 } else { memory.add(bytes, Access::Read) });
         }
-        let starts: Vec<usize> = results
-            .iter()
-            .map(|results| {
-                let start = memory.len();
-                // a number that no kernel computes
-                memory.resize(start + results * T::BYTES, 0xA5);
-                start
-            })
-            .collect();
-        values.extend(starts.iter().map(|start| *start as u64));
+        // a number that no kernel computes
+        let rooms = results.iter().map(|results| memory.add(vec![0xA5; results * T::BYTES], Access::Write));
+        let starts: Vec<u64> = rooms.collect();
+        values.extend(&starts);
         values.extend(others);
         let states = u32::try_from(*others.last().expect("the number of states")).expect("few");
         let width = if self.is_of_64 { 64 } else { width };
         // a block more than there are states for
         self.launch(&mut memory, &values, states.div_ceil(width) + 1, width);
-        let number = |address: usize| T::of_bits(memory.load(address as u64, T::BYTES));
-        let read =
-            |(start, count): (usize, &usize)| (0..*count).map(|index| number(start + index * T::BYTES)).collect();
-        starts.into_iter().zip(results).map(read).collect()
+        let numbers = |start: u64| {
+            let bytes = memory.parts[&start].0.chunks_exact(T::BYTES);
+            bytes.map(|number| T::of_bits(number.to_vec().load(0, T::BYTES))).collect()
+        };
+        starts.into_iter().map(numbers).collect()
     }
 
     /// Runs blocks of `width` threads; `parameters` has the bits of each parameter.
@@ -376,18 +412,17 @@ impl Kernel {
                 "ld.global.nc.f32" | "ld.global.nc.f64" | "ld.shared.f32" | "ld.shared.f64" => {
                     let bytes = if operation.ends_with("64") { 8 } else { 4 };
                     let (is_shared, at) = (operation.starts_with("ld.shared"), value(1));
-                    assert!(
-                        (is_shared || at >= START as u64) && at.is_multiple_of(bytes as u64),
-                        "an address of nothing"
-                    );
+                    assert!(at.is_multiple_of(bytes as u64), "{bytes} bytes at {at}: not aligned");
                     if is_shared { shared.load(at, bytes) } else { memory.load(at, bytes) }
                 }
                 "st.global.f32" | "st.global.f64" | "st.shared.f32" | "st.shared.f64" => {
                     let bytes = if operation.ends_with("64") { 8 } else { 4 };
+                    let at = value(0);
+                    assert!(at.is_multiple_of(bytes as u64), "{bytes} bytes at {at}: not aligned");
                     if operation.starts_with("st.shared") {
-                        shared.store(value(0), bytes, value(1));
+                        shared.store(at, bytes, value(1));
                     } else {
-                        memory.store(value(0), bytes, value(1));
+                        memory.store(at, bytes, value(1));
                     }
                     continue;
                 }

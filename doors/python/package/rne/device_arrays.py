@@ -36,9 +36,10 @@ class DeviceArray:
             kind, shape = interface["typestr"], tuple(interface["shape"])
             kind = _KINDS.get(kind, kind)
             address, is_read_only = interface["data"]
-            size = 8 if kind == "float64" else 4
             strides = interface.get("strides")
-            strides = _contiguous(shape) if strides is None else tuple(stride // size for stride in strides)
+            # a stride that is no whole number of numbers stays a fraction, which no contiguous array has
+            size = _bytes_of(kind)
+            strides = _contiguous(shape) if strides is None else tuple(stride / size for stride in strides)
             return cls(name, value, address or 0, shape, strides, kind, device, is_read_only)
         if place is not None and hasattr(value, "__dlpack__"):
             return cls(name, value, *_of_dlpack(value), device)
@@ -58,13 +59,22 @@ class DeviceArray:
                 found.add(order)
         return found
 
+    @property
+    def size(self):
+        """The bytes of a number."""
+        return _bytes_of(self.kind)
+
     def overlaps(self, other):
         """Whether memory is shared; both are contiguous."""
         (start, end), (begin, finish) = self._memory(), other._memory()
         return start < finish and begin < end
 
     def _memory(self):
-        return self.address, self.address + math.prod(self.shape) * (8 if self.kind == "float64" else 4)
+        return self.address, self.address + math.prod(self.shape) * self.size
+
+
+def _bytes_of(kind):
+    return 8 if kind == "float64" else 4
 
 
 def _contiguous(shape):

@@ -1,7 +1,9 @@
 """Functions of an arm on a graphics card of NVIDIA, for arrays that are on it: `Arm.gpu`."""
 
+import difflib
 import functools
 import math
+import operator
 
 from ._rne import GpuArm
 from .device_arrays import DeviceArray, empty, library_of, moved, stream_of
@@ -23,7 +25,10 @@ class Gpu:
     """
 
     def __init__(self, arm, device=0):
-        self._arm, self._gpu, self.device = arm, GpuArm(arm, device), device
+        self.device = _whole("device", device)
+        if self.device < 0:
+            raise ValueError(f"`device` is {device}, but it must be the number of a graphics card, counted from 0")
+        self._arm, self._gpu = arm, GpuArm(arm, self.device)
         self._names, self._descriptions = set(self._gpu.functions), {}
 
     @property
@@ -39,21 +44,32 @@ class Gpu:
 
     def __getattr__(self, name):
         if name.startswith("_") or name not in self._names:
-            raise AttributeError(f"`{self.__dict__.get('_arm', self)!r}` has no function `{name}` on a graphics card")
+            raise AttributeError(self._unknown(name))
         return functools.partial(self._call, name)
+
+    def _unknown(self, name):
+        known = self.__dict__.get("_names", ())
+        meant = "".join(f"; did you mean `{word}`?" for word in difflib.get_close_matches(str(name), known, 1))
+        return f"`{self.__dict__.get('_arm')!r}` has no function `{name}` on a graphics card{meant or '; `dir` lists those it has'}"
 
     def _told(self, function):
         if function not in self._descriptions:
             self._descriptions[function] = self._gpu.told(function)
         return self._descriptions[function]
 
-    def prepare(self, *functions, dtype="float32", rollout=False):
-        """Translates functions, with `rollout=True` rollouts by forward dynamics, before a CUDA graph is captured."""
-        kind = _kind("dtype", str(dtype).rpartition(".")[2])
-        for function in functions or ([] if rollout else ["inverse_dynamics"]):
-            self._gpu.prepare(function, kind == "float64", False)
-        if rollout:
-            self._gpu.prepare("forward_dynamics", kind == "float64", True)
+    def prepare(self, *functions, dtype="float32", rollout=False, payload=False):
+        """Translates functions, with `rollout=True` rollouts by forward dynamics, before a CUDA graph is captured.
+
+        payload: whether the calls will have the keyword `payload`.
+        """
+        is_double = _kind("`dtype` is", getattr(dtype, "__name__", str(dtype).rpartition(".")[2])) == "float64"
+        names = list(functions or ([] if rollout else ["inverse_dynamics"]))
+        work = [(name, False) for name in names] + [("forward_dynamics", True)] * bool(rollout)
+        work = [(f"{name}_with_payload" if payload else name, is_rollout) for name, is_rollout in work]
+        for name, is_rollout in work:
+            if name not in self._names and not is_rollout:
+                raise ValueError(self._unknown(name))
+            self._gpu.prepare(name, is_double, is_rollout)
 
     def _call(self, function, *arguments, payload=None, out=None, stream=None, **keywords):
         if payload is not None:
@@ -75,7 +91,7 @@ class Gpu:
             for end, size, (shape, is_pose) in zip(ends, sizes, results)
         )
 
-    def rollout(self, q, qd, tau, step, *, every=1, payload=None, parameters=None, out=None, stream=None):
+    def rollout(self, q, qd, tau, step, *, every=1, payload=None, parameters=None, out=None, stream=None, **others):
         """States of N samples after each of T steps under torques, by semi-implicit Euler, in one launch.
 
         The steps are those of `Arm.rollout` without friction and limits, with the same bits. q, qd: shape (N, n). tau:
@@ -83,6 +99,11 @@ class Gpu:
         state alone. out: two arrays for the positions and velocities. Returns q and qd, of shape (N, T // every, n). As
         columns, tau is a view such as `torch.empty(T, n, N).movedim(-1, 0)`.
         """
+        if others:
+            raise TypeError(
+                f"`rollout` on a graphics card has no argument `{next(iter(others))}`: it has neither friction nor limits, "
+                "and `Arm.rollout` on the processor has both"
+            )
         function = "forward_dynamics" if payload is None else "forward_dynamics_with_payload"
         given = {"q": q, "qd": qd, "tau": tau, "payload": payload, "parameters": parameters}
         given = {name: value for name, value in given.items() if value is not None}
@@ -92,14 +113,14 @@ class Gpu:
         (dof,) = results[0][0]
         if len(shape) != 3 or shape[2] != dof or 0 in shape[1:]:
             raise ValueError(f"`tau` has the shape {shape}, but it must be (N, T, {dof}), with at least one step")
-        steps, every = shape[1], int(every)
+        steps, every = shape[1], _whole("every", every)
         if not 1 <= every <= steps:
             raise ValueError(f"`every` is {every}, but it must be from 1 to the number of steps, {steps}")
         shapes = {name: (given[name], (steps, dof) if name == "tau" else (elements,)) for name, elements in told}
         batch = _Batch(self.device, shapes)
         part = (steps // every, dof)
         rooms = batch.room([("out[0]", part), ("out[1]", part)], out)
-        self._launch(batch, function, rooms, stream, (steps, float(step), every))
+        self._launch(batch, function, rooms, stream, (steps, _real("step", step), every))
         return tuple(batch.shaped(room, 0, part[0], part) for room in rooms)
 
     def _launch(self, batch, function, rooms, stream, rollout=None):
@@ -114,7 +135,12 @@ class Gpu:
 def _given(function, names, arguments, keywords):
     """The arguments by their names."""
     given = dict(zip(names, arguments))
-    if len(arguments) > len(names) or given.keys() & keywords.keys() or keywords.keys() - set(names):
+    unknown = [name for name in keywords if name not in names]
+    if unknown[:1] == ["parameters"]:
+        raise TypeError("this arm has no run-time parameters; `rne.load(…, run_time=[…])` leaves some free")
+    if unknown:
+        raise TypeError(f"`{function}` has no argument `{unknown[0]}`; it takes {', '.join(names)}")
+    if len(arguments) > len(names) or given.keys() & keywords.keys():
         raise TypeError(f"`{function}` takes {', '.join(names)}, each once")
     given.update(keywords)
     missing = [name for name in names if name not in given]
@@ -124,10 +150,24 @@ def _given(function, names, arguments, keywords):
     return given
 
 
-def _kind(name, kind):
+def _kind(what, kind):
     if kind not in ("float32", "float64"):
-        raise TypeError(f"`{name}` is of {kind}, but it must be float32 or float64")
+        raise TypeError(f"{what} {kind}, but it must be float32 or float64")
     return kind
+
+
+def _whole(name, value):
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise TypeError(f"`{name}` is {value!r}, but it must be a whole number") from None
+
+
+def _real(name, value):
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"`{name}` is {value!r}, but it must be a number") from None
 
 
 class _Batch:
@@ -138,11 +178,12 @@ class _Batch:
         self.first = next(value for value, _ in given.values())
         self.library = library_of(self.first)
         for name, (value, shape) in given.items():
+            if library_of(value) == "jax":
+                value.block_until_ready()
+            array = DeviceArray.of(name, value)
             if library_of(value) != self.library:
                 raise TypeError(f"`{name}` is of {library_of(value)}, but others are of {self.library}: use one library")
-            if self.library == "jax":
-                value.block_until_ready()
-            self.arrays[name] = self._checked(name, DeviceArray.of(name, value), shape)
+            self.arrays[name] = self._checked(name, array, shape)
         self.kind = next(iter(self.arrays.values())).kind
         self.states = next(iter(self.arrays.values())).shape[0]
         orders = {name: array.orders() for name, array in self.arrays.items()}
@@ -162,18 +203,23 @@ class _Batch:
         self.is_columns = "rows" not in common
 
     def _checked(self, name, array, shape):
-        _kind(name, array.kind)
+        _kind(f"`{name}` is of", array.kind)
         if array.device is not None and array.device != self.device:
             raise ValueError(f"`{name}` is on graphics card {array.device}, but the arm is on card {self.device}")
         wanted = f"(N, {', '.join(map(str, shape))})"
         if len(array.shape) < 2 or math.prod(array.shape[1:]) != math.prod(shape):
             raise ValueError(f"`{name}` has the shape {array.shape}, but it must be {wanted}")
+        if array.address % array.size:
+            raise ValueError(
+                f"`{name}` begins at the address {array.address:#x}, but it must be a multiple of {array.size} bytes: make a copy"
+            )
         return array
 
     def room(self, parts, out):
         """Arrays for results: those of the caller, or new ones of the library."""
-        if out is not None and len(out) != len(parts):
-            raise ValueError(f"`out` has {len(out)} arrays, but it must have {len(parts)}")
+        count = len(parts) if out is None else len(out) if hasattr(out, "__len__") else 1
+        if count != len(parts):
+            raise ValueError(f"`out` has {count} arrays, but it must have {len(parts)}: for positions and for velocities")
         rooms = []
         for index, (name, shape) in enumerate(parts):
             axes = (*shape, self.states) if self.is_columns else (self.states, *shape)
