@@ -124,7 +124,17 @@ const STEPS: &[Step] = &[
         name: "certify",
         about: "certificates of three arms, thirty mutations of C code before the checker, a firmware that builds",
         variables: &[("RNE_EXHAUSTIVE", "1")],
-        command: &["cargo", "test", "--test", "cli", "--", "certify", "examples_of_helps", "what_is_written_builds"],
+        command: &[
+            "cargo",
+            "test",
+            "--test",
+            "cli",
+            "--",
+            "--include-ignored",
+            "certify",
+            "examples_of_helps",
+            "what_is_written_builds",
+        ],
         needs: Needs::Nothing,
     },
     Step {

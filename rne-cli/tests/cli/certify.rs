@@ -101,6 +101,7 @@ fn the_figures_of_json_are_those_of_the_page() {
 /// The table of docs/firmware.md, and that more options of the compiler do not change a bit: QEMU's results are
 /// compared with those of this computer.
 #[test]
+#[ignore = "slow: cargo xtask verify certify"]
 fn options_of_the_compiler_make_a_quadruped_smaller() {
     if !has_tools() {
         return;
@@ -135,6 +136,7 @@ fn options_of_the_compiler_make_a_quadruped_smaller() {
 
 /// The code of the certificate is a file that anybody can write: by its command, and of a robot file on standard input.
 #[test]
+#[ignore = "slow: cargo xtask verify certify"]
 fn the_code_of_a_certificate_is_what_its_command_writes() {
     if !has_tools() {
         return;
@@ -319,6 +321,7 @@ fn mutations(source: &str, kind: usize) -> Vec<(usize, usize, String)> {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask verify certify"]
 fn the_checker_accepts_emitted_code_and_refuses_thirty_mutations_of_thirty() {
     let has_python = Command::new("python3").arg("--version").output().is_ok();
     if !has_python || !has_tools() {

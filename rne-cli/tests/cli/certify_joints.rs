@@ -12,6 +12,7 @@ use crate::certify::{checked, has_tools, run_checker};
 const ARM: &str = "docs/desk_arm_identified.yaml";
 
 #[test]
+#[ignore = "slow: cargo xtask verify certify"]
 fn friction_and_limits_are_certified_and_checked_again() {
     if !has_tools() {
         return;
@@ -103,6 +104,7 @@ fn a_folder_of_evidence_that_cannot_be_made_is_named_plainly() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask verify certify"]
 fn the_checker_takes_a_file_with_several_functions() {
     let has_python = std::process::Command::new("python3").arg("--version").output().is_ok();
     if !has_python || !has_tools() {

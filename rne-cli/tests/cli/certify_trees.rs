@@ -35,6 +35,7 @@ fn all_shipped_trees_are_tried() {
 
 /// Each rule that cppcheck reports for the code and the header of a tree has a recorded deviation.
 #[test]
+#[ignore = "slow: cargo xtask verify certify"]
 fn trees_violate_no_rule_of_misra_without_a_deviation() {
     if !has_tools() {
         return;
@@ -101,6 +102,7 @@ fn functions_with_a_payload_and_wrenches_are_certified() {
 /// What a controller calls: the functions that `rne emit` writes by default, among them one that takes sines and
 /// cosines; and the torques of a robot that walks, whose results are a struct in C.
 #[test]
+#[ignore = "slow: cargo xtask verify certify"]
 fn functions_of_a_controller_are_certified() {
     if !has_tools() {
         return;
@@ -199,6 +201,7 @@ fn compilers_of_other_targets_are_refused() {
 
 /// A check with other options than those of the certificate begins with both commands.
 #[test]
+#[ignore = "slow: cargo xtask verify certify"]
 fn a_check_names_the_command_of_the_certificate() {
     if !has_tools() {
         return;
@@ -219,6 +222,7 @@ fn a_check_names_the_command_of_the_certificate() {
 
 /// What the checker does not compute is not called wrong.
 #[test]
+#[ignore = "slow: cargo xtask verify certify"]
 fn the_checker_says_what_it_does_not_support() {
     let has_python = Command::new("python3").arg("--version").output().is_ok();
     if !has_python || !has_tools() {
