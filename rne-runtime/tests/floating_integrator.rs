@@ -9,8 +9,7 @@ use common::{Numbers, SIX_BASE, assert_close, link, six_joints};
 use rne_model::Convention::{Modified, Standard};
 use rne_runtime::{
     Arm, BaseAcceleration, BaseMotion, BaseTwist, Dual, FloatingAccelerations, FloatingBase, FloatingIntegratorStep,
-    FloatingIntegratorStepDerivatives, FloatingInverseDynamicsDerivatives, FloatingNextState, FloatingState,
-    FloatingStepDerivatives, FloatingTorqueDerivatives, FloatingTorques, Pose, Quaternion, Scalar, Wrench,
+    FloatingNextState, FloatingState, FloatingStepDerivatives, FloatingTorques, Pose, Quaternion, Scalar, Wrench,
 };
 
 const DOF: usize = 6;
@@ -64,19 +63,6 @@ impl FloatingBase<DOF, NV, 0> for Floating {
         wrenches: &[Wrench<T>; 0],
     ) -> FloatingAccelerations<DOF, T> {
         self.0.floating_forward_dynamics::<T, NV, 0>(q, qd, tau, omega, (&[], wrenches))
-    }
-}
-
-impl FloatingInverseDynamicsDerivatives<DOF, NV, 0> for Floating {
-    fn floating_inverse_dynamics_derivatives<T: Scalar>(
-        &self,
-        q: &OfJoints<T>,
-        qd: &OfJoints<T>,
-        qdd: &OfJoints<T>,
-        base: &BaseMotion<T>,
-        wrenches: &[Wrench<T>; 0],
-    ) -> FloatingTorqueDerivatives<DOF, NV, T> {
-        self.0.floating_inverse_dynamics_derivatives(q, qd, qdd, base, (&[], wrenches))
     }
 }
 
@@ -160,8 +146,10 @@ fn derivatives_are_those_by_dual_numbers() {
             }
             let tau: [f64; DOF] = numbers.array(5.0);
             let step = 0.05;
+            let State { orientation, position, twist, q, qd } = state;
+            let pose = Pose { rotation: orientation.rotation(), translation: position };
             let found: FloatingStepDerivatives<DOF, NV, f64> =
-                arm.floating_euler_step_derivatives(&state, &tau, &[], &GRAVITY, step);
+                arm.0.floating_euler_step_derivatives([&q, &qd, &tau], (&pose, &twist), step, (&[], &[]));
             let by = |direction: usize| {
                 let tau = from_fn(|joint| Dual {
                     value: tau[joint],
@@ -173,7 +161,7 @@ fn derivatives_are_those_by_dual_numbers() {
                     &state,
                     &tau,
                     &[],
-                    &GRAVITY.map(Dual::constant),
+                    &SIX_BASE.gravity.map(Dual::constant),
                     Dual::constant(step),
                 );
                 change(&next)

@@ -224,7 +224,9 @@ impl<'s, 'r> Derivation<'s, 'r> {
         } else if function.takes(Argument::BaseVelocity) || function.takes(Argument::BaseTwist) {
             // accelerations do not depend on the linear velocity
             let nothing = builder.zeros(Cause::NoAcceleration);
-            Motion::of_base(&arm, [vector(Quantity::Omega, 0), nothing, nothing], builder.zeros(Cause::NoAcceleration))
+            let [omega_dot, acceleration] = [Quantity::OmegaDot, Quantity::Acceleration]
+                .map(|quantity| builder.solved_of_base(quantity).unwrap_or(nothing));
+            Motion::of_base(&arm, [vector(Quantity::Omega, 0), omega_dot, acceleration], nothing)
         } else {
             Motion::of_fixed_base(builder, arm.gravity)
         };
