@@ -125,10 +125,10 @@ pub use rne_macro::{
     Actuation, BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics,
     BatchInverseDynamicsDerivatives, BatchMassMatrix, CentreOfMass, CentroidalMomentum, ClosedLoops, ContactDynamics,
     CoriolisMatrix, Energy, EulerStep, EulerStepDerivatives, FloatingBase, FloatingClosedLoops, FloatingEnergy,
-    FloatingEulerStep, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor, ForwardDynamics,
-    ForwardDynamicsDerivatives, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient,
-    InverseDynamicsHessian, JacobianDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase,
-    PayloadDynamics, Regressor, TipWrenches,
+    FloatingEulerStep, FloatingEulerStepDerivatives, FloatingInverseDynamicsDerivatives, FloatingKinematics,
+    FloatingRegressor, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics, InverseDynamics,
+    InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian, JacobianDerivatives, JointWrenches,
+    Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
 };
 #[doc(inline)]
 pub use rne_model as model;
@@ -138,8 +138,8 @@ pub use rne_runtime::{
     BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives,
     BatchMassMatrix, BatchScalar, CentreOfMass, CentroidalMomentum, ClosedLoops, ClosureStep, ComputedTorque, Constant,
     ContactDynamics, CoriolisMatrix, Desired, Dual, Energy, EulerStep, EulerStepDerivatives, FloatingAccelerations,
-    FloatingBase, FloatingClosedLoops, FloatingEnergy, FloatingEulerStep, FloatingIntegratorStep,
-    FloatingIntegratorStepDerivatives, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingNextState,
+    FloatingBase, FloatingClosedLoops, FloatingEnergy, FloatingEulerStep, FloatingEulerStepDerivatives,
+    FloatingIntegratorStep, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingNextState,
     FloatingRegressor, FloatingState, FloatingStepDerivatives, FloatingTorqueDerivatives, FloatingTorques,
     ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives,
     InverseDynamicsGradient, InverseDynamicsHessian, JacobianDerivatives, JointOrderError, JointWrenches, Kinematics,
@@ -155,9 +155,9 @@ pub use rne_runtime::{Arm, LinkTrace, Trace};
 #[doc(inline)]
 pub use rne_runtime::{
     BaseParameter, BaseParameters, DynAccelerationDerivatives, DynArm, DynFloatingNextState,
-    DynFloatingTorqueDerivatives, DynNextState, DynNextStateDerivatives, DynObserverState, DynStepDerivatives,
-    DynTorqueDerivatives, DynTorqueGradient, DynTorqueHessian, DynTrace, LinkParameter, LoadError, WrongJointCount,
-    WrongLength,
+    DynFloatingStepDerivatives, DynFloatingTorqueDerivatives, DynNextState, DynNextStateDerivatives, DynObserverState,
+    DynStepDerivatives, DynTorqueDerivatives, DynTorqueGradient, DynTorqueHessian, DynTrace, LinkParameter, LoadError,
+    WrongJointCount, WrongLength,
 };
 // The Python package has arms of any number of joints.
 #[doc(hidden)]

@@ -421,7 +421,7 @@ impl Target<'_> {
                         let (passive, equations) = (&self.passive, &self.equations);
                         quote!(#krate::#name<#passive, #equations, T>)
                     }
-                    Record::FloatingTorqueDerivatives => {
+                    Record::FloatingTorqueDerivatives | Record::FloatingStepDerivatives => {
                         let velocities = velocities(dof);
                         quote!(#krate::#name<#dof, #velocities, T>)
                     }
