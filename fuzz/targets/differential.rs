@@ -330,6 +330,11 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
             let twist = [next.twist.linear, next.twist.angular].concat();
             pose(&next.pose).chain(twist).chain(next.q).chain(next.qd).collect()
         }
+        Function::FloatingEulerStepDerivatives => {
+            let (pose, twist) = (state.pose(), state.twist());
+            let by = arm.floating_euler_step_derivatives(q, qd, tau, &pose, &twist, 1.0, &[*wrench])?;
+            [by.q_dq, by.q_dv, by.q_dtau, by.v_dq, by.v_dv, by.v_dtau].concat().concat()
+        }
         Function::TorqueHessian => {
             let hessian = arm.torque_hessian(q, qd, qdd, tau)?;
             [hessian.dq_dq, hessian.dq_dqd, hessian.dqd_dqd, hessian.dq_dqdd].concat().concat()

@@ -111,7 +111,8 @@ impl Target<'_> {
             Capability::FloatingBase
             | Capability::FloatingKinematics
             | Capability::ContactDynamics
-            | Capability::FloatingInverseDynamicsDerivatives => quote!(#dof, #velocities, #tips),
+            | Capability::FloatingInverseDynamicsDerivatives
+            | Capability::FloatingEulerStepDerivatives => quote!(#dof, #velocities, #tips),
             Capability::CentroidalMomentum => quote!(#dof, #velocities),
             Capability::ClosedLoops => {
                 let (passive, equations) = (&self.passive, &self.equations);

@@ -289,6 +289,24 @@ pub(crate) fn error(
             let of = Function::FloatingForwardDynamics;
             of_step.max(error(arm, maker, of, given, &accelerations, tolerance))
         }
+        Function::FloatingEulerStepDerivatives => {
+            let matrix = arm.runtime.floating_mass_matrix(given.q).expect("one per joint");
+            let Some(Conditioning { number, largest: of_matrix }) = conditioning(&matrix) else { return 0.0 };
+            if number >= 1e12 {
+                return 0.0;
+            }
+            // 1 + h times derivatives of accelerations
+            let solved = of_runtime(&arm.runtime, Function::FloatingForwardDynamics, given);
+            let base = BaseMotion {
+                acceleration: [solved[0], solved[1], solved[2]],
+                omega_dot: [solved[3], solved[4], solved[5]],
+                gravity: [0.0; 3],
+                ..given.base
+            };
+            let given = &Given { qdd: &solved[6..], base, ..*given };
+            let of_forces = largest(&of_runtime(&arm.runtime, Function::FloatingInverseDynamicsDerivatives, given));
+            error_on_scale(found, &expected, STEP * of_forces / of_matrix) / number
+        }
         Function::ForwardDynamics
         | Function::InverseMassMatrix
         | Function::InverseMassMatrixTimesTorques

@@ -184,7 +184,6 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let (builder, system) = (self.builder, self.system());
         let bias = builder.unnamed(|| self.floating_torques());
         let step = FloatingStep::new(builder, &system, &self.floating_half(), bias, self.arm.gravity);
-        // the same quantities come again, at these accelerations
         let solved = Self::new(builder, self.robot, Function::FloatingEulerStepDerivatives);
         let forces: Vec<_> = solved.floating_torques().into_iter().map(|(_, force)| force).collect();
         let variables = floating::variables(solved.coordinates()).concat();
@@ -241,7 +240,10 @@ impl<'s, 'r> Derivation<'s, 'r> {
             let nothing = builder.zeros(Cause::NoAcceleration);
             let [omega_dot, acceleration] = [Quantity::OmegaDot, Quantity::Acceleration]
                 .map(|quantity| builder.solved_of_base(quantity).unwrap_or(nothing));
-            Motion::of_base(&arm, [vector(Quantity::Omega, 0), omega_dot, acceleration], nothing)
+            let of_base = || Motion::of_base(&arm, [vector(Quantity::Omega, 0), omega_dot, acceleration], nothing);
+            // the same quantities come again, at the accelerations that are solved for
+            let is_first = function == Function::FloatingEulerStepDerivatives && !builder.has_accelerations();
+            if is_first { builder.unnamed(of_base) } else { of_base() }
         } else {
             Motion::of_fixed_base(builder, arm.gravity)
         };
