@@ -140,13 +140,14 @@ pub use rne_runtime::{
     ContactDynamics, CoriolisMatrix, Desired, Dual, Energy, EulerStep, EulerStepDerivatives, FloatingAccelerations,
     FloatingBase, FloatingClosedLoops, FloatingEnergy, FloatingEulerStep, FloatingEulerStepDerivatives,
     FloatingIntegratorStep, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingNextState,
-    FloatingRegressor, FloatingState, FloatingStepDerivatives, FloatingTorqueDerivatives, FloatingTorques,
-    ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives,
-    InverseDynamicsGradient, InverseDynamicsHessian, JacobianDerivatives, JointOrderError, JointWrenches, Kinematics,
-    LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, NextState,
-    NextStateDerivatives, ObserverState, Operations, Payload, PayloadDynamics, Pose, Quaternion, Regressor,
-    RungeKuttaStep, RungeKuttaStepDerivatives, Scalar, StepDerivatives, TipWrenches, TorqueDerivatives, TorqueGradient,
-    TorqueHessian, VectorUnit, Wrench, dynamically_consistent_inverse, joint_order, operational_space_inertia,
+    FloatingRegressor, FloatingRungeKuttaStepDerivatives, FloatingState, FloatingStepDerivatives,
+    FloatingTorqueDerivatives, FloatingTorques, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics,
+    InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian, JacobianDerivatives,
+    JointOrderError, JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver,
+    MovingBase, NegativeMass, NextState, NextStateDerivatives, ObserverState, Operations, Payload, PayloadDynamics,
+    Pose, Quaternion, Regressor, RungeKuttaStep, RungeKuttaStepDerivatives, Scalar, StepDerivatives, TipWrenches,
+    TorqueDerivatives, TorqueGradient, TorqueHessian, VectorUnit, Wrench, dynamically_consistent_inverse, joint_order,
+    operational_space_inertia,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]

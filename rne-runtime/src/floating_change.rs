@@ -7,9 +7,9 @@ use rne_model::FixedFrame;
 
 use crate::floating_base::BASE;
 use crate::floating_euler_step::next_of_base;
-use crate::floating_integrator::{moved, turn};
+use crate::floating_integrator::{moved, turn, turn_by_change};
 use crate::ldlt::{factor, solve};
-use crate::pose_log::{cross, dot, times, transposed};
+use crate::pose_log::{cross, times, transposed};
 use crate::{Arm, BaseAcceleration, BaseMotion, BaseTwist, Constant, FloatingStepDerivatives, Pose, Scalar, Wrench};
 #[cfg(feature = "std")]
 use crate::{DynArm, DynFloatingStepDerivatives, WrongLength};
@@ -71,35 +71,20 @@ struct Change<T> {
     linear: [T; 3],
     /// v', in axes of frame 0 after the step.
     next_linear: [T; 3],
-    /// h ω / 4 of the turn, and the factor of its derivative.
+    /// h ω / 4 of the turn.
     quarter: [T; 3],
-    scale: T,
-    /// The turn by half of it, from the axes after it to those before.
-    half_back: [[T; 3]; 3],
 }
 
 impl<T: Scalar> Change<T> {
     /// From the velocities of the base before and after the step, and its acceleration less gravity.
     fn new(twist: &BaseTwist<T>, next: &BaseTwist<T>, acceleration: &[T; 3], step: T) -> Self {
         let quarter = next.angular.map(|x| x * step * T::from_f64(0.25));
-        let square = dot(&quarter, &quarter);
-        // the Cayley transform of u: a turn by half of that of the step
-        let scale = (T::one() + T::one()) / (T::one() + square);
-        let half_back = from_fn(|row| {
-            let unit: [T; 3] = from_fn(|at| if at == row { T::one() } else { T::zero() });
-            // a row of Cᵀ is C e; C x = x + 2 (u × x + u × (u × x)) / (1 + s)
-            let once = cross(&quarter, &unit);
-            let twice = cross(&quarter, &once);
-            from_fn(|at| unit[at] + scale * (once[at] + twice[at]))
-        });
         Self {
             step,
             back: transposed(&turn(&next.angular, step).rotation()),
             linear: moved(&twist.linear, acceleration, step),
             next_linear: next.linear,
             quarter,
-            scale,
-            half_back,
         }
     }
 
@@ -112,12 +97,11 @@ impl<T: Scalar> Change<T> {
             positions[at] = unit(q, at) + self.step * velocities[at];
         }
         let three = |from: usize| -> [T; 3] { from_fn(|at| unit(q, from + at)) };
-        // R E turns on by Eᵀ δθ and by the right Jacobian of E: (1 + Cᵀ) 2 (1 - u×) / (1 + s) of the change of u
+        // R E turns on by Eᵀ δθ and by the change of E
         let angular: [T; 3] = from_fn(|at| velocities[3 + at] * self.step * T::from_f64(0.25));
-        let crossed = cross(&self.quarter, &angular);
-        let half: [T; 3] = from_fn(|at| self.scale * (angular[at] - crossed[at]));
-        let (turned_half, before) = (times(&self.half_back, &half), times(&self.back, &three(3)));
-        let turned: [T; 3] = from_fn(|at| before[at] + (half[at] + turned_half[at]));
+        let by_rate = turn_by_change(&self.quarter, &angular);
+        let before = times(&self.back, &three(3));
+        let turned: [T; 3] = from_fn(|at| before[at] + by_rate[at]);
         // the velocity in world axes is R (v + h a) + h g, here in axes of frame 0 before the step, then after it
         let swung = cross(&three(3), &self.linear);
         let linear: [T; 3] = from_fn(|at| velocities[at] + swung[at]);

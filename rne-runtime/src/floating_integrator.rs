@@ -3,7 +3,7 @@
 use core::array::from_fn;
 
 use crate::pose_log::{cross, dot, times, transposed};
-use crate::{BaseTwist, FloatingBase, Quaternion, Scalar, Wrench};
+use crate::{BaseTwist, FloatingAccelerations, FloatingBase, Quaternion, Scalar, Wrench};
 
 /// The state of a robot whose base nothing holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,36 +81,9 @@ pub trait FloatingIntegratorStep<const DOF: usize, const NV: usize, const TIPS: 
         gravity: &[T; 3],
         step: T,
     ) -> FloatingState<DOF, T> {
-        let half = step * T::from_f64(0.5);
-        let start = Stage {
-            u: [T::zero(); 3],
-            linear: times(&state.orientation.rotation(), &state.twist.linear),
-            omega: state.twist.angular,
-            q: state.q,
-            qd: state.qd,
-        };
-        let rate = |stage: &Stage<DOF, T>| {
+        let (next, mean) = runge_kutta(&Stage::of(state), step, |_, stage| {
             let found = self.floating_forward_dynamics(&stage.q, &stage.qd, tau, &stage.omega, wrenches);
-            let rotation = state.orientation.then(&turned(&stage.u)).rotation();
-            let linear = times(&rotation, &found.base.linear);
-            Stage {
-                u: rate_of_turn(&stage.u, &stage.omega),
-                linear: from_fn(|axis| linear[axis] + gravity[axis]),
-                omega: found.base.angular,
-                q: stage.qd,
-                qd: found.qdd,
-            }
-        };
-        let first = rate(&start);
-        let second = rate(&start.moved(&first, half));
-        let third = rate(&start.moved(&second, half));
-        let fourth = rate(&start.moved(&third, step));
-        let sum = first.moved(&second.moved(&third, T::one()), T::one() + T::one()).moved(&fourth, T::one());
-        let sixth = step / T::from_f64(6.0);
-        let next = start.moved(&sum, sixth);
-        // the position moves with the mean of the velocities at the four states
-        let mean: [T; 3] = from_fn(|axis| {
-            start.linear[axis] + (first.linear[axis] + second.linear[axis] + third.linear[axis]) * sixth
+            stage.rates(&found, &state.orientation, gravity)
         });
         let orientation = unit(&state.orientation.then(&turned(&next.u)));
         FloatingState {
@@ -123,18 +96,46 @@ pub trait FloatingIntegratorStep<const DOF: usize, const NV: usize, const TIPS: 
     }
 }
 
-/// The numbers that a step integrates, or their rates: the turn of the base, the velocity of its origin in world axes,
-/// its angular velocity in its axes, and the joints.
+/// The numbers that a step integrates, their rates, or changes of either: the turn of the base, the velocity of its
+/// origin in world axes, its angular velocity in its axes, and the joints.
 #[derive(Clone, Copy)]
-struct Stage<const DOF: usize, T> {
-    u: [T; 3],
-    linear: [T; 3],
-    omega: [T; 3],
-    q: [T; DOF],
-    qd: [T; DOF],
+pub(crate) struct Stage<const DOF: usize, T> {
+    pub(crate) u: [T; 3],
+    pub(crate) linear: [T; 3],
+    pub(crate) omega: [T; 3],
+    pub(crate) q: [T; DOF],
+    pub(crate) qd: [T; DOF],
 }
 
 impl<const DOF: usize, T: Scalar> Stage<DOF, T> {
+    /// Those of a state, from which the base turns.
+    pub(crate) fn of(state: &FloatingState<DOF, T>) -> Self {
+        Self {
+            u: [T::zero(); 3],
+            linear: times(&state.orientation.rotation(), &state.twist.linear),
+            omega: state.twist.angular,
+            q: state.q,
+            qd: state.qd,
+        }
+    }
+
+    /// Their rates by the accelerations, where the base turns from this orientation.
+    pub(crate) fn rates(
+        &self,
+        found: &FloatingAccelerations<DOF, T>,
+        orientation: &Quaternion<T>,
+        gravity: &[T; 3],
+    ) -> Self {
+        let linear = times(&orientation.then(&turned(&self.u)).rotation(), &found.base.linear);
+        Self {
+            u: rate_of_turn(&self.u, &self.omega),
+            linear: from_fn(|axis| linear[axis] + gravity[axis]),
+            omega: found.base.angular,
+            q: self.qd,
+            qd: found.qdd,
+        }
+    }
+
     /// These and h times other ones.
     fn moved(&self, by: &Self, step: T) -> Self {
         Self {
@@ -145,6 +146,35 @@ impl<const DOF: usize, T: Scalar> Stage<DOF, T> {
             qd: moved(&self.qd, &by.qd, step),
         }
     }
+}
+
+/// The numbers after a step of the classical Runge-Kutta method, by their rates at its four states, which have the
+/// numbers 0 to 3, and the mean of the velocities at these states, with which the position moves.
+pub(crate) fn runge_kutta<const DOF: usize, T: Scalar>(
+    start: &Stage<DOF, T>,
+    step: T,
+    mut rates: impl FnMut(usize, &Stage<DOF, T>) -> Stage<DOF, T>,
+) -> (Stage<DOF, T>, [T; 3]) {
+    let half = step * T::from_f64(0.5);
+    let first = rates(0, start);
+    let second = rates(1, &start.moved(&first, half));
+    let third = rates(2, &start.moved(&second, half));
+    let fourth = rates(3, &start.moved(&third, step));
+    let sum = first.moved(&second.moved(&third, T::one()), T::one() + T::one()).moved(&fourth, T::one());
+    let sixth = step / T::from_f64(6.0);
+    let mean =
+        from_fn(|axis| start.linear[axis] + (first.linear[axis] + second.linear[axis] + third.linear[axis]) * sixth);
+    (start.moved(&sum, sixth), mean)
+}
+
+/// The turn, in the turned axes, by a change of the coordinates u of a turn: 4 / (1 + s) times the change, turned back
+/// by half of the turn.
+pub(crate) fn turn_by_change<T: Scalar>(u: &[T; 3], change: &[T; 3]) -> [T; 3] {
+    let half = T::one() / (T::one() + dot(u, u));
+    let scale = half + half;
+    let once = cross(u, change);
+    let twice = cross(u, &once);
+    from_fn(|axis| (scale + scale) * (change[axis] + scale * (twice[axis] - once[axis])))
 }
 
 /// The rate of the coordinates u of a turn, by the angular velocity in the turned axes.
@@ -171,7 +201,7 @@ pub(crate) fn turn<T: Scalar>(omega: &[T; 3], step: T) -> Quaternion<T> {
 }
 
 /// The unit quaternion (1 - s, 2 u) / (1 + s) with s = u·u.
-fn turned<T: Scalar>(u: &[T; 3]) -> Quaternion<T> {
+pub(crate) fn turned<T: Scalar>(u: &[T; 3]) -> Quaternion<T> {
     let square = dot(u, u);
     let scale = T::one() / (T::one() + square);
     let [x, y, z] = u.map(|x| (x + x) * scale);
@@ -179,7 +209,7 @@ fn turned<T: Scalar>(u: &[T; 3]) -> Quaternion<T> {
 }
 
 /// The quaternion with the length 1, if its length is nearly that: a step of Newton's method.
-fn unit<T: Scalar>(near: &Quaternion<T>) -> Quaternion<T> {
+pub(crate) fn unit<T: Scalar>(near: &Quaternion<T>) -> Quaternion<T> {
     let square = near.to_wxyz().iter().fold(T::zero(), |sum, &part| sum + part * part);
     let scale = T::from_f64(1.5) - square * T::from_f64(0.5);
     Quaternion::from_wxyz(near.to_wxyz().map(|part| part * scale))

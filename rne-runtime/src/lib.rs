@@ -46,6 +46,7 @@ mod floating_euler_step;
 mod floating_integrator;
 #[cfg(feature = "arm")]
 mod floating_kinematics;
+mod floating_runge_kutta;
 mod floating_step_derivatives;
 #[cfg(feature = "arm")]
 mod forward_dynamics;
@@ -149,6 +150,7 @@ pub use floating_derivatives::{FloatingInverseDynamicsDerivatives, FloatingTorqu
 pub use floating_euler_step::DynFloatingNextState;
 pub use floating_euler_step::{FloatingEulerStep, FloatingNextState};
 pub use floating_integrator::{FloatingIntegratorStep, FloatingState};
+pub use floating_runge_kutta::FloatingRungeKuttaStepDerivatives;
 #[cfg(feature = "std")]
 pub use floating_step_derivatives::DynFloatingStepDerivatives;
 pub use floating_step_derivatives::{FloatingEulerStepDerivatives, FloatingStepDerivatives};
