@@ -108,7 +108,7 @@ pub(crate) struct Stage<const DOF: usize, T> {
 }
 
 impl<const DOF: usize, T: Scalar> Stage<DOF, T> {
-    /// Those of a state, from which the base turns.
+    /// The numbers of a state, from which the base turns.
     pub(crate) fn of(state: &FloatingState<DOF, T>) -> Self {
         Self {
             u: [T::zero(); 3],

@@ -115,7 +115,7 @@ struct Linear<const DOF: usize, const NV: usize, T> {
     omega: [T; 3],
     /// From the axes of frame 0 to those of the world.
     rotation: [[T; 3]; 3],
-    /// That of the base less gravity, in its axes.
+    /// Acceleration of the base less gravity, in its axes.
     acceleration: [T; 3],
     forces: FloatingTorqueDerivatives<DOF, NV, T>,
     /// The factors of M.
