@@ -134,6 +134,8 @@ def test_functions_of_a_floating_base_and_of_trees_give_the_numbers_of_the_arm()
          arm.inverse_dynamics_with_wrenches(q, qd, qdd, wrenches)),
         (functions.floating_euler_step(q, qd, qdd, pose, twist, 0.01, wrenches),
          arm.floating_euler_step(q, qd, qdd, pose, twist, 0.01, wrenches)),
+        (functions.floating_euler_step_derivatives(q, qd, qdd, pose, twist, 0.01, wrenches),
+         arm.floating_euler_step_derivatives(q, qd, qdd, pose, twist, 0.01, wrenches)),
     ]:
         pairs = zip(found, expected) if isinstance(expected, tuple) else [(found, expected)]
         for one, other in pairs:
