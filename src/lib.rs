@@ -125,10 +125,10 @@ pub use rne_macro::{
     Actuation, BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics,
     BatchInverseDynamicsDerivatives, BatchMassMatrix, CentreOfMass, CentroidalMomentum, ClosedLoops, ContactDynamics,
     CoriolisMatrix, Energy, EulerStep, EulerStepDerivatives, FloatingBase, FloatingClosedLoops, FloatingEnergy,
-    FloatingEulerStep, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor, ForwardDynamics,
-    ForwardDynamicsDerivatives, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient,
-    InverseDynamicsHessian, JacobianDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase,
-    PayloadDynamics, Regressor, TipWrenches,
+    FloatingEulerStep, FloatingEulerStepDerivatives, FloatingInverseDynamicsDerivatives, FloatingKinematics,
+    FloatingRegressor, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics, InverseDynamics,
+    InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian, JacobianDerivatives, JointWrenches,
+    Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
 };
 #[doc(inline)]
 pub use rne_model as model;
@@ -138,15 +138,16 @@ pub use rne_runtime::{
     BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives,
     BatchMassMatrix, BatchScalar, CentreOfMass, CentroidalMomentum, ClosedLoops, ClosureStep, ComputedTorque, Constant,
     ContactDynamics, CoriolisMatrix, Desired, Dual, Energy, EulerStep, EulerStepDerivatives, FloatingAccelerations,
-    FloatingBase, FloatingClosedLoops, FloatingEnergy, FloatingEulerStep, FloatingIntegratorStep,
-    FloatingIntegratorStepDerivatives, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingNextState,
-    FloatingRegressor, FloatingState, FloatingStepDerivatives, FloatingTorqueDerivatives, FloatingTorques,
-    ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics, InverseDynamics, InverseDynamicsDerivatives,
-    InverseDynamicsGradient, InverseDynamicsHessian, JacobianDerivatives, JointOrderError, JointWrenches, Kinematics,
-    LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, NextState,
-    NextStateDerivatives, ObserverState, Operations, Payload, PayloadDynamics, Pose, Quaternion, Regressor,
-    RungeKuttaStep, RungeKuttaStepDerivatives, Scalar, StepDerivatives, TipWrenches, TorqueDerivatives, TorqueGradient,
-    TorqueHessian, VectorUnit, Wrench, dynamically_consistent_inverse, joint_order, operational_space_inertia,
+    FloatingBase, FloatingClosedLoops, FloatingEnergy, FloatingEulerStep, FloatingEulerStepDerivatives,
+    FloatingIntegratorStep, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingNextState,
+    FloatingRegressor, FloatingRungeKuttaStepDerivatives, FloatingState, FloatingStepDerivatives,
+    FloatingTorqueDerivatives, FloatingTorques, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics,
+    InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian, JacobianDerivatives,
+    JointOrderError, JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver,
+    MovingBase, NegativeMass, NextState, NextStateDerivatives, ObserverState, Operations, Payload, PayloadDynamics,
+    Pose, Quaternion, Regressor, RungeKuttaStep, RungeKuttaStepDerivatives, Scalar, StepDerivatives, TipWrenches,
+    TorqueDerivatives, TorqueGradient, TorqueHessian, VectorUnit, Wrench, dynamically_consistent_inverse, joint_order,
+    operational_space_inertia,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]
@@ -155,9 +156,9 @@ pub use rne_runtime::{Arm, LinkTrace, Trace};
 #[doc(inline)]
 pub use rne_runtime::{
     BaseParameter, BaseParameters, DynAccelerationDerivatives, DynArm, DynFloatingNextState,
-    DynFloatingTorqueDerivatives, DynNextState, DynNextStateDerivatives, DynObserverState, DynStepDerivatives,
-    DynTorqueDerivatives, DynTorqueGradient, DynTorqueHessian, DynTrace, LinkParameter, LoadError, WrongJointCount,
-    WrongLength,
+    DynFloatingStepDerivatives, DynFloatingTorqueDerivatives, DynNextState, DynNextStateDerivatives, DynObserverState,
+    DynStepDerivatives, DynTorqueDerivatives, DynTorqueGradient, DynTorqueHessian, DynTrace, LinkParameter, LoadError,
+    WrongJointCount, WrongLength,
 };
 // The Python package has arms of any number of joints.
 #[doc(hidden)]

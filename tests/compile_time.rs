@@ -183,6 +183,7 @@ fn all_derives_of_seven_joints_build() {
                         | Capability::EulerStep
                         | Capability::EulerStepDerivatives
                         | Capability::FloatingEulerStep
+                        | Capability::FloatingEulerStepDerivatives
                 )
         };
         let functions = Function::OF_TREES.into_iter().filter(|&function| !is_left_out(function));

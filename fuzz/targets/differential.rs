@@ -132,6 +132,7 @@ fn compare(u: &mut Unstructured<'_>) -> Result<()> {
     let arm = DynArm::from_robot(&robot);
     let expected = runtime(&arm, function, &state).expect("arrays of the right length");
     assert_eq!(interpreted.len(), expected.len(), "{function} of\n{text}");
+    let mass = || arm.mass_matrix(&state.q).expect("arrays of the right length");
     let is_equal = match function {
         Function::ForwardDynamics
         | Function::ForwardDynamicsWithWrenches
@@ -149,13 +150,16 @@ fn compare(u: &mut Unstructured<'_>) -> Result<()> {
             accelerate(&arm, Function::FloatingForwardDynamics, &state, &accelerations)
                 .expect("arrays of the right length")
         }
-        Function::EulerStepDerivatives => {
-            inverts(&arm, &state, &interpreted[5 * robot.dof() * robot.dof()..]).expect("arrays of the right length")
+        Function::EulerStepDerivatives => inverts(&mass(), &interpreted[5 * robot.dof() * robot.dof()..]),
+        Function::FloatingEulerStepDerivatives => {
+            // the derivatives of the velocities after a step of a second by the torques
+            let mass = arm.floating_mass_matrix(&state.q).expect("arrays of the right length");
+            inverts(&mass, &interpreted[interpreted.len() - mass.len() * robot.dof()..])
         }
-        Function::InverseMassMatrix => inverts(&arm, &state, &interpreted).expect("arrays of the right length"),
+        Function::InverseMassMatrix => inverts(&mass(), &interpreted),
         // the others are products with it, and of accelerations that are as far from those of the runtime
         Function::ForwardDynamicsDerivatives | Function::ForwardDynamicsDerivativesWithWrenches => {
-            inverts(&arm, &state, &interpreted[2 * robot.dof() * robot.dof()..]).expect("arrays of the right length")
+            inverts(&mass(), &interpreted[2 * robot.dof() * robot.dof()..])
         }
         _ => {
             // multipliers magnify what cancels
@@ -224,19 +228,20 @@ fn accelerations_of_step(robot: &Robot, state: &State, next: &[f64]) -> Vec<f64>
 }
 
 /// Whether a matrix is the inverse of M: its columns are compared as accelerations are.
-fn inverts(arm: &DynArm, State { q, .. }: &State, inverse: &[f64]) -> std::result::Result<bool, WrongLength> {
+fn inverts(mass: &[Vec<f64>], inverse: &[f64]) -> bool {
     if !inverse.iter().all(|element| element.is_finite()) {
-        return Ok(true);
+        return true;
     }
-    let mass = arm.mass_matrix(q)?;
+    // of M with the rows of a base that nothing holds, the columns of the joints alone
+    let columns = inverse.len() / mass.len();
     let largest = scale(&mass.concat()) * scale(inverse);
     let misses = mass.iter().enumerate().flat_map(|(i, row)| {
-        (0..q.len()).map(move |j| {
-            let element: f64 = row.iter().zip(inverse.chunks(q.len())).map(|(m, column)| m * column[j]).sum();
-            (element - if i == j { 1.0 } else { 0.0 }).abs()
+        (0..columns).map(move |j| {
+            let element: f64 = row.iter().zip(inverse.chunks(columns)).map(|(m, column)| m * column[j]).sum();
+            (element - if i == mass.len() - columns + j { 1.0 } else { 0.0 }).abs()
         })
     });
-    Ok(misses.fold(0.0, f64::max) <= 1e-11 * largest)
+    misses.fold(0.0, f64::max) <= 1e-11 * largest
 }
 
 /// The C text has the operators that the program counts: between blanks, behind the head of the last function.
@@ -329,6 +334,11 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
             let next = arm.floating_euler_step(q, qd, tau, &state.pose(), &state.twist(), 1.0, &[*wrench])?;
             let twist = [next.twist.linear, next.twist.angular].concat();
             pose(&next.pose).chain(twist).chain(next.q).chain(next.qd).collect()
+        }
+        Function::FloatingEulerStepDerivatives => {
+            let (pose, twist) = (state.pose(), state.twist());
+            let by = arm.floating_euler_step_derivatives(q, qd, tau, &pose, &twist, 1.0, &[*wrench])?;
+            [by.q_dq, by.q_dv, by.q_dtau, by.v_dq, by.v_dv, by.v_dtau].concat().concat()
         }
         Function::TorqueHessian => {
             let hessian = arm.torque_hessian(q, qd, qdd, tau)?;

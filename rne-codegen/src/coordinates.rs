@@ -143,8 +143,9 @@ impl Coordinates {
     /// Position, rate or acceleration of a joint: an argument of the function, or that of a follower.
     pub(crate) fn of_joint<'s>(&self, builder: &'s Builder, quantity: Quantity, joint: usize) -> Symbol<'s> {
         let argument = |joint: usize| {
-            let solved = (quantity == Quantity::RateDot).then(|| builder.solved_acceleration(joint)).flatten();
-            solved.unwrap_or_else(|| builder.argument(Name::scalar(quantity, joint + 1)))
+            let name = Name::scalar(quantity, joint + 1);
+            let solved = (quantity == Quantity::RateDot).then(|| builder.solved_acceleration(name)).flatten();
+            solved.unwrap_or_else(|| builder.argument(name))
         };
         let is_position = quantity == Quantity::Position;
         let own = [(joint, Ratio::ONE)];

@@ -425,6 +425,12 @@ quantities! {
         "its velocity after the step, in axes of frame 0";
     NextOmega:                  "next_w",    Vector,    8, true,  "", "rad/s",
         "angular velocity of the base after the step, in axes of frame 0";
+    BaseShift:                  "shift",     Vector,    0, false, "", "m",
+        "shift of the base before the step, along the axes of frame 0";
+    BaseTurn:                   "turn",      Vector,    0, false, "", "rad",
+        "turn of the base before the step, about the axes of frame 0";
+    NextTurn:                   "next_turn", Vector,    8, true,  "", "rad",
+        "turn of the base after the step, about the axes that frame 0 has then";
 }
 
 impl Quantity {

@@ -342,7 +342,7 @@ fn by_title(robot: &Robot, program: &Program, joint: usize, step: Step, by: With
     match by {
         WithRespectTo::BaseRateDot(_) => format!("{what}, for {} = 1 alone", by.variable()),
         WithRespectTo::RateDot(by) => format!("{what}, for q̈{by} = 1 alone"),
-        WithRespectTo::BaseRate(_) => format!("{what}, by {}", by.variable()),
+        WithRespectTo::BasePosition(_) | WithRespectTo::BaseRate(_) => format!("{what}, by {}", by.variable()),
         WithRespectTo::Position(by) => format!("{what}, by q{by}"),
         WithRespectTo::Rate(by) => format!("{what}, by q̇{by}"),
     }

@@ -5,7 +5,8 @@ use core::array;
 use rne_codegen::Layout;
 use rne_runtime::{BaseAcceleration, BaseTwist, Wrench};
 pub use rne_runtime::{
-    DynFloatingNextState as FloatingNextState, DynFloatingTorqueDerivatives as FloatingTorqueDerivatives, Pose,
+    DynFloatingNextState as FloatingNextState, DynFloatingStepDerivatives as FloatingStepDerivatives,
+    DynFloatingTorqueDerivatives as FloatingTorqueDerivatives, Pose,
 };
 
 /// One number.
@@ -196,16 +197,13 @@ impl<T, E: Shaped<T>, const N: usize> Shaped<T> for [E; N] {
 }
 
 macro_rules! records {
-    ($($record:ident { $first:ident, $second:ident $(, $third:ident $(, $fourth:ident)?)? })*) => {$(
+    ($($record:ident { $($field:ident),* })*) => {$(
         impl<T: crate::Number> Shaped<T> for $record<T> {
             fn take(layout: &Layout, numbers: &mut impl Iterator<Item = T>) -> Self {
-                let $first = Shaped::take(part(layout, 0), numbers);
-                let $second = Shaped::take(part(layout, 1), numbers);
-                $(
-                    let $third = Shaped::take(part(layout, 2), numbers);
-                    $(let $fourth = Shaped::take(part(layout, 3), numbers);)?
-                )?
-                Self { $first, $second $(, $third $(, $fourth)?)? }
+                let mut parts = 0..;
+                let mut next = || part(layout, parts.next().unwrap_or_default());
+                // fields are made in the order in which they are written here
+                Self { $($field: Shaped::take(next(), numbers)),* }
             }
         }
     )*};
@@ -219,4 +217,5 @@ records! {
     AccelerationDerivatives { dq, dqd, dtau } TorqueHessian { dq_dq, dq_dqd, dqd_dqd, dq_dqdd }
     NextState { q, qd } StepDerivatives { dq, dqd, dtau } NextStateDerivatives { q, qd }
     BaseTwist { linear, angular } FloatingNextState { pose, twist, q, qd }
+    FloatingStepDerivatives { q_dq, q_dv, q_dtau, v_dq, v_dv, v_dtau }
 }

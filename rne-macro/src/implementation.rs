@@ -111,7 +111,8 @@ impl Target<'_> {
             Capability::FloatingBase
             | Capability::FloatingKinematics
             | Capability::ContactDynamics
-            | Capability::FloatingInverseDynamicsDerivatives => quote!(#dof, #velocities, #tips),
+            | Capability::FloatingInverseDynamicsDerivatives
+            | Capability::FloatingEulerStepDerivatives => quote!(#dof, #velocities, #tips),
             Capability::CentroidalMomentum => quote!(#dof, #velocities),
             Capability::ClosedLoops => {
                 let (passive, equations) = (&self.passive, &self.equations);
@@ -421,7 +422,7 @@ impl Target<'_> {
                         let (passive, equations) = (&self.passive, &self.equations);
                         quote!(#krate::#name<#passive, #equations, T>)
                     }
-                    Record::FloatingTorqueDerivatives => {
+                    Record::FloatingTorqueDerivatives | Record::FloatingStepDerivatives => {
                         let velocities = velocities(dof);
                         quote!(#krate::#name<#dof, #velocities, T>)
                     }

@@ -407,6 +407,19 @@ pub fn derive_floating_euler_step(input: TokenStream) -> TokenStream {
     expand::capability(Capability::FloatingEulerStep, input.into()).into()
 }
 
+/// Implements the trait `FloatingEulerStepDerivatives` for a struct: the derivatives of a step of the semi-implicit
+/// Euler method where nothing holds the base.
+///
+/// The base and the tips are those of `FloatingEulerStep`.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations, `FLOATING_EULER_STEP_DERIVATIVES_OPERATIONS`; `DOF`, names and limits come with
+/// `InverseDynamics`.
+#[proc_macro_derive(FloatingEulerStepDerivatives, attributes(robot))]
+pub fn derive_floating_euler_step_derivatives(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::FloatingEulerStepDerivatives, input.into()).into()
+}
+
 /// Implements the trait `ClosedLoops` for a struct: a robot whose file has `loops` with a cut joint.
 ///
 /// The tips are the frames of the list `tips` of the robot file in its order, or the tip frame alone. Other derives

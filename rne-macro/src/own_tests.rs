@@ -52,6 +52,7 @@ pub(crate) fn of_capability(capability: Capability) -> &'static [&'static str] {
         | Capability::ContactDynamics
         | Capability::FloatingInverseDynamicsDerivatives
         | Capability::FloatingEulerStep
+        | Capability::FloatingEulerStepDerivatives
         | Capability::ClosedLoops
         | Capability::FloatingClosedLoops => &[],
     }

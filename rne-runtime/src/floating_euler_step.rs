@@ -61,7 +61,7 @@ pub trait FloatingEulerStep<const DOF: usize, const TIPS: usize> {
 
 /// The pose and the velocity of the base after a step; `gravity` is in world axes.
 #[cfg(feature = "arm")]
-fn next_of_base<T: Scalar>(
+pub(crate) fn next_of_base<T: Scalar>(
     (pose, twist): (&Pose<T>, &BaseTwist<T>),
     acceleration: &BaseAcceleration<T>,
     gravity: &[T; 3],

@@ -1,11 +1,9 @@
-//! Steps of integrators for a robot whose base nothing holds, on the manifold of its positions, and the derivatives of
-//! the step of the semi-implicit Euler method.
+//! Steps of integrators for a robot whose base nothing holds, on the manifold of its positions.
 
 use core::array::from_fn;
 
-use crate::ldlt::{factor, solve};
 use crate::pose_log::{cross, dot, times, transposed};
-use crate::{BaseMotion, BaseTwist, FloatingBase, FloatingInverseDynamicsDerivatives, Quaternion, Scalar, Wrench};
+use crate::{BaseTwist, FloatingAccelerations, FloatingBase, Quaternion, Scalar, Wrench};
 
 /// The state of a robot whose base nothing holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,29 +18,6 @@ pub struct FloatingState<const DOF: usize, T> {
     pub q: [T; DOF],
     /// Velocities of the joints, rad/s or m/s.
     pub qd: [T; DOF],
-}
-
-/// The linear model of a step of a robot whose base nothing holds: rows belong to the next state, columns to the state
-/// and to the torques.
-///
-/// `NV` = `DOF` + 6. A change of the positions has three components of the origin of frame 0 and three of its rotation
-/// vector, both in axes of frame 0, and one for each joint: position + R δp and R exp(δθ). These are the axes before
-/// the step for the columns, and after it for the rows. A change of the velocities has the linear and the angular
-/// velocity of frame 0 in its axes, then the joints.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FloatingStepDerivatives<const DOF: usize, const NV: usize, T> {
-    /// Derivatives of the next positions by the positions.
-    pub q_dq: [[T; NV]; NV],
-    /// Derivatives of the next positions by the velocities.
-    pub q_dv: [[T; NV]; NV],
-    /// Derivatives of the next positions by the torques.
-    pub q_dtau: [[T; DOF]; NV],
-    /// Derivatives of the next velocities by the positions.
-    pub v_dq: [[T; NV]; NV],
-    /// Derivatives of the next velocities by the velocities.
-    pub v_dv: [[T; NV]; NV],
-    /// Derivatives of the next velocities by the torques.
-    pub v_dtau: [[T; DOF]; NV],
 }
 
 /// Steps of a robot whose base nothing holds. Every type with [`FloatingBase`] has them.
@@ -106,36 +81,9 @@ pub trait FloatingIntegratorStep<const DOF: usize, const NV: usize, const TIPS: 
         gravity: &[T; 3],
         step: T,
     ) -> FloatingState<DOF, T> {
-        let half = step * T::from_f64(0.5);
-        let start = Stage {
-            u: [T::zero(); 3],
-            linear: times(&state.orientation.rotation(), &state.twist.linear),
-            omega: state.twist.angular,
-            q: state.q,
-            qd: state.qd,
-        };
-        let rate = |stage: &Stage<DOF, T>| {
+        let (next, mean) = runge_kutta(&Stage::of(state), step, |_, stage| {
             let found = self.floating_forward_dynamics(&stage.q, &stage.qd, tau, &stage.omega, wrenches);
-            let rotation = state.orientation.then(&turned(&stage.u)).rotation();
-            let linear = times(&rotation, &found.base.linear);
-            Stage {
-                u: rate_of_turn(&stage.u, &stage.omega),
-                linear: from_fn(|axis| linear[axis] + gravity[axis]),
-                omega: found.base.angular,
-                q: stage.qd,
-                qd: found.qdd,
-            }
-        };
-        let first = rate(&start);
-        let second = rate(&start.moved(&first, half));
-        let third = rate(&start.moved(&second, half));
-        let fourth = rate(&start.moved(&third, step));
-        let sum = first.moved(&second.moved(&third, T::one()), T::one() + T::one()).moved(&fourth, T::one());
-        let sixth = step / T::from_f64(6.0);
-        let next = start.moved(&sum, sixth);
-        // the position moves with the mean of the velocities at the four states
-        let mean: [T; 3] = from_fn(|axis| {
-            start.linear[axis] + (first.linear[axis] + second.linear[axis] + third.linear[axis]) * sixth
+            stage.rates(&found, &state.orientation, gravity)
         });
         let orientation = unit(&state.orientation.then(&turned(&next.u)));
         FloatingState {
@@ -148,18 +96,46 @@ pub trait FloatingIntegratorStep<const DOF: usize, const NV: usize, const TIPS: 
     }
 }
 
-/// The numbers that a step integrates, or their rates: the turn of the base, the velocity of its origin in world axes,
-/// its angular velocity in its axes, and the joints.
+/// The numbers that a step integrates, their rates, or changes of either: the turn of the base, the velocity of its
+/// origin in world axes, its angular velocity in its axes, and the joints.
 #[derive(Clone, Copy)]
-struct Stage<const DOF: usize, T> {
-    u: [T; 3],
-    linear: [T; 3],
-    omega: [T; 3],
-    q: [T; DOF],
-    qd: [T; DOF],
+pub(crate) struct Stage<const DOF: usize, T> {
+    pub(crate) u: [T; 3],
+    pub(crate) linear: [T; 3],
+    pub(crate) omega: [T; 3],
+    pub(crate) q: [T; DOF],
+    pub(crate) qd: [T; DOF],
 }
 
 impl<const DOF: usize, T: Scalar> Stage<DOF, T> {
+    /// The numbers of a state, from which the base turns.
+    pub(crate) fn of(state: &FloatingState<DOF, T>) -> Self {
+        Self {
+            u: [T::zero(); 3],
+            linear: times(&state.orientation.rotation(), &state.twist.linear),
+            omega: state.twist.angular,
+            q: state.q,
+            qd: state.qd,
+        }
+    }
+
+    /// Their rates by the accelerations, where the base turns from this orientation.
+    pub(crate) fn rates(
+        &self,
+        found: &FloatingAccelerations<DOF, T>,
+        orientation: &Quaternion<T>,
+        gravity: &[T; 3],
+    ) -> Self {
+        let linear = times(&orientation.then(&turned(&self.u)).rotation(), &found.base.linear);
+        Self {
+            u: rate_of_turn(&self.u, &self.omega),
+            linear: from_fn(|axis| linear[axis] + gravity[axis]),
+            omega: found.base.angular,
+            q: self.qd,
+            qd: found.qdd,
+        }
+    }
+
     /// These and h times other ones.
     fn moved(&self, by: &Self, step: T) -> Self {
         Self {
@@ -170,6 +146,35 @@ impl<const DOF: usize, T: Scalar> Stage<DOF, T> {
             qd: moved(&self.qd, &by.qd, step),
         }
     }
+}
+
+/// The numbers after a step of the classical Runge-Kutta method, by their rates at its four states, which have the
+/// numbers 0 to 3, and the mean of the velocities at these states, with which the position moves.
+pub(crate) fn runge_kutta<const DOF: usize, T: Scalar>(
+    start: &Stage<DOF, T>,
+    step: T,
+    mut rates: impl FnMut(usize, &Stage<DOF, T>) -> Stage<DOF, T>,
+) -> (Stage<DOF, T>, [T; 3]) {
+    let half = step * T::from_f64(0.5);
+    let first = rates(0, start);
+    let second = rates(1, &start.moved(&first, half));
+    let third = rates(2, &start.moved(&second, half));
+    let fourth = rates(3, &start.moved(&third, step));
+    let sum = first.moved(&second.moved(&third, T::one()), T::one() + T::one()).moved(&fourth, T::one());
+    let sixth = step / T::from_f64(6.0);
+    let mean =
+        from_fn(|axis| start.linear[axis] + (first.linear[axis] + second.linear[axis] + third.linear[axis]) * sixth);
+    (start.moved(&sum, sixth), mean)
+}
+
+/// The turn, in the turned axes, by a change of the coordinates u of a turn: 4 / (1 + s) times the change, turned back
+/// by half of the turn.
+pub(crate) fn turn_by_change<T: Scalar>(u: &[T; 3], change: &[T; 3]) -> [T; 3] {
+    let half = T::one() / (T::one() + dot(u, u));
+    let scale = half + half;
+    let once = cross(u, change);
+    let twice = cross(u, &once);
+    from_fn(|axis| (scale + scale) * (change[axis] + scale * (twice[axis] - once[axis])))
 }
 
 /// The rate of the coordinates u of a turn, by the angular velocity in the turned axes.
@@ -184,120 +189,19 @@ impl<const DOF: usize, const NV: usize, const TIPS: usize, R: FloatingBase<DOF, 
 {
 }
 
-/// The derivatives of this step, for optimisers. Every type with [`FloatingBase`] and
-/// [`FloatingInverseDynamicsDerivatives`] has them.
-pub trait FloatingIntegratorStepDerivatives<const DOF: usize, const NV: usize, const TIPS: usize>:
-    FloatingBase<DOF, NV, TIPS> + FloatingInverseDynamicsDerivatives<DOF, NV, TIPS>
-{
-    /// The derivatives of [`floating_quaternion_step`](FloatingIntegratorStep::floating_quaternion_step) by the state
-    /// and by the torques, exact up to rounding: the derivatives of the accelerations are -M⁻¹ times those of the
-    /// wrench on the base and of the torques.
-    #[must_use]
-    fn floating_euler_step_derivatives<T: Scalar>(
-        &self,
-        state: &FloatingState<DOF, T>,
-        tau: &[T; DOF],
-        wrenches: &[Wrench<T>; TIPS],
-        gravity: &[T; 3],
-        step: T,
-    ) -> FloatingStepDerivatives<DOF, NV, T> {
-        let FloatingState { twist, q, qd, .. } = state;
-        let found = self.floating_forward_dynamics(q, qd, tau, &twist.angular, wrenches);
-        // `found` has the acceleration of the base less gravity, so the field `gravity` of the motion stays zero
-        let base = BaseMotion {
-            omega: twist.angular,
-            omega_dot: found.base.angular,
-            acceleration: found.base.linear,
-            ..BaseMotion::default()
-        };
-        let forces = self.floating_inverse_dynamics_derivatives(q, qd, &found.qdd, &base, wrenches);
-        let (mut mass, mut inverse) = (self.floating_mass_matrix(q), [T::zero(); NV]);
-        factor(&mut mass, &mut inverse);
-        let accelerations = |forces: &dyn Fn(usize) -> T| {
-            let mut x: [T; NV] = from_fn(forces);
-            solve(&mass, &inverse, &mut x);
-            x
-        };
-        let next = self.floating_quaternion_step(state, tau, wrenches, gravity, step);
-        let change = Change::new(state, &next, &found.base.linear, step);
-        let still = [[T::zero(); NV]; 2];
-        let column = |part: usize, at: usize| {
-            let mut given = still;
-            given[part][at] = T::one();
-            let of_forces = match (part, at.checked_sub(BASE)) {
-                (0, Some(joint)) => accelerations(&|row| -forces.dq[row][joint]),
-                (_, Some(joint)) => accelerations(&|row| -forces.dqd[row][joint]),
-                (1, None) if at >= 3 => accelerations(&|row| -forces.domega[row][at - 3]),
-                _ => [T::zero(); NV],
-            };
-            change.of(&given, &of_forces)
-        };
-        let by_torque = |joint: usize| {
-            let unit = |row: usize| if row == BASE + joint { T::one() } else { T::zero() };
-            change.of(&still, &accelerations(&unit))
-        };
-        let mut result = FloatingStepDerivatives {
-            q_dq: still_matrix(),
-            q_dv: still_matrix(),
-            q_dtau: still_matrix(),
-            v_dq: still_matrix(),
-            v_dv: still_matrix(),
-            v_dtau: still_matrix(),
-        };
-        for at in 0..NV {
-            let ([q_by_q, v_by_q], [q_by_v, v_by_v]) = (column(0, at), column(1, at));
-            fill(&mut result.q_dq, at, &q_by_q);
-            fill(&mut result.q_dv, at, &q_by_v);
-            fill(&mut result.v_dq, at, &v_by_q);
-            fill(&mut result.v_dv, at, &v_by_v);
-        }
-        for joint in 0..DOF {
-            let [q_by_tau, v_by_tau] = by_torque(joint);
-            fill(&mut result.q_dtau, joint, &q_by_tau);
-            fill(&mut result.v_dtau, joint, &v_by_tau);
-        }
-        result
-    }
-}
-
-impl<const DOF: usize, const NV: usize, const TIPS: usize, R: ?Sized> FloatingIntegratorStepDerivatives<DOF, NV, TIPS>
-    for R
-where
-    R: FloatingBase<DOF, NV, TIPS> + FloatingInverseDynamicsDerivatives<DOF, NV, TIPS>,
-{
-}
-
-/// Six velocities of the base stand before those of the joints.
-const BASE: usize = 6;
-
-fn still_matrix<const ROWS: usize, const COLUMNS: usize, T: Scalar>() -> [[T; COLUMNS]; ROWS] {
-    [[T::zero(); COLUMNS]; ROWS]
-}
-
-/// Writes a column of a matrix.
-fn fill<const ROWS: usize, const COLUMNS: usize, T: Scalar>(
-    matrix: &mut [[T; COLUMNS]; ROWS],
-    at: usize,
-    column: &[T; ROWS],
-) {
-    for (row, &element) in matrix.iter_mut().zip(column) {
-        row[at] = element;
-    }
-}
-
 /// x + h times what changes it.
 pub(crate) fn moved<const N: usize, T: Scalar>(x: &[T; N], change: &[T; N], step: T) -> [T; N] {
     from_fn(|i| x[i] + step * change[i])
 }
 
 /// The rotation by which a step turns the base.
-fn turn<T: Scalar>(omega: &[T; 3], step: T) -> Quaternion<T> {
+pub(crate) fn turn<T: Scalar>(omega: &[T; 3], step: T) -> Quaternion<T> {
     let quarter = step * T::from_f64(0.25);
     turned(&omega.map(|x| x * quarter))
 }
 
 /// The unit quaternion (1 - s, 2 u) / (1 + s) with s = u·u.
-fn turned<T: Scalar>(u: &[T; 3]) -> Quaternion<T> {
+pub(crate) fn turned<T: Scalar>(u: &[T; 3]) -> Quaternion<T> {
     let square = dot(u, u);
     let scale = T::one() / (T::one() + square);
     let [x, y, z] = u.map(|x| (x + x) * scale);
@@ -305,84 +209,8 @@ fn turned<T: Scalar>(u: &[T; 3]) -> Quaternion<T> {
 }
 
 /// The quaternion with the length 1, if its length is nearly that: a step of Newton's method.
-fn unit<T: Scalar>(near: &Quaternion<T>) -> Quaternion<T> {
+pub(crate) fn unit<T: Scalar>(near: &Quaternion<T>) -> Quaternion<T> {
     let square = near.to_wxyz().iter().fold(T::zero(), |sum, &part| sum + part * part);
     let scale = T::from_f64(1.5) - square * T::from_f64(0.5);
     Quaternion::from_wxyz(near.to_wxyz().map(|part| part * scale))
-}
-
-/// How the next state changes with the state and with the accelerations.
-struct Change<T> {
-    step: T,
-    /// R'ᵀ R
-    back: [[T; 3]; 3],
-    /// v + h a, in axes of frame 0 before the step.
-    linear: [T; 3],
-    /// v', in axes of frame 0 after the step.
-    next_linear: [T; 3],
-    /// h ω / 4 of the turn, and the factor of its derivative.
-    quarter: [T; 3],
-    scale: T,
-    /// The turn by half of it, from the axes after it to those before.
-    half_back: [[T; 3]; 3],
-}
-
-impl<T: Scalar> Change<T> {
-    fn new<const DOF: usize>(
-        state: &FloatingState<DOF, T>,
-        next: &FloatingState<DOF, T>,
-        acceleration: &[T; 3],
-        step: T,
-    ) -> Self {
-        let omega = &next.twist.angular;
-        let quarter = omega.map(|x| x * step * T::from_f64(0.25));
-        let square = dot(&quarter, &quarter);
-        // the Cayley transform of u: a turn by half of that of the step
-        let scale = (T::one() + T::one()) / (T::one() + square);
-        let half_back = from_fn(|row| {
-            let unit: [T; 3] = from_fn(|at| if at == row { T::one() } else { T::zero() });
-            // a row of Cᵀ is C e; C x = x + 2 (u × x + u × (u × x)) / (1 + s)
-            let once = cross(&quarter, &unit);
-            let twice = cross(&quarter, &once);
-            from_fn(|at| unit[at] + scale * (once[at] + twice[at]))
-        });
-        Self {
-            step,
-            back: transposed(&turn(omega, step).rotation()),
-            linear: moved(&state.twist.linear, acceleration, step),
-            next_linear: next.twist.linear,
-            quarter,
-            scale,
-            half_back,
-        }
-    }
-
-    /// The changes of positions and velocities after the step, by those before it and by what they change in the
-    /// accelerations.
-    fn of<const NV: usize>(&self, [q, v]: &[[T; NV]; 2], accelerations: &[T; NV]) -> [[T; NV]; 2] {
-        let three = |x: &[T; NV], from: usize| -> [T; 3] { from_fn(|at| x[from + at]) };
-        let mut next = [[T::zero(); NV]; 2];
-        for at in 0..NV {
-            next[1][at] = v[at] + self.step * accelerations[at];
-            next[0][at] = q[at] + self.step * next[1][at];
-        }
-        // R E turns on by Eᵀ δθ and by the right Jacobian of E: (1 + Cᵀ) 2 (1 - u×) / (1 + s) of the change of u
-        let angular = three(&next[1], 3).map(|x| x * self.step * T::from_f64(0.25));
-        let crossed = cross(&self.quarter, &angular);
-        let half: [T; 3] = from_fn(|at| self.scale * (angular[at] - crossed[at]));
-        let (turned_half, before) = (times(&self.half_back, &half), times(&self.back, &three(q, 3)));
-        let turned: [T; 3] = from_fn(|at| before[at] + (half[at] + turned_half[at]));
-        // the velocity in world axes is R (v + h a) + h g, here in axes of frame 0 before the step, then after it
-        let swung = cross(&three(q, 3), &self.linear);
-        let linear: [T; 3] = from_fn(|at| next[1][at] + swung[at]);
-        let linear = times(&self.back, &linear);
-        let origin = times(&self.back, &three(q, 0));
-        let swung = cross(&self.next_linear, &turned);
-        for at in 0..3 {
-            next[0][at] = origin[at] + self.step * linear[at];
-            next[0][3 + at] = turned[at];
-            next[1][at] = linear[at] + swung[at];
-        }
-        next
-    }
 }

@@ -39,11 +39,15 @@ mod energy;
 mod error;
 #[cfg(feature = "arm")]
 mod floating_base;
+#[cfg(feature = "arm")]
+mod floating_change;
 mod floating_derivatives;
 mod floating_euler_step;
 mod floating_integrator;
 #[cfg(feature = "arm")]
 mod floating_kinematics;
+mod floating_runge_kutta;
+mod floating_step_derivatives;
 #[cfg(feature = "arm")]
 mod forward_dynamics;
 mod hessian;
@@ -145,9 +149,11 @@ pub use floating_derivatives::{FloatingInverseDynamicsDerivatives, FloatingTorqu
 #[cfg(feature = "std")]
 pub use floating_euler_step::DynFloatingNextState;
 pub use floating_euler_step::{FloatingEulerStep, FloatingNextState};
-pub use floating_integrator::{
-    FloatingIntegratorStep, FloatingIntegratorStepDerivatives, FloatingState, FloatingStepDerivatives,
-};
+pub use floating_integrator::{FloatingIntegratorStep, FloatingState};
+pub use floating_runge_kutta::FloatingRungeKuttaStepDerivatives;
+#[cfg(feature = "std")]
+pub use floating_step_derivatives::DynFloatingStepDerivatives;
+pub use floating_step_derivatives::{FloatingEulerStepDerivatives, FloatingStepDerivatives};
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use hessian::DynTorqueHessian;
 pub use hessian::{InverseDynamicsHessian, TorqueHessian};

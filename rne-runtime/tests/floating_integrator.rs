@@ -7,7 +7,7 @@ use crate::common::{Numbers, SIX_BASE, assert_close, link, six_joints};
 use rne_model::Convention::{Modified, Standard};
 use rne_runtime::{
     Arm, BaseAcceleration, BaseMotion, BaseTwist, Dual, FloatingAccelerations, FloatingBase, FloatingIntegratorStep,
-    FloatingIntegratorStepDerivatives, FloatingInverseDynamicsDerivatives, FloatingNextState, FloatingState,
+    FloatingInverseDynamicsDerivatives, FloatingNextState, FloatingRungeKuttaStepDerivatives, FloatingState,
     FloatingStepDerivatives, FloatingTorqueDerivatives, FloatingTorques, Pose, Quaternion, Scalar, Wrench,
 };
 
@@ -158,40 +158,54 @@ fn derivatives_are_those_by_dual_numbers() {
             }
             let tau: [f64; DOF] = numbers.array(5.0);
             let step = 0.05;
-            let found: FloatingStepDerivatives<DOF, NV, f64> =
-                arm.floating_euler_step_derivatives(&state, &tau, &[], &GRAVITY, step);
-            let by = |direction: usize| {
-                let tau = from_fn(|joint| Dual {
-                    value: tau[joint],
-                    derivative: f64::from(u8::from(direction == 2 * NV + joint)),
-                });
-                let state = along(&state, direction);
-                let next = FloatingIntegratorStep::<DOF, NV, 0>::floating_quaternion_step(
-                    &arm,
-                    &state,
-                    &tau,
-                    &[],
-                    &GRAVITY.map(Dual::constant),
-                    Dual::constant(step),
-                );
-                change(&next)
-            };
-            for (part, [by_positions, by_velocities]) in
-                [[&found.q_dq, &found.q_dv], [&found.v_dq, &found.v_dv]].into_iter().enumerate()
-            {
-                let expected: [[[f64; NV]; NV]; 2] = from_fn(|kind| {
-                    let columns: Vec<[f64; NV]> = (0..NV).map(|at| by(kind * NV + at)[part]).collect();
-                    from_fn(|row| from_fn(|column| columns[column][row]))
-                });
-                assert_close("by positions", by_positions.as_flattened(), expected[0].as_flattened());
-                assert_close("by velocities", by_velocities.as_flattened(), expected[1].as_flattened());
-            }
-            let columns: Vec<_> = (0..DOF).map(|joint| by(2 * NV + joint)).collect();
-            for (part, found) in [&found.q_dtau, &found.v_dtau].into_iter().enumerate() {
-                let expected: [[f64; DOF]; NV] = from_fn(|row| from_fn(|joint| columns[joint][part][row]));
-                assert_close("by torques", found.as_flattened(), expected.as_flattened());
-            }
+            let State { orientation, position, twist, q, qd } = state;
+            let pose = Pose { rotation: orientation.rotation(), translation: position };
+            let found = arm.0.floating_euler_step_derivatives([&q, &qd, &tau], (&pose, &twist), step, (&[], &[]));
+            let euler = FloatingIntegratorStep::<DOF, NV, 0>::floating_quaternion_step;
+            are_those_of(&found, (&arm, &state, &tau, step), euler);
+            let found = arm.floating_runge_kutta_step_derivatives(&state, &tau, &[], &SIX_BASE.gravity, step);
+            let runge_kutta = FloatingIntegratorStep::<DOF, NV, 0>::floating_runge_kutta_step;
+            are_those_of(&found, (&arm, &state, &tau, step), runge_kutta);
         }
+    }
+}
+
+/// A step over dual numbers.
+type Step = fn(
+    &Floating,
+    &State<Dual<f64>>,
+    &OfJoints<Dual<f64>>,
+    &[Wrench<Dual<f64>>; 0],
+    &[Dual<f64>; 3],
+    Dual<f64>,
+) -> State<Dual<f64>>;
+
+/// Compares the derivatives of a step with dual numbers through it.
+fn are_those_of(
+    found: &FloatingStepDerivatives<DOF, NV, f64>,
+    (arm, state, tau, step): (&Floating, &State<f64>, &OfJoints<f64>, f64),
+    next: Step,
+) {
+    let by = |direction: usize| {
+        let tau =
+            from_fn(|joint| Dual { value: tau[joint], derivative: f64::from(u8::from(direction == 2 * NV + joint)) });
+        let (gravity, step) = (SIX_BASE.gravity.map(Dual::constant), Dual::constant(step));
+        change(&next(arm, &along(state, direction), &tau, &[], &gravity, step))
+    };
+    for (part, [by_positions, by_velocities]) in
+        [[&found.q_dq, &found.q_dv], [&found.v_dq, &found.v_dv]].into_iter().enumerate()
+    {
+        let expected: [[[f64; NV]; NV]; 2] = from_fn(|kind| {
+            let columns: Vec<[f64; NV]> = (0..NV).map(|at| by(kind * NV + at)[part]).collect();
+            from_fn(|row| from_fn(|column| columns[column][row]))
+        });
+        assert_close("by positions", by_positions.as_flattened(), expected[0].as_flattened());
+        assert_close("by velocities", by_velocities.as_flattened(), expected[1].as_flattened());
+    }
+    let columns: Vec<_> = (0..DOF).map(|joint| by(2 * NV + joint)).collect();
+    for (part, found) in [&found.q_dtau, &found.v_dtau].into_iter().enumerate() {
+        let expected: [[f64; DOF]; NV] = from_fn(|row| from_fn(|joint| columns[joint][part][row]));
+        assert_close("by torques", found.as_flattened(), expected.as_flattened());
     }
 }
 

@@ -2,7 +2,7 @@
 
 use rne::{
     Actuation, BaseMotion, BaseTwist, CentreOfMass, CentroidalMomentum, ContactDynamics, CoriolisMatrix, Energy,
-    EulerStep, EulerStepDerivatives, FloatingBase, FloatingEnergy, FloatingEulerStep,
+    EulerStep, EulerStepDerivatives, FloatingBase, FloatingEnergy, FloatingEulerStep, FloatingEulerStepDerivatives,
     FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingRegressor, ForwardDynamics,
     ForwardDynamicsDerivatives, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient,
     InverseDynamicsHessian, JacobianDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase,
@@ -53,6 +53,7 @@ pub(crate) trait Everything<const DOF: usize, const NV: usize, const BODIES: usi
     + EulerStep<DOF>
     + EulerStepDerivatives<DOF>
     + FloatingEulerStep<DOF, 1>
+    + FloatingEulerStepDerivatives<DOF, NV, 1>
 {
 }
 
@@ -156,6 +157,13 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, const BODIES: usize, T:
             let twist = [next.twist.linear, next.twist.angular].concat();
             [pose(&next.pose), twist, next.q.to_vec(), next.qd.to_vec()].concat()
         }
+        Function::FloatingEulerStepDerivatives => {
+            let (step, wrenches) = (T::from_f64(0.03125), [Wrench { force, moment }]);
+            let by = robot.floating_euler_step_derivatives(q, qd, tau, &pose_of_base, &twist, step, &wrenches);
+            let [of_positions, of_velocities] =
+                [[by.q_dq, by.q_dv], [by.v_dq, by.v_dv]].map(|by| by.map(flat).concat());
+            [of_positions, flat(by.q_dtau), of_velocities, flat(by.v_dtau)].concat()
+        }
         Function::JointWrenches => {
             let wrenches = robot.joint_wrenches(q, qd, qdd);
             wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment].concat()).collect()
@@ -250,6 +258,7 @@ macro_rules! robot {
                 rne::EulerStep,
                 rne::EulerStepDerivatives,
                 rne::FloatingEulerStep,
+                rne::FloatingEulerStepDerivatives,
             )]
             #[robot(path = $path, form = $form, inline)]
             pub(crate) struct Robot;

@@ -178,7 +178,7 @@ impl Driver<'_> {
                 }
                 Function::EulerStep | Function::EulerStepDerivatives => "q, qd, tau, 0.03125f",
                 // omega stands behind the moment
-                Function::FloatingEulerStep => {
+                Function::FloatingEulerStep | Function::FloatingEulerStepDerivatives => {
                     &format!("q, qd, tau, pose, moment, 0.03125f, (const {real} (*)[6])force")
                 }
                 Function::TorqueGradient | Function::TorqueHessian => "q, qd, qdd, tau",
@@ -231,6 +231,7 @@ impl Driver<'_> {
                 Function::EulerStep => (format!("{prefix}_next_state x"), "&x"),
                 Function::EulerStepDerivatives => (format!("{prefix}_next_state_derivatives x"), "&x"),
                 Function::FloatingEulerStep => (format!("{prefix}_floating_next_state x"), "&x"),
+                Function::FloatingEulerStepDerivatives => (format!("{prefix}_floating_step_derivatives x"), "&x"),
                 Function::ForwardDynamicsDerivatives
                 | Function::ForwardDynamicsDerivativesWithWrenches
                 | Function::ForwardDynamicsDerivativesWithPayload => {

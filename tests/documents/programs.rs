@@ -104,6 +104,7 @@ pub(crate) fn stubs() -> String {
             | Returned::FloatingAccelerations
             | Returned::NextState
             | Returned::NextStateDerivatives
+            | Returned::FloatingStepDerivatives
             | Returned::ClosureStep => "tuple[Floats, Floats]",
             Returned::AccelerationsAndWrenches
             | Returned::FloatingTorqueDerivatives

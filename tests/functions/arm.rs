@@ -444,6 +444,9 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
                 [base, next.twist.linear.into(), next.twist.angular.into(), next.q, next.qd].concat()
             })
         }
+        Function::FloatingEulerStepDerivatives => arm
+            .floating_euler_step_derivatives(q, qd, tau, &given.pose(), &given.twist(), step, &wrenches)
+            .map(|by| flat([by.q_dq, by.q_dv, by.q_dtau, by.v_dq, by.v_dv, by.v_dtau].concat())),
         Function::JointWrenches => arm
             .joint_wrenches(q, qd, qdd)
             .map(|wrenches| wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment].concat()).collect()),

@@ -34,10 +34,10 @@ const CONDITION: f64 = 1e8;
 const WIDTH: f64 = 0.3;
 
 use Function as F;
-use Kind::{HalvesOfRows, Hessian, Momentum, Rates, RatesTimesVelocities, Rows, TimesTorques, Weighted};
+use Kind::{HalvesOfRows, Hessian, Momentum, OnManifold, Rates, RatesTimesVelocities, Rows, TimesTorques, Weighted};
 
 #[rustfmt::skip]
-const DERIVATIVES: [Derivative; 18] = [
+const DERIVATIVES: [Derivative; 19] = [
     Derivative { function: F::InverseDynamicsDerivatives, of: F::InverseDynamics, by: &[Q, Qd], kind: Rows },
     Derivative { function: F::InverseDynamicsDerivativesWithPayload, of: F::InverseDynamicsWithPayload, by: &[Q, Qd], kind: Rows },
     Derivative { function: F::InverseDynamicsDerivativesWithWrenches, of: F::InverseDynamicsWithWrenches, by: &[Q, Qd], kind: Rows },
@@ -46,6 +46,7 @@ const DERIVATIVES: [Derivative; 18] = [
     Derivative { function: F::ForwardDynamicsDerivativesWithWrenches, of: F::ForwardDynamicsWithWrenches, by: &[Q, Qd, Tau], kind: Rows },
     Derivative { function: F::EulerStepDerivatives, of: F::EulerStep, by: &[Q, Qd, Tau], kind: HalvesOfRows },
     Derivative { function: F::FloatingInverseDynamicsDerivatives, of: F::InverseDynamicsOfFloatingBase, by: &[Q, Qd, Omega], kind: Rows },
+    Derivative { function: F::FloatingEulerStepDerivatives, of: F::FloatingEulerStep, by: &[], kind: OnManifold },
     Derivative { function: F::InverseMassMatrix, of: F::ForwardDynamics, by: &[Tau], kind: Rows },
     Derivative { function: F::InverseMassMatrixTimesTorques, of: F::ForwardDynamics, by: &[Tau], kind: TimesTorques },
     Derivative { function: F::TorqueGradient, of: F::InverseDynamics, by: &[Q, Qd, Qdd], kind: Weighted },
@@ -62,10 +63,7 @@ const DERIVATIVES: [Derivative; 18] = [
 const OF_RUNTIME: [&str; 2] = ["actuator_torques_smooth_derivatives", "runge_kutta_step_derivatives"];
 
 /// Derivatives that other tests compare, and the file of these tests.
-const ELSEWHERE: [(&str, &str); 2] = [
-    ("floating_euler_step_derivatives", "rne-runtime/tests/floating_integrator.rs"),
-    ("loop_map_rate_times_velocity", "tests/functions/closed_loops.rs"),
-];
+const ELSEWHERE: [(&str, &str); 1] = [("loop_map_rate_times_velocity", "tests/functions/closed_loops.rs")];
 
 /// What rounding of the numbers of a function is relative to, if they are smaller: they are sums of larger terms.
 fn scale(arm: &Arm, function: Function, state: &State) -> f64 {
@@ -102,7 +100,11 @@ fn compare(robot: &Robot, seed: u64, worst: &mut Worst) {
     for derivative in &DERIVATIVES {
         let function = derivative.function;
         let payload = if function.takes(Argument::Payload) { state.payload } else { Payload::none() };
-        let mass = runtime.runtime.mass_matrix_with_payload(&state.q, &payload).expect("one per joint");
+        let mass = match function {
+            F::FloatingEulerStepDerivatives => runtime.runtime.floating_mass_matrix(&state.q),
+            _ => runtime.runtime.mass_matrix_with_payload(&state.q, &payload),
+        };
+        let mass = mass.expect("one per joint");
         let condition = match conditioning(&mass) {
             _ if !function.inverts_mass() => None,
             Some(it) if it.number < CONDITION => Some(it),
@@ -126,7 +128,7 @@ fn compare(robot: &Robot, seed: u64, worst: &mut Worst) {
                 let error = match &condition {
                     None => error_on_scale(found, part, scale(&runtime, function, &state)),
                     // 1 + h times derivatives of accelerations
-                    Some(of) if matches!(derivative.kind, HalvesOfRows) => {
+                    Some(of) if matches!(derivative.kind, HalvesOfRows | OnManifold) => {
                         error_on_scale(found, part, largest(&parts.concat())) / of.number
                     }
                     // columns of M⁻¹

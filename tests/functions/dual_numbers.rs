@@ -16,8 +16,13 @@ pub(crate) enum By {
     Tau,
     /// The angular velocity of the base.
     Omega,
+    /// The velocity of its origin.
+    Velocity,
+    /// A shift of it and a turn, in its axes.
+    Shift,
+    Turn,
 }
-use By::{Omega, Q, Qd, Qdd, Tau};
+use By::{Omega, Q, Qd, Qdd, Shift, Tau, Turn, Velocity};
 
 /// The numbers that are computed from the derivatives.
 #[derive(Clone, Copy)]
@@ -26,6 +31,8 @@ pub(crate) enum Kind {
     Rows,
     /// These matrices for the first half of the numbers of the function, then those for the others.
     HalvesOfRows,
+    /// The matrices of a step where nothing holds the base, on the manifold of its positions.
+    OnManifold,
     /// The torques of the state times each of these matrices.
     Weighted,
     /// The matrix times the torques of the state.
@@ -55,6 +62,9 @@ fn numbers<T: Scalar>(arm: &Arm, function: Function, state: &State, scalar: impl
     let (q, qd, qdd, tau) = (list(Q, &state.q), list(Qd, &state.qd), list(Qdd, &state.qdd), list(Tau, &state.tau));
     let still = |x: [f64; 3]| x.map(T::from_f64);
     let base = &state.base;
+    let rotation = base_rotation::<T>();
+    let [shift, turn]: [[T; 3]; 2] = [Shift, Turn].map(|by| std::array::from_fn(|axis| scalar(by, axis, 0.0)));
+    let crossed = |[a, b, c]: [T; 3], [x, y, z]: [T; 3]| [b * z - c * y, c * x - a * z, a * y - b * x];
     let given = Given {
         q: &q,
         qd: &qd,
@@ -65,11 +75,19 @@ fn numbers<T: Scalar>(arm: &Arm, function: Function, state: &State, scalar: impl
         base: BaseMotion {
             omega: std::array::from_fn(|axis| scalar(Omega, axis, base.omega[axis])),
             omega_dot: still(base.omega_dot),
-            velocity: still(base.velocity),
+            velocity: std::array::from_fn(|axis| scalar(Velocity, axis, base.velocity[axis])),
             acceleration: still(base.acceleration),
-            gravity: still(base.gravity),
+            // the place of a base that nothing holds
+            gravity: std::array::from_fn(|row| {
+                let moved = (0..3).fold(T::zero(), |sum, axis| sum + rotation[row][axis] * shift[axis]);
+                T::from_f64(base.gravity[row]) + moved
+            }),
         },
-        base_rotation: base_rotation(),
+        // R (1 + [δθ]×), by rows: r + r × δθ
+        base_rotation: rotation.map(|row| {
+            let turned = crossed(row, turn);
+            std::array::from_fn(|axis| row[axis] + turned[axis])
+        }),
         step: T::from_f64(STEP),
     };
     of_runtime(&arm.runtime, function, &given)
@@ -79,6 +97,21 @@ fn numbers<T: Scalar>(arm: &Arm, function: Function, state: &State, scalar: impl
 fn column(arm: &Arm, function: Function, state: &State, by: By, at: usize) -> Vec<f64> {
     let dual = |kind: By, i: usize, value: f64| Dual { value, derivative: one_if(kind == by && i == at) };
     numbers(arm, function, state, dual).iter().map(|number| number.derivative).collect()
+}
+
+/// The changes of the positions and of the velocities after a step where nothing holds the base, in its axes.
+fn changes(arm: &Arm, state: &State, by: By, at: usize) -> [Vec<f64>; 2] {
+    let dual = |kind: By, i: usize, value: f64| Dual { value, derivative: one_if(kind == by && i == at) };
+    let next = numbers(arm, Function::FloatingEulerStep, state, dual);
+    let rates: Vec<f64> = next.iter().map(|number| number.derivative).collect();
+    // R'ᵀ times a column of changes
+    let back =
+        |change: [f64; 3], axis: usize| -> f64 { (0..3).map(|row| next[3 * row + axis].value * change[row]).sum() };
+    let column = |axis: usize| [rates[axis], rates[3 + axis], rates[6 + axis]];
+    let turn = [back(column(1), 2), back(column(2), 0), back(column(0), 1)];
+    let origin = [0, 1, 2].map(|axis| back([rates[9], rates[10], rates[11]], axis));
+    let (q, qd) = rates[18..].split_at(state.q.len());
+    [[&origin[..], &turn, q].concat(), [&rates[12..18], qd].concat()]
 }
 
 fn one_if(is_one: bool) -> f64 {
@@ -115,6 +148,21 @@ impl Derivative {
                     matrices.iter().map(move |rows| rows[half * rows.len() / 2..][..rows.len() / 2].concat())
                 };
                 half(0).chain(half(1)).collect()
+            }
+            Kind::OnManifold => {
+                let by = |kinds: &[(By, usize)]| -> Vec<[Vec<f64>; 2]> {
+                    let columns = kinds.iter().flat_map(|&(by, count)| (0..count).map(move |at| (by, at)));
+                    columns.map(|(by, at)| changes(arm, state, by, at)).collect()
+                };
+                let columns = [
+                    by(&[(Shift, 3), (Turn, 3), (Q, dof)]),
+                    by(&[(Velocity, 3), (Omega, 3), (Qd, dof)]),
+                    by(&[(Tau, dof)]),
+                ];
+                let matrix = |half: usize, columns: &[[Vec<f64>; 2]]| -> Vec<f64> {
+                    (0..6 + dof).flat_map(|row| columns.iter().map(move |column| column[half][row])).collect()
+                };
+                [0, 1].into_iter().flat_map(|half| columns.iter().map(move |columns| matrix(half, columns))).collect()
             }
             Kind::Weighted => {
                 let weighted = |by: &By| columns(*by).iter().map(|column| dot(column, &state.tau)).collect();

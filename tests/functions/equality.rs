@@ -188,6 +188,26 @@ fn without_step_of_floating_base(arm: &Arm, given: &Given<'_, f64>, found: &[f64
     (accelerations.concat(), error.into_iter().fold(0.0, f64::max))
 }
 
+/// How far the derivatives of a step where nothing holds the base are from those expected, of the condition of M.
+fn error_of_floating_step(arm: &Arm, given: &Given<'_, f64>, found: &[f64], expected: &[f64]) -> f64 {
+    let matrix = arm.runtime.floating_mass_matrix(given.q).expect("one per joint");
+    let Some(Conditioning { number, largest: of_matrix }) = conditioning(&matrix) else { return 0.0 };
+    if number >= 1e12 {
+        return 0.0;
+    }
+    // 1 + h times derivatives of accelerations
+    let solved = of_runtime(&arm.runtime, Function::FloatingForwardDynamics, given);
+    let base = BaseMotion {
+        acceleration: [solved[0], solved[1], solved[2]],
+        omega_dot: [solved[3], solved[4], solved[5]],
+        gravity: [0.0; 3],
+        ..given.base
+    };
+    let given = &Given { qdd: &solved[6..], base, ..*given };
+    let of_forces = largest(&of_runtime(&arm.runtime, Function::FloatingInverseDynamicsDerivatives, given));
+    error_on_scale(found, expected, STEP * of_forces / of_matrix) / number
+}
+
 /// How far accelerations in contact are from those expected, of the condition of the system.
 fn error_in_contact(arm: &Arm, given: &Given<'_, f64>, found: &[f64], expected: &[f64]) -> f64 {
     let runtime = |function| of_runtime(&arm.runtime, function, given);
@@ -286,9 +306,9 @@ pub(crate) fn error(
         Function::FloatingEulerStep if !found.iter().all(|x| x.is_finite()) => 0.0,
         Function::FloatingEulerStep => {
             let (accelerations, of_step) = without_step_of_floating_base(arm, given, found);
-            let of = Function::FloatingForwardDynamics;
-            of_step.max(error(arm, maker, of, given, &accelerations, tolerance))
+            of_step.max(error(arm, maker, Function::FloatingForwardDynamics, given, &accelerations, tolerance))
         }
+        Function::FloatingEulerStepDerivatives => error_of_floating_step(arm, given, found, &expected),
         Function::ForwardDynamics
         | Function::InverseMassMatrix
         | Function::InverseMassMatrixTimesTorques

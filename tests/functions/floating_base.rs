@@ -5,8 +5,8 @@
 
 use nalgebra::Vector3;
 use rne::{
-    BaseMotion, BaseTwist, FloatingEulerStep, FloatingIntegratorStep, FloatingNextState, FloatingState, Pose,
-    Quaternion, Wrench,
+    BaseMotion, BaseTwist, FloatingEulerStep, FloatingEulerStepDerivatives, FloatingIntegratorStep, FloatingNextState,
+    FloatingState, Pose, Quaternion, Wrench,
 };
 use rne_codegen::{Argument, Compiler, Factorization, Form, Function, Output, Value};
 use rne_model::{Contact, Reader, Robot};
@@ -204,7 +204,7 @@ fn steps_of_a_floating_base_keep_its_momentum_and_its_rotation() {
 }
 
 /// Two joints and one tip.
-#[derive(rne::FloatingBase, rne::FloatingEulerStep)]
+#[derive(rne::FloatingBase, rne::FloatingEulerStep, rne::FloatingEulerStepDerivatives)]
 #[robot(path = "../../docs/satellite.yaml", form = "reduced")]
 struct Satellite;
 
@@ -234,6 +234,69 @@ fn derived_steps_with_a_matrix_are_those_with_a_quaternion() {
     ] {
         let error = error_on_scale(found, expected, 0.0);
         assert!(error <= TOLERANCE, "{error:e}: {found:?} {expected:?}");
+    }
+}
+
+/// The derived derivatives are difference quotients of the derived step, on the manifold of the positions: third order
+/// in the difference of 1e-4 of numbers up to 100.
+#[test]
+fn derived_derivatives_of_a_step_are_difference_quotients() {
+    const NV: usize = 8;
+    let State { q, qd, tau, wrench, base, .. } = State::random(7, 2);
+    let [q, qd, tau] = [q, qd, tau].map(|x| [x[0], x[1]]);
+    let pose = Pose { rotation: base_rotation(), translation: [0.3, -0.2, 0.1] };
+    let twist = BaseTwist { linear: base.velocity, angular: base.omega };
+    let (step, small) = (0.01, 1e-4);
+    let orientation = Quaternion::of_rotation(&pose.rotation);
+    let rotated = |quaternion: Quaternion<f64>, x: [f64; 3]| quaternion.rotation().map(|row| dot(&row, &x));
+    let next = |by: &[f64]| {
+        let three = |from: usize| [by[from], by[from + 1], by[from + 2]];
+        let plus = |x: [f64; 3], by: [f64; 3]| [0, 1, 2].map(|at| x[at] + by[at]);
+        let both = |x: [f64; 2], from: usize| [x[0] + by[from], x[1] + by[from + 1]];
+        let moved = Pose {
+            rotation: orientation.turned_by(three(3)).rotation(),
+            translation: plus(pose.translation, rotated(orientation, three(0))),
+        };
+        let velocity = BaseTwist { linear: plus(twist.linear, three(8)), angular: plus(twist.angular, three(11)) };
+        let [q, qd, tau] = [(q, 6), (qd, 14), (tau, 16)].map(|(x, from)| both(x, from));
+        Satellite.floating_euler_step(&q, &qd, &tau, &moved, &velocity, step, &[wrench])
+    };
+    let by = Satellite.floating_euler_step_derivatives(&q, &qd, &tau, &pose, &twist, step, &[wrench]);
+    let middle = Quaternion::of_rotation(&next(&[0.0; 18]).pose.rotation);
+    for column in 0..2 * NV + 2 {
+        let [after, before] = [small, -small].map(|change| {
+            let mut by = [0.0; 18];
+            by[column] = change;
+            next(&by)
+        });
+        let of = |pair: &dyn Fn(&FloatingNextState<2, f64>) -> Vec<f64>| -> Vec<f64> {
+            pair(&after)
+                .into_iter()
+                .zip(pair(&before))
+                .map(|(after, before)| (after - before) / (2.0 * small))
+                .collect()
+        };
+        let back = Quaternion { w: middle.w, x: -middle.x, y: -middle.y, z: -middle.z };
+        let positions = of(&|next| {
+            let turned = back.then(&Quaternion::of_rotation(&next.pose.rotation));
+            // twice the vector of a small turn whose scalar is positive
+            let turn = [turned.x, turned.y, turned.z].map(|x| 2.0 * x * turned.w.signum());
+            [&rotated(back, next.pose.translation)[..], &turn, &next.q].concat()
+        });
+        let velocities = of(&|next| [&next.twist.linear[..], &next.twist.angular, &next.qd].concat());
+        let found = |matrices: [[[f64; NV]; NV]; 2], of_torques: [[f64; 2]; NV]| -> Vec<f64> {
+            let element = |row: usize| match column.checked_sub(2 * NV) {
+                Some(joint) => of_torques[row][joint],
+                None => matrices[column / NV][row][column % NV],
+            };
+            (0..NV).map(element).collect()
+        };
+        for (found, expected) in
+            [(found([by.q_dq, by.q_dv], by.q_dtau), positions), (found([by.v_dq, by.v_dv], by.v_dtau), velocities)]
+        {
+            let error = error_on_scale(&found, &expected, 1.0);
+            assert!(error <= 1e-6, "column {column}, {error:e}: {found:?} {expected:?}");
+        }
     }
 }
 

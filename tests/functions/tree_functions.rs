@@ -2,7 +2,7 @@
 //! with the mass matrix, by the solution of nalgebra.
 
 use fastrand::Rng;
-use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, UnitQuaternion, Vector3};
 use rne::{BaseMotion, Payload, Wrench};
 use rne_codegen::{Argument, Function};
 use rne_model::{Contact, FixedFrame, Robot};
@@ -182,6 +182,69 @@ fn next_of_floating_base(robot: &Robot, state: &State) -> Vec<f64> {
     [of_base, omega.as_slice().to_vec(), moved(q, &rates), rates].concat()
 }
 
+/// The derivatives of this step on the manifold of the positions: those of the accelerations as the solution of
+/// nalgebra, and the turn of the base by the right Jacobian of the exponential.
+fn derivatives_of_floating_step(robot: &Robot, state: &State) -> Vec<f64> {
+    let State { q, base, .. } = state;
+    let (dof, size) = (q.len(), 6 + q.len());
+    let accelerations = expected(robot, Function::FloatingForwardDynamics, state);
+    if !accelerations.iter().all(|x| x.is_finite()) {
+        return vec![f64::NAN; size * (4 * size + 2 * dof)];
+    }
+    let place = |from: usize| Vector3::from_column_slice(&accelerations[from..][..3]);
+    let motion = BaseMotion { acceleration: place(0).into(), omega_dot: place(3).into(), gravity: [0.0; 3], ..*base };
+    let solved = State { qdd: accelerations[6..].to_vec(), base: motion, ..state.clone() };
+    let forces = expected(robot, Function::FloatingInverseDynamicsDerivatives, &solved);
+    let (by_joints, by_omega) = forces.split_at(2 * size * dof);
+    let [by_q, by_qd] =
+        [0, 1].map(|kind| DMatrix::from_row_slice(size, dof, &by_joints[kind * size * dof..][..size * dof]));
+    let by_omega = DMatrix::from_row_slice(size, 3, by_omega);
+    let mass = DMatrix::from_row_slice(size, size, &flat(floating_mass_matrix(robot, q))).lu();
+    let solution = |right: DMatrix<f64>| {
+        mass.solve(&right).unwrap_or_else(|| DMatrix::from_element(size, right.ncols(), f64::NAN))
+    };
+    let mut caused = [size, size, dof].map(|columns| DMatrix::zeros(size, columns));
+    caused[0].view_mut((0, 6), (size, dof)).copy_from(&solution(-by_q));
+    caused[1].view_mut((0, 6), (size, dof)).copy_from(&solution(-by_qd));
+    caused[1].view_mut((0, 3), (size, 3)).copy_from(&solution(-by_omega));
+    caused[2].copy_from(&solution(DMatrix::from_fn(size, dof, |row, column| f64::from(u8::from(row == 6 + column)))));
+
+    let rotation = Matrix3::from(state.given().pose().rotation).transpose();
+    let driven = Vector3::from(base.velocity) + place(0) * STEP;
+    let in_world = rotation * driven + Vector3::from(robot.gravity) * STEP;
+    // the turn has the rotation vector φ = f ω
+    let omega = Vector3::from(base.omega) + place(3) * STEP;
+    let speed = omega.norm();
+    let (f, slope) = (4.0 * (speed * STEP / 4.0).atan() / speed, STEP / (1.0 + (speed * STEP / 4.0).powi(2)));
+    let (phi, angle) = (omega * f, speed * f);
+    let crossed = phi.cross_matrix();
+    let right = Matrix3::identity() - crossed * ((1.0 - angle.cos()) / angle.powi(2))
+        + crossed * crossed * ((angle - angle.sin()) / angle.powi(3));
+    let by_rate = right * (Matrix3::identity() * f + omega * omega.transpose() * ((slope - f) / (speed * speed)));
+    let next = rotation * UnitQuaternion::from_scaled_axis(phi).to_rotation_matrix().matrix();
+    let mut halves = [Vec::new(), Vec::new()];
+    for (kind, caused) in caused.iter().enumerate() {
+        let column = |at: usize| {
+            let unit = |of: usize| DVector::from_fn(size, |row, _| f64::from(u8::from(of == kind && row == at)));
+            let (position, mut velocity) = (unit(0), unit(1) + caused.column(at) * STEP);
+            let three = |of: &DVector<f64>, from: usize| Vector3::new(of[from], of[from + 1], of[from + 2]);
+            let of_joints = &position + &velocity * STEP;
+            let turn = three(&position, 3);
+            let moved = rotation * (turn.cross(&driven) + three(&velocity, 0));
+            let origin = next.tr_mul(&(rotation * three(&position, 0) + moved * STEP));
+            let turned = next.tr_mul(&(rotation * turn)) + by_rate * three(&velocity, 3);
+            let linear = next.tr_mul(&moved) + next.tr_mul(&in_world).cross(&turned);
+            velocity.as_mut_slice()[..3].copy_from_slice(linear.as_slice());
+            [[origin.as_slice(), turned.as_slice(), &of_joints.as_slice()[6..]].concat(), velocity.as_slice().to_vec()]
+        };
+        let columns: Vec<[Vec<f64>; 2]> = (0..caused.ncols()).map(column).collect();
+        for (half, numbers) in halves.iter_mut().enumerate() {
+            numbers.extend((0..size).flat_map(|row| columns.iter().map(move |column| column[half][row])));
+        }
+    }
+    halves.concat()
+}
+
 /// The products of the rows of a matrix, which are as long as `x`, with it.
 fn times_rows(rows: &[f64], x: &[f64]) -> Vec<f64> {
     rows.chunks(x.len()).map(|row| row.iter().zip(x).map(|(a, b)| a * b).sum()).collect()
@@ -281,6 +344,7 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
             matrix.lu().solve(&right).map_or_else(|| vec![f64::NAN; 6 + dof], |x| x.as_slice().to_vec())
         }
         Function::FloatingEulerStep => next_of_floating_base(robot, state),
+        Function::FloatingEulerStepDerivatives => derivatives_of_floating_step(robot, state),
         Function::ForwardDynamicsInContact => in_contact(robot, state),
         Function::CentroidalMomentumMatrix => {
             let columns = floating_mass_matrix(robot, q);
@@ -481,7 +545,9 @@ pub(crate) fn magnification(robot: &Robot, function: Function, state: &State, ex
     }
     let loaded = function.takes(Argument::Payload).then_some(&state.payload);
     let matrix = match function {
-        Function::FloatingForwardDynamics | Function::FloatingEulerStep => floating_mass_matrix(robot, &state.q),
+        Function::FloatingForwardDynamics | Function::FloatingEulerStep | Function::FloatingEulerStepDerivatives => {
+            floating_mass_matrix(robot, &state.q)
+        }
         Function::ForwardDynamicsInContact => {
             let mass = floating_mass_matrix(robot, &state.q);
             conditioning(&mass)?;

@@ -159,6 +159,11 @@ macro_rules! returned {
          (N, n); `out` is one array of shape (18 + 2 n,) or (N, 18 + 2 n). It begins with the rows of the rotation and \
          the origin."
     };
+    (FloatingStepDerivatives) => {
+        "A and B, of shape (12 + 2 n, 12 + 2 n) and (12 + 2 n, n), or (N, 12 + 2 n, 12 + 2 n) and (N, 12 + 2 n, n); \
+         rows and columns are the positions, then the velocities, each of the base before the joints. `out` is one \
+         array with the rows of q_dq, q_dv, q_dtau, v_dq, v_dv and v_dtau, one behind the other."
+    };
     (MomentumAndRate) => {
         "momentum and rate, two arrays of shape (n,) or (N, n); `out` is one array of shape (2, n) or (N, 2, n)."
     };
@@ -242,12 +247,12 @@ macro_rules! method {
         }
     };
     (
-        FloatingEulerStep $name:ident (
+        $variant:ident $name:ident (
             q: Positions, qd: Rates, tau: Torques, pose: BasePose, twist: BaseTwist, step: Step, wrenches: Wrenches
         ) $($rest:tt)*
     ) => {
         of_floating_base! {
-            FloatingEulerStep $name
+            $variant $name
                 (q: Positions, qd: Rates, tau: Torques, pose: BasePose, twist: BaseTwist, step: Step) $($rest)*
         }
     };

@@ -39,6 +39,7 @@ fn shape(function: Function, arm: &CompiledArm) -> Vec<usize> {
                 | Record::StepDerivatives
                 | Record::NextStateDerivatives
                 | Record::FloatingNextState
+                | Record::FloatingStepDerivatives
                 | Record::ClosureStep,
                 parts,
             ) => {
@@ -57,6 +58,7 @@ fn shape(function: Function, arm: &CompiledArm) -> Vec<usize> {
         | Record::AccelerationsAndWrenches
         | Record::FloatingTorqueDerivatives
         | Record::FloatingNextState
+        | Record::FloatingStepDerivatives
         | Record::ClosureStep,
         _,
     ) = layout
@@ -218,6 +220,20 @@ fn as_python<'py, T: Element>(
             let matrix = result.call_method1("transpose", (axes,))?.call_method1("reshape", (rows,))?;
             let [a, b] = [0..2 * dof, 2 * dof..3 * dof].map(|part| of_last_axis(&matrix, part));
             Ok(PyTuple::new(py, [a?, b?])?.into_any())
+        }
+        // the same, with the rows of the base
+        Layout::Record(Record::FloatingStepDerivatives, _) => {
+            let (dof, lead) = (arm.dof(), usize::from(many.is_some()));
+            let size = 6 + dof;
+            let shaped = |array: &Bound<'py, PyAny>, shape: &[usize]| {
+                array.call_method1("reshape", (many.into_iter().chain(shape.iter().copied()).collect::<Vec<_>>(),))
+            };
+            let halves = shaped(result.as_any(), &[2, 2 * size * size + size * dof])?;
+            let a = shaped(&of_last_axis(&halves, 0..2 * size * size)?, &[2, 2, size, size])?;
+            let axes: Vec<usize> = (0..lead).chain([0, 2, 1, 3].map(|axis| lead + axis)).collect();
+            let a = shaped(&a.call_method1("transpose", (axes,))?, &[2 * size, 2 * size])?;
+            let b = of_last_axis(&halves, 2 * size * size..2 * size * size + size * dof)?;
+            Ok(PyTuple::new(py, [a, shaped(&b, &[2 * size, dof])?])?.into_any())
         }
         Layout::Record(Record::FloatingTorqueDerivatives, parts) => {
             let mut from = 0;

@@ -162,3 +162,38 @@ def test_a_step_moves_the_base_by_its_velocities():
     alone = ARM.floating_euler_step(q[3], qd[3], tau[3], pose[3], TWIST[3], step, None)
     for part, many in zip(alone, (found, twist, positions, rates)):
         assert part.shape == many.shape[1:] and np.array_equal(part, many[3])
+
+
+def rotation_of(vector):
+    angle = np.linalg.norm(vector)
+    x, y, z = vector / angle if angle else vector
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+def test_derivatives_of_a_step_are_difference_quotients():
+    n, step, small = ARM.dof, 0.01, 1e-5
+    pose = poses()
+    pose[:, :3, :3] *= np.linalg.det(pose[:, :3, :3])[:, None, None]
+    a, b = ARM.floating_euler_step_derivatives(q, qd, tau, pose, TWIST, step)
+    assert a.shape == (N, 12 + 2 * n, 12 + 2 * n) and b.shape == (N, 12 + 2 * n, n)
+    model, state = np.concatenate([a, b], axis=2), 2
+    rotation, origin = pose[state, :3, :3], pose[state, :3, 3]
+
+    def after(change):
+        shift, turn, of_q, of_twist, of_qd, of_tau = np.split(change, np.cumsum([3, 3, n, 6, n]))
+        moved = np.eye(4)
+        moved[:3, :3], moved[:3, 3] = rotation @ rotation_of(turn), origin + rotation @ shift
+        return ARM.floating_euler_step(
+            q[state] + of_q, qd[state] + of_qd, tau[state] + of_tau, moved, TWIST[state] + of_twist, step)
+
+    back = after(np.zeros(12 + 3 * n))[0][:3, :3].T
+    for column, unit in enumerate(np.eye(12 + 3 * n)):
+        (pose_after, *after_it), (pose_before, *before_it) = after(small * unit), after(-small * unit)
+        turn = back @ (pose_after - pose_before)[:3, :3]
+        shift = back @ (pose_after - pose_before)[:3, 3]
+        twist, of_q, of_qd = (x - y for x, y in zip(after_it, before_it))
+        change = np.concatenate([shift, [turn[2, 1], turn[0, 2], turn[1, 0]], of_q, twist, of_qd]) / (2 * small)
+        np.testing.assert_allclose(change, model[state, :, column], atol=1e-6 * np.abs(model[state]).max())
+    alone = ARM.floating_euler_step_derivatives(q[state], qd[state], tau[state], pose[state], TWIST[state], step, None)
+    assert np.array_equal(alone[0], a[state]) and np.array_equal(alone[1], b[state])

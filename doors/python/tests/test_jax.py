@@ -127,6 +127,7 @@ def test_functions_of_a_floating_base_and_of_trees_give_the_numbers_of_the_arm()
     q, qd, qdd = states(arm, 4)
     omega, wrenches = random.normal(size=(4, 3)), random.normal(size=(4, len(arm.tips), 6))
     pose, twist = np.tile(np.eye(4), (4, 1, 1)), random.normal(size=(4, 6))
+    a, b = arm.floating_euler_step_derivatives(q, qd, qdd, pose, twist, 0.01, wrenches)
     for found, expected in [
         (functions.floating_forward_dynamics(q, qd, qdd, omega, wrenches),
          arm.floating_forward_dynamics(q, qd, qdd, omega, wrenches)),
@@ -134,6 +135,9 @@ def test_functions_of_a_floating_base_and_of_trees_give_the_numbers_of_the_arm()
          arm.inverse_dynamics_with_wrenches(q, qd, qdd, wrenches)),
         (functions.floating_euler_step(q, qd, qdd, pose, twist, 0.01, wrenches),
          arm.floating_euler_step(q, qd, qdd, pose, twist, 0.01, wrenches)),
+        # the blocks of A and B
+        (functions.floating_euler_step_derivatives(q, qd, qdd, pose, twist, 0.01, wrenches),
+         (a[:, :18, :18], a[:, :18, 18:], b[:, :18], a[:, 18:, :18], a[:, 18:, 18:], b[:, 18:])),
     ]:
         pairs = zip(found, expected) if isinstance(expected, tuple) else [(found, expected)]
         for one, other in pairs:

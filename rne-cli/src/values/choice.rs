@@ -24,7 +24,7 @@ pub(crate) fn composed(name: &str) -> Option<String> {
             "it is composed of calls of forward_dynamics: {TYPED}rne emit FILE --lang c --runge-kutta{TYPED:#} writes \
              it in C, and Rust and Python have it as a method"
         ),
-        "floating_euler_step_derivatives" | "floating_runge_kutta_step" => {
+        "floating_runge_kutta_step" => {
             "it is composed of calls of other functions, and Rust has it as a method".to_owned()
         }
         _ => return None,

@@ -4,8 +4,9 @@ use std::str::FromStr;
 
 use rne::{
     BaseAcceleration, BaseMotion, BaseTwist, DynAccelerationDerivatives, DynArm, DynFloatingNextState,
-    DynFloatingTorqueDerivatives, DynNextState, DynNextStateDerivatives, DynStepDerivatives, DynTorqueDerivatives,
-    DynTorqueGradient, DynTorqueHessian, Payload, Pose, Quaternion, Wrench, WrongLength,
+    DynFloatingStepDerivatives, DynFloatingTorqueDerivatives, DynNextState, DynNextStateDerivatives,
+    DynStepDerivatives, DynTorqueDerivatives, DynTorqueGradient, DynTorqueHessian, Payload, Pose, Quaternion, Wrench,
+    WrongLength,
 };
 use rne_codegen::{Argument, Capability, Function};
 use rne_model::{Robot, nearest_name};
@@ -320,6 +321,7 @@ records! {
     DynTorqueHessian { dq_dq, dq_dqd, dqd_dqd, dq_dqdd } DynNextState { q, qd }
     DynStepDerivatives { dq, dqd, dtau } DynNextStateDerivatives { q, qd } BaseTwist { linear, angular }
     DynFloatingNextState { pose, twist, q, qd }
+    DynFloatingStepDerivatives { q_dq, q_dv, q_dtau, v_dq, v_dv, v_dtau }
 }
 
 /// Positions of the dependent joints of closed loops: those that close the loops, from the given ones. A Newton step

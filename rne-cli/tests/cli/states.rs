@@ -84,6 +84,12 @@ fn flat(value: &Value, numbers: &mut Vec<f64>) {
                 "dq_dqd",
                 "dqd_dqd",
                 "dq_dqdd",
+                "q_dq",
+                "q_dv",
+                "q_dtau",
+                "v_dq",
+                "v_dv",
+                "v_dtau",
                 "momentum",
                 "rate",
             ];

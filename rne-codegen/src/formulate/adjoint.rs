@@ -122,7 +122,8 @@ impl<'s, 'a> Inverse<'s, 'a> {
         let rest = joints.iter().zip(bias).map(|(&joint, bias)| coordinates.applied(self.builder, joint) - bias);
         let rest: Vec<_> = rest.collect();
         let solved = self.factors.solved(0, &rest, |quantity, row| self.system.name(quantity, row));
-        self.builder.keep_accelerations(joints.iter().copied().zip(solved.into_iter().flatten()));
+        let of = joints.iter().map(|joint| WithRespectTo::RateDot(joint + 1));
+        self.builder.keep_accelerations(of.zip(solved.into_iter().flatten()));
     }
 
     /// -M⁻¹ ∂τ/∂q and -M⁻¹ ∂τ/∂q̇, given ∂τ/∂q and ∂τ/∂q̇ by rows, and M⁻¹; of a step, what follows from them.

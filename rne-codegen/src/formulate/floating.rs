@@ -59,7 +59,7 @@ pub(crate) fn floating_rest<'s>(builder: &'s Builder, system: &System<'_>, bias:
 }
 
 /// The variables of the derivatives of a robot whose base nothing holds: q, q̇ and the angular velocity of the base.
-fn variables(coordinates: &Coordinates) -> [Vec<WithRespectTo>; 3] {
+pub(crate) fn variables(coordinates: &Coordinates) -> [Vec<WithRespectTo>; 3] {
     let of_joints =
         |kind: fn(usize) -> WithRespectTo| coordinates.joints().iter().map(|joint| kind(joint + 1)).collect();
     let about = Axis::ALL.map(|axis| WithRespectTo::BaseRate(4 + axis as usize));

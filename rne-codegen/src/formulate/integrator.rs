@@ -59,8 +59,9 @@ pub(crate) fn floating_euler_step<'s>(
     let omega = line.vector(Quantity::NextOmega, || moved(omega, angular));
     let in_world = line.within(Quantity::NextOrigin, || moved(rotation * moved(velocity, linear), gravity));
     let origin = line.vector(Quantity::NextOrigin, || moved(origin, in_world));
-    let rotation =
-        line.matrix(Quantity::NextRotation, || next_to(builder, rotation * turned_by(builder, omega * step)));
+    let rotation = line.matrix(Quantity::NextRotation, || {
+        next_to(builder, rotation * Turn::of(builder, omega * step).matrix(builder))
+    });
     let velocity = line.vector(Quantity::NextVelocity, || rotation.transpose() * in_world);
     let mut outputs = Outputs::new();
     for (row, elements) in Axis::ALL.into_iter().zip(rotation.0) {
@@ -73,22 +74,46 @@ pub(crate) fn floating_euler_step<'s>(
     outputs
 }
 
-/// The rotation by which a frame turns in a step; `angle` is h ω.
-fn turned_by<'s>(builder: &'s Builder, angle: Vector<'s>) -> Matrix<'s> {
-    let one = builder.entry(Name::scalar(Quantity::One, 0), 1.0);
-    let u = angle * builder.constant(0.25, Cause::Arithmetic);
-    let inverse = builder.quotient(one, one + u.dot(u));
-    let factor = inverse + inverse;
-    // the unit quaternion
-    let (w, vector) = (factor - one, u * factor);
-    let ([x, y, z], [x2, y2, z2]) = (vector.0, (vector + vector).0);
-    let ([xx, yy, zz], [xy, xz, yz], [wx, wy, wz]) =
-        ([x2 * x, y2 * y, z2 * z], [x2 * y, x2 * z, y2 * z], [x2 * w, y2 * w, z2 * w]);
-    Matrix::from_rows([
-        [one - (yy + zz), xy - wz, xz + wy],
-        [xy + wz, one - (xx + zz), yz - wx],
-        [xz - wy, yz + wx, one - (xx + yy)],
-    ])
+/// The turn of a frame in a step, as a unit quaternion.
+pub(crate) struct Turn<'s> {
+    /// h ω / 4
+    u: Vector<'s>,
+    /// 1 / (1 + s)
+    inverse: Symbol<'s>,
+    w: Symbol<'s>,
+    vector: Vector<'s>,
+}
+
+impl<'s> Turn<'s> {
+    /// `angle` is h ω.
+    pub(crate) fn of(builder: &'s Builder, angle: Vector<'s>) -> Self {
+        let one = builder.entry(Name::scalar(Quantity::One, 0), 1.0);
+        let u = angle * builder.constant(0.25, Cause::Arithmetic);
+        let inverse = builder.quotient(one, one + u.dot(u));
+        let factor = inverse + inverse;
+        Self { u, inverse, w: factor - one, vector: u * factor }
+    }
+
+    /// E
+    pub(crate) fn matrix(&self, builder: &'s Builder) -> Matrix<'s> {
+        let one = builder.entry(Name::scalar(Quantity::One, 0), 1.0);
+        let (w, [x, y, z], [x2, y2, z2]) = (self.w, self.vector.0, (self.vector + self.vector).0);
+        let ([xx, yy, zz], [xy, xz, yz], [wx, wy, wz]) =
+            ([x2 * x, y2 * y, z2 * z], [x2 * y, x2 * z, y2 * z], [x2 * w, y2 * w, z2 * w]);
+        Matrix::from_rows([
+            [one - (yy + zz), xy - wz, xz + wy],
+            [xy + wz, one - (xx + zz), yz - wx],
+            [xz - wy, yz + wx, one - (xx + yy)],
+        ])
+    }
+
+    /// The change of the turn by ω, in the turned axes: h / (1 + s) times the turn by half of E, backwards.
+    pub(crate) fn by_rate(&self, step: Symbol<'s>) -> Matrix<'s> {
+        let (scale, [u, v]) = (self.inverse * step, [self.u, self.vector]);
+        let (w, [x, y, z]) = (self.w * scale, (v * scale).0);
+        let ([xx, yy, zz], [xy, xz, yz]) = ([x * u.0[0], y * u.0[1], z * u.0[2]], [x * u.0[1], x * u.0[2], y * u.0[2]]);
+        Matrix::from_rows([[w + xx, xy + z, xz - y], [xy - z, w + yy, yz + x], [xz + y, yz - x, w + zz]])
+    }
 }
 
 /// The rotation next to a matrix that is one but for rounding.

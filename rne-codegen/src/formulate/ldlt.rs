@@ -59,7 +59,7 @@ impl<'a> System<'a> {
     }
 
     /// The acceleration whose force or torque a row is.
-    fn acceleration(&self, row: usize) -> WithRespectTo {
+    pub(crate) fn acceleration(&self, row: usize) -> WithRespectTo {
         self.of_joint(row).map_or(WithRespectTo::BaseRateDot(row + 1), |place| {
             WithRespectTo::RateDot(self.coordinates.joints()[place] + 1)
         })

@@ -9,6 +9,7 @@ pub(crate) mod closure;
 pub(crate) mod contact;
 pub(crate) mod energy;
 pub(crate) mod floating;
+pub(crate) mod floating_step;
 pub(crate) mod integrator;
 pub(crate) mod joint;
 pub(crate) mod kinematics;
@@ -28,6 +29,7 @@ pub(crate) use floating::{
     base_rotation, floating_derivatives, floating_forward_dynamics, floating_mass_matrix, on_base, pose_of_base,
     sensitivity_of_floating_base,
 };
+pub(crate) use floating_step::FloatingStep;
 pub(crate) use joint::{Joint, JointState, Wrench};
 pub(crate) use kinematics::{Frame, Frames};
 pub(crate) use payload::{AtTip, Payload};
@@ -106,6 +108,7 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
             derivation.arm.gravity,
             &derivation.floating_accelerations(),
         ),
+        Function::FloatingEulerStepDerivatives => derivation.derivatives_of_floating_step(),
         Function::CentroidalMomentumMatrix => {
             centroid::momentum_matrix(builder, &derivation.system(), &derivation.of_base().0)
         }
@@ -176,6 +179,17 @@ impl<'s, 'r> Derivation<'s, 'r> {
         }))
     }
 
+    /// The derivatives of a step of a robot whose base nothing holds.
+    fn derivatives_of_floating_step(&self) -> Outputs<'s> {
+        let (builder, system) = (self.builder, self.system());
+        let bias = builder.unnamed(|| self.floating_torques());
+        let step = FloatingStep::new(builder, &system, &self.floating_half(), bias, self.arm.gravity);
+        let solved = Self::new(builder, self.robot, Function::FloatingEulerStepDerivatives);
+        let forces: Vec<_> = solved.floating_torques().into_iter().map(|(_, force)| force).collect();
+        let variables = floating::variables(solved.coordinates()).concat();
+        step.derivatives(&builder.derivatives(&forces, variables.into_iter()))
+    }
+
     fn new(builder: &'s Builder, robot: &'r Robot, function: Function) -> Self {
         let arm = Arm::new(builder, robot);
         let joints = robot.joints.len();
@@ -224,7 +238,12 @@ impl<'s, 'r> Derivation<'s, 'r> {
         } else if function.takes(Argument::BaseVelocity) || function.takes(Argument::BaseTwist) {
             // accelerations do not depend on the linear velocity
             let nothing = builder.zeros(Cause::NoAcceleration);
-            Motion::of_base(&arm, [vector(Quantity::Omega, 0), nothing, nothing], builder.zeros(Cause::NoAcceleration))
+            let [omega_dot, acceleration] = [Quantity::OmegaDot, Quantity::Acceleration]
+                .map(|quantity| builder.solved_of_base(quantity).unwrap_or(nothing));
+            let of_base = || Motion::of_base(&arm, [vector(Quantity::Omega, 0), omega_dot, acceleration], nothing);
+            // the same quantities come again, at the accelerations that are solved for
+            let is_first = function == Function::FloatingEulerStepDerivatives && !builder.has_accelerations();
+            if is_first { builder.unnamed(of_base) } else { of_base() }
         } else {
             Motion::of_fixed_base(builder, arm.gravity)
         };

@@ -68,6 +68,8 @@ named! {
         EulerStepDerivatives = "EulerStepDerivatives",
         /// A step of this method where nothing holds the base.
         FloatingEulerStep = "FloatingEulerStep",
+        /// The derivatives of this step.
+        FloatingEulerStepDerivatives = "FloatingEulerStepDerivatives",
     }
 }
 
@@ -89,6 +91,7 @@ impl Capability {
                 | Self::ContactDynamics
                 | Self::FloatingInverseDynamicsDerivatives
                 | Self::FloatingClosedLoops
+                | Self::FloatingEulerStepDerivatives
         )
     }
 

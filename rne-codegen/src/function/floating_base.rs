@@ -86,6 +86,17 @@ pub(super) const ACCELERATIONS: Entry = Entry {
     ..Entry::of(Function::FloatingForwardDynamics, Capability::FloatingBase)
 };
 
+/// The part of an entry that the step and its derivatives have in common.
+const STEP: Entry = Entry {
+    divides: Some(
+        "the result of the step is not finite: the mass matrix is singular \
+         (a joint or the base moves no mass), or the state is too large",
+    ),
+    inverts_mass: true,
+    feels_rotors: true,
+    ..Entry::of(Function::FloatingEulerStep, Capability::FloatingEulerStep)
+};
+
 /// The functions.
 pub(super) const FLOATING_BASE: &[Entry] = &[
     TORQUES,
@@ -310,12 +321,46 @@ pub(super) const FLOATING_BASE: &[Entry] = &[
                 Labels::Joints,
             ),
         ]),
-        divides: Some(
-            "the result of the step is not finite: the mass matrix is singular \
-             (a joint or the base moves no mass), or the state is too large",
-        ),
-        inverts_mass: true,
-        feels_rotors: true,
-        ..Entry::of(Function::FloatingEulerStep, Capability::FloatingEulerStep)
+        ..STEP
+    },
+    Entry {
+        output: "derivatives",
+        listed: "returned: the rows of the derivatives of the next positions by the positions, by the velocities and \
+                 by the torques, then those of the next velocities",
+        own: &[
+            Own::names(
+                Quantity::FrameRotation,
+                "rotation of the base: its columns are the axes of frame 0 in the world",
+            ),
+            Own::names(Quantity::FrameOrigin, "origin of frame 0 in the world"),
+            Own::names(Quantity::OriginVelocity, "velocity of the origin of frame 0, in its axes"),
+            Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
+            Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
+            Own::of(Quantity::NextOmega, |_| "angular velocity of the base after the step".to_owned()),
+            Own::meaning(
+                Quantity::NextOrigin,
+                "shift of the base after the step, along the axes that frame 0 has then",
+                |_| "shift of the base after the step".to_owned(),
+            ),
+            Own::of(Quantity::NextTurn, |_| "turn of the base after the step".to_owned()),
+            Own::of(Quantity::NextVelocity, |_| "velocity of the origin of frame 0 after the step".to_owned()),
+            Own::of(Quantity::NextRate, |joint| format!("velocity of joint {joint} after the step")),
+            Own::of(Quantity::NextPosition, |joint| format!("position of joint {joint} after the step")),
+        ],
+        answer: Answer::Tables(&[
+            AnswerTable::of(
+                "positions after the step by the positions, axes of frame 0; SI units",
+                VELOCITIES,
+                VELOCITIES,
+            ),
+            AnswerTable::of("positions after the step by the velocities (s)", VELOCITIES, VELOCITIES),
+            AnswerTable::of("positions after the step by the torques; SI units", VELOCITIES, Labels::Joints),
+            AnswerTable::of("velocities after the step by the positions; SI units", VELOCITIES, VELOCITIES),
+            AnswerTable::of("velocities after the step by the velocities; SI units", VELOCITIES, VELOCITIES),
+            AnswerTable::of("velocities after the step by the torques; SI units", VELOCITIES, Labels::Joints),
+        ]),
+        function: Function::FloatingEulerStepDerivatives,
+        capability: Capability::FloatingEulerStepDerivatives,
+        ..STEP
     },
 ];

@@ -21,6 +21,7 @@ const WRENCH: Shape = Shape::Record(Record::Wrench, &[TRIPLE, TRIPLE]);
 const VELOCITIES: Shape = Shape::Array(Length::Velocities, &Shape::Number);
 const PARAMETERS: Shape = Shape::Array(Length::Fixed(10), &Shape::Number);
 const SIX: Shape = Shape::Array(Length::Fixed(6), &Shape::Number);
+const BY_VELOCITIES: Shape = Shape::Array(Length::Velocities, &VELOCITIES);
 const ROWS: Shape = Shape::Array(Length::Fixed(6), &VELOCITIES);
 const BASE_ACCELERATION: Shape = Shape::Record(Record::BaseAcceleration, &[TRIPLE, TRIPLE]);
 const ACCELERATIONS: Shape = Shape::Record(Record::FloatingAccelerations, &[BASE_ACCELERATION, VECTOR]);
@@ -98,6 +99,9 @@ pub enum Returned {
     NextStateDerivatives,
     /// A pose, a linear and an angular velocity, and two vectors.
     FloatingNextState,
+    /// Six rows of the base and one per joint, in six matrices: twice two with as many columns, and one with a column
+    /// per joint.
+    FloatingStepDerivatives,
 }
 
 impl Returned {
@@ -120,7 +124,7 @@ impl Returned {
             Self::MomentumAndRate => &Shape::Record(Record::MomentumAndRate, &[VECTOR, VECTOR]),
             Self::FloatingTorques => &Shape::Record(Record::FloatingTorques, &[WRENCH, VECTOR]),
             Self::FloatingVector => &VELOCITIES,
-            Self::FloatingMatrix => &Shape::Array(Length::Velocities, &VELOCITIES),
+            Self::FloatingMatrix => &BY_VELOCITIES,
             Self::FloatingRows => &ROWS,
             Self::TipRows => &Shape::Array(Length::Tips, &ROWS),
             Self::TipVectors => &Shape::Array(Length::Tips, &SIX),
@@ -144,6 +148,10 @@ impl Returned {
                 &Shape::Record(Record::NextStateDerivatives, &[BY_STATE_AND_TORQUES, BY_STATE_AND_TORQUES])
             }
             Self::FloatingNextState => &Shape::Record(Record::FloatingNextState, &[POSE, TWIST, VECTOR, VECTOR]),
+            Self::FloatingStepDerivatives => &Shape::Record(
+                Record::FloatingStepDerivatives,
+                &[BY_VELOCITIES, BY_VELOCITIES, ROWS_BY_JOINT, BY_VELOCITIES, BY_VELOCITIES, ROWS_BY_JOINT],
+            ),
             Self::AccelerationsAndWrenches => {
                 &Shape::Record(Record::AccelerationsAndWrenches, &[ACCELERATIONS, Shape::Array(Length::Tips, &WRENCH)])
             }
@@ -285,6 +293,8 @@ pub enum Record {
     BaseTwist,
     /// Pose and velocity of the base, positions and velocities of the joints after a step.
     FloatingNextState,
+    /// Derivatives of the positions and of the velocities after a step, each by positions, by velocities and by τ.
+    FloatingStepDerivatives,
 }
 
 impl Record {
@@ -310,6 +320,7 @@ impl Record {
             Self::NextStateDerivatives => "NextStateDerivatives",
             Self::BaseTwist => "BaseTwist",
             Self::FloatingNextState => "FloatingNextState",
+            Self::FloatingStepDerivatives => "FloatingStepDerivatives",
         }
     }
 
@@ -332,6 +343,7 @@ impl Record {
             Self::NextState | Self::NextStateDerivatives => &["q", "qd"],
             Self::TorqueHessian => &["dq_dq", "dq_dqd", "dqd_dqd", "dq_dqdd"],
             Self::FloatingNextState => &["pose", "twist", "q", "qd"],
+            Self::FloatingStepDerivatives => &["q_dq", "q_dv", "q_dtau", "v_dq", "v_dv", "v_dtau"],
         }
     }
 }

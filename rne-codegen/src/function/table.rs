@@ -384,6 +384,17 @@ macro_rules! functions {
                  ones. The base turns by the unit quaternion (1 - s, 2 u) / (1 + s) with u = h omega / 4 and s = u·u. \
                  The rotation after the step is orthogonal to rounding, however many steps came before. A base without \
                  mass gives numbers that mean nothing or are not finite.";
+            FloatingEulerStepDerivatives = floating_euler_step_derivatives(
+                q: Positions, qd: Rates, tau: Torques, pose: BasePose, twist: BaseTwist, step: Step, wrenches: Wrenches
+            ) -> FloatingStepDerivatives:
+                "Derivatives of `floating_euler_step` by positions, velocities and τ: the linear model of a step.",
+                "pose, twist, step, wrenches: as in floating_euler_step; the wrenches do not change in axes of their \
+                 tips. q_dq, q_dv, q_dtau: of the positions after the step by the positions, the velocities and the \
+                 torques; v_dq, v_dv, v_dtau: of the velocities after the step. Six rows or columns of the base stand \
+                 before those of the joints. A change of the positions of the base is a shift of its origin and a \
+                 rotation vector, both in axes of frame 0 before the step for columns and after the step for rows. \
+                 The velocities of the base are twist. A base without mass gives numbers that mean nothing or are not \
+                 finite.";
         }
     };
 }

@@ -38,8 +38,8 @@ pub(crate) struct Builder {
     is_unnamed: Cell<bool>,
     /// The map of closed loops by rows, and the accelerations of the dependent joints where no coordinate accelerates.
     of_loops: RefCell<(Vec<Vec<Ref>>, Vec<Ref>)>,
-    /// The accelerations that were solved for, by joint, where a function goes on with them.
-    solved: RefCell<FxHashMap<usize, Ref>>,
+    /// The accelerations that were solved for, by name, where a function goes on with them.
+    solved: RefCell<FxHashMap<Name, Ref>>,
 }
 
 impl Builder {
@@ -192,9 +192,9 @@ impl Builder {
         self.of_loops.borrow_mut().1 = bias.iter().map(|x| x.at).collect();
     }
 
-    /// Keeps accelerations that were solved for, with their joints counted from 0: those of the joints from now on.
-    pub(crate) fn keep_accelerations<'s>(&self, solved: impl Iterator<Item = (usize, Symbol<'s>)>) {
-        *self.solved.borrow_mut() = solved.map(|(joint, x)| (joint, x.at)).collect();
+    /// Keeps accelerations that were solved for: those of the joints, and of a base that nothing holds, from now on.
+    pub(crate) fn keep_accelerations<'s>(&self, solved: impl Iterator<Item = (WithRespectTo, Symbol<'s>)>) {
+        *self.solved.borrow_mut() = solved.map(|(of, x)| (of.variable(), x.at)).collect();
     }
 
     /// Whether accelerations were solved for.
@@ -202,9 +202,15 @@ impl Builder {
         !self.solved.borrow().is_empty()
     }
 
-    /// An acceleration that was solved for.
-    pub(crate) fn solved_acceleration(&self, joint: usize) -> Option<Symbol<'_>> {
-        self.solved.borrow().get(&joint).map(|&at| self.symbol(at))
+    /// An acceleration that was solved for, by the name of its argument.
+    pub(crate) fn solved_acceleration(&self, name: Name) -> Option<Symbol<'_>> {
+        self.solved.borrow().get(&name).map(|&at| self.symbol(at))
+    }
+
+    /// A vector of the accelerations of a base that nothing holds, if they were solved for.
+    pub(crate) fn solved_of_base(&self, quantity: Quantity) -> Option<Vector<'_>> {
+        let [x, y, z] = Axis::ALL.map(|axis| self.solved_acceleration(Name::vector(quantity, 0, axis)));
+        Some(Vector([x?, y?, z?]))
     }
 
     /// The nodes of accelerations that were solved for: derivatives of the torques do not follow them.

@@ -32,6 +32,8 @@ pub enum WithRespectTo {
     Rate(usize),
     /// A joint acceleration.
     RateDot(usize),
+    /// A shift of such a base along its axes or a turn about them, from 1: x, y, z, then about x, y, z.
+    BasePosition(usize),
     /// A velocity of a base that nothing holds, from 1: x, y, z, then about x, y, z.
     BaseRate(usize),
     /// An acceleration of a base that nothing holds, from 1: x, y, z, then about x, y, z.
@@ -46,6 +48,9 @@ impl WithRespectTo {
             Self::Position(joint) => Name::scalar(Quantity::Position, joint),
             Self::Rate(joint) => Name::scalar(Quantity::Rate, joint),
             Self::RateDot(joint) => Name::scalar(Quantity::RateDot, joint),
+            Self::BasePosition(index) => {
+                Name::of_base(Quantity::BaseShift, Quantity::BaseTurn, index.saturating_sub(1))
+            }
             Self::BaseRate(index) => Name::of_base(Quantity::OriginVelocity, Quantity::Omega, index.saturating_sub(1)),
             Self::BaseRateDot(index) => {
                 Name::of_base(Quantity::Acceleration, Quantity::OmegaDot, index.saturating_sub(1))

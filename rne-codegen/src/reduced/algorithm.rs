@@ -5,7 +5,9 @@ use rne_model::Robot;
 use crate::formulate::arm::gravity;
 use crate::formulate::ldlt::System;
 use crate::formulate::mass_matrix::OfBase;
-use crate::formulate::{self, Closure, Contacts, Outputs, adjoint, centroid, contact, integrator, square, torque_by};
+use crate::formulate::{
+    self, Closure, Contacts, FloatingStep, Outputs, adjoint, centroid, contact, integrator, square, torque_by,
+};
 use crate::function::{Argument, Function};
 use crate::ir::{Name, Number, Quantity, Symbol, WithRespectTo};
 use crate::reduced::backward::{torques, torques_of_floating_base};
@@ -100,7 +102,8 @@ impl Algorithm {
             | Function::InverseDynamicsDerivativesWithWrenches
             | Function::ForwardDynamicsDerivativesWithWrenches
             | Function::ForwardDynamicsDerivativesWithPayload
-            | Function::EulerStepDerivatives => &[BY_GROUPS, BY_JOINTS],
+            | Function::EulerStepDerivatives
+            | Function::FloatingEulerStepDerivatives => &[BY_GROUPS, BY_JOINTS],
             Function::ForwardDynamicsWithPayload | Function::FloatingForwardDynamics | Function::FloatingEulerStep => {
                 &[
                     BY_GROUPS,
@@ -363,6 +366,13 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
         (Function::FloatingEulerStep, _) => {
             let gravity = builder.unnamed(|| gravity(builder, robot));
             integrator::floating_euler_step(builder, coordinates, gravity, &floating_accelerations()?)
+        }
+        (Function::FloatingEulerStepDerivatives, _) => {
+            let gravity = builder.unnamed(|| gravity(builder, robot));
+            let bias = builder.unnamed(of_floating_base);
+            let (half, system) = (floating_half()?, system());
+            let step = FloatingStep::new(builder, &system, &half, bias, gravity);
+            step.derivatives(&sensitivity(arm, Number::integer(2)).with_base(coordinates)?)
         }
         (Function::ForwardDynamicsInContact, _) => {
             let contacts = Contacts::new(builder, robot);

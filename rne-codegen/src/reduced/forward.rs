@@ -204,12 +204,13 @@ pub(crate) fn acceleration_of_base<'s>(arm: &Arm<'_, 's>) -> Vector<'s> {
     of_base(arm.builder, Quantity::Acceleration) - of_base(arm.builder, Quantity::Gravity)
 }
 
-/// A vector of the motion of the base: accelerations, gravity included, are zero where they are no arguments.
+/// A vector of the motion of the base: accelerations, gravity included, are zero where they are no arguments and were
+/// not solved for.
 fn of_base(builder: &Builder, quantity: Quantity) -> Vector<'_> {
     if quantity == Quantity::Omega || builder.function.takes(Argument::Base) {
         Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, 0, axis))))
     } else {
-        builder.no_vector()
+        builder.solved_of_base(quantity).unwrap_or_else(|| builder.no_vector())
     }
 }
 

@@ -270,6 +270,10 @@ const fn about(record: Record) -> &'static str {
             "Pose and velocity of the base, positions, rad or m, and velocities, rad/s or m/s, of the joints after a \
              step."
         }
+        Record::FloatingStepDerivatives => {
+            "Positions and velocities after a step by positions, by velocities and by torques; six rows and columns of \
+             the base, in axes of frame 0, stand before those of the joints."
+        }
         Record::TorqueDerivatives => "Torques by positions and by velocities; row i is torque i, column j is joint j.",
     }
 }

@@ -117,6 +117,7 @@ pub fn record_name(prefix: &str, record: Record) -> String {
         Record::NextStateDerivatives => "next_state_derivatives",
         Record::BaseTwist => "base_twist",
         Record::FloatingNextState => "floating_next_state",
+        Record::FloatingStepDerivatives => "floating_step_derivatives",
     };
     format!("{prefix}_{name}")
 }

@@ -441,6 +441,11 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats, Floats, Floats]:
         """A step of the semi-implicit Euler method where nothing holds the base: the state after it."""
+    def floating_euler_step_derivatives(
+        self, q: Joints, qd: Joints, tau: Joints, pose: ArrayLike, twist: ArrayLike, step: ArrayLike, wrenches: ArrayLike | dict[str, ArrayLike] | None = ..., *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats]:
+        """Derivatives of `floating_euler_step` by positions, velocities and τ: the linear model of a step."""
     # <!-- end -->
     def runge_kutta_step(
         self, q: Joints, qd: Joints, tau: Joints, step: ArrayLike, *, steps: int = ...,
