@@ -63,7 +63,10 @@ const DERIVATIVES: [Derivative; 19] = [
 const OF_RUNTIME: [&str; 2] = ["actuator_torques_smooth_derivatives", "runge_kutta_step_derivatives"];
 
 /// Derivatives that other tests compare, and the file of these tests.
-const ELSEWHERE: [(&str, &str); 1] = [("loop_map_rate_times_velocity", "tests/functions/closed_loops.rs")];
+const ELSEWHERE: [(&str, &str); 2] = [
+    ("floating_runge_kutta_step_derivatives", "rne-runtime/tests/floating_integrator.rs"),
+    ("loop_map_rate_times_velocity", "tests/functions/closed_loops.rs"),
+];
 
 /// What rounding of the numbers of a function is relative to, if they are smaller: they are sums of larger terms.
 fn scale(arm: &Arm, function: Function, state: &State) -> f64 {

@@ -22,7 +22,7 @@ const MOVES_NO_MASS: &str = "the accelerations are not finite: the mass matrix i
                              the loops are singular in this position, or the state is too large";
 
 /// The functions.
-pub(super) const CLOSED_LOOPS: &[Entry] = &[
+pub(super) static CLOSED_LOOPS: &[Entry] = &[
     Entry {
         output: "step",
         listed: "returned: positions of the dependent joints after the step, then the equations before it",

@@ -128,7 +128,7 @@ const fn of_step(about: &'static str) -> AnswerTable {
 }
 
 /// The functions.
-pub(super) const FIXED_BASE: &[Entry] = &[
+pub(super) static FIXED_BASE: &[Entry] = &[
     Entry { ..Entry::torques(Function::InverseDynamics, Capability::InverseDynamics) },
     Entry { ..Entry::torques(Function::InverseDynamicsWithWrench, Capability::InverseDynamics) },
     Entry {

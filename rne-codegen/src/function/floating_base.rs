@@ -98,7 +98,7 @@ const STEP: Entry = Entry {
 };
 
 /// The functions.
-pub(super) const FLOATING_BASE: &[Entry] = &[
+pub(super) static FLOATING_BASE: &[Entry] = &[
     TORQUES,
     MASS_MATRIX,
     Entry {

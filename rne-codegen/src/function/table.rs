@@ -413,7 +413,7 @@ macro_rules! signatures {
         }
 
         /// The signatures, in the order of the variants.
-        pub(super) const SIGNATURES: &[Signature] = &[$(Signature {
+        pub(super) static SIGNATURES: &[Signature] = &[$(Signature {
             summary: $summary,
             details: concat!("" $(, $details)?),
             arguments: &[$(Argument::$kind),*],
@@ -426,7 +426,7 @@ macro_rules! signatures {
 functions!(signatures);
 
 /// The entries, in the order of the variants: none is missing, and none lacks what C and listings say.
-pub(super) const TABLE: [&Entry; Function::ALL.len()] = {
+pub(super) static TABLE: [&Entry; Function::ALL.len()] = {
     let (mut entries, mut found) = ([&FIXED_BASE[0]; Function::ALL.len()], [false; Function::ALL.len()]);
     let mut index = 0;
     let floating = FIXED_BASE.len() + FLOATING_BASE.len();
