@@ -95,13 +95,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
                 if let Some(&other) = arguments.functions.iter().find(|it| it.is_of_closed_loops() != has_loops) {
                     compiler.compile(other, Form::SevenSteps)?;
                 }
-                let functions: Vec<Function> = choice::functions_of(&robot)
-                    .filter(|function| arguments.functions.is_empty() || arguments.functions.contains(function))
-                    .collect();
-                // the compiler says why a robot has not what is asked for
-                for &asked in arguments.functions.iter().filter(|asked| !functions.contains(asked)) {
-                    if let Err(error) = compiler.compiled(asked, Form::SevenSteps)? {
-                        let _ = writeln!(remarks, "{}: {error}", path.display());
+                let mut functions = Vec::new();
+                if arguments.functions.is_empty() {
+                    functions.extend(choice::functions_of(&robot));
+                }
+                // also those of a floating base, where the file holds the base; the compiler says why a robot has not
+                // what is asked for
+                for asked in Function::ALL.into_iter().filter(|function| arguments.functions.contains(function)) {
+                    match compiler.compiled(asked, Form::SevenSteps)? {
+                        Ok(_) => functions.push(asked),
+                        Err(error) => _ = writeln!(remarks, "{}: {error}", path.display()),
                     }
                 }
                 let counts = counts(path, &compiler, &functions, arguments.without.is_empty(), &mut remarks)?;

@@ -255,6 +255,9 @@ fn counts_of_some_functions() {
     assert!(fine(&["ops", robot, "--function", "forward_dynamics"]).contains(" div "));
     let without_motors = fine(&["ops", robot, "--json"]);
     assert!(!without_motors.contains("actuator_torques"));
+    // the file holds the base; who asks for a function of a floating base gets it
+    let floating = fine(&["ops", robot, "--function", "floating_euler_step"]);
+    assert_eq!(floating.matches("floating_euler_step").count(), 2, "{floating}");
     fails(2, &["ops", robot, "--tricks", "--function", "mass_matrix"], &["--tricks", "--function"]);
     fails(2, &["ops", robot, "--function", "torques"], &["did you mean inverse_dynamics?"]);
 }
