@@ -27,8 +27,8 @@ joints:
      motor: {viscous: 0.25}, limits: {effort: 8.5}}
 ";
 
-/// What the two functions of C write at speeds and torques, state by state.
-fn of_c(name: &str, robot: &str, real: &str, form: &str, states: &[[Vec<f64>; 2]]) -> Option<Vec<[Vec<f64>; 2]>> {
+/// What the three functions of C write at speeds and torques, state by state.
+fn of_c(name: &str, robot: &str, real: &str, form: &str, states: &[[Vec<f64>; 2]]) -> Option<Vec<[Vec<f64>; 3]>> {
     let folder = folder(&format!("joints_{name}_{real}_{form}"));
     let code = fine(&[
         "emit",
@@ -45,7 +45,7 @@ fn of_c(name: &str, robot: &str, real: &str, form: &str, states: &[[Vec<f64>; 2]
         "--limits",
     ]);
     let dof = states[0][0].len();
-    let mut main = format!("#include <stdio.h>\n#include <math.h>\nint main(void)\n{{\n    {real} limited[{dof}];\n");
+    let mut main = format!("#include <stdio.h>\n#include <math.h>\nint main(void)\n{{\n    {real} limited[{dof}], slope[{dof}];\n");
     for [qd, tau] in states {
         let list = |numbers: &[f64]| {
             let numbers: Vec<String> =
@@ -56,9 +56,9 @@ fn of_c(name: &str, robot: &str, real: &str, form: &str, states: &[[Vec<f64>; 2]
         let _ = write!(
             main,
             "    {{\n        {real} qd[{dof}] = {{{}}};\n        const {real} tau[{dof}] = {{{}}};\n        \
-             arm_friction_torques(qd, qd);\n        arm_limit_torques(tau, limited);\n        \
-             for (unsigned i = 0; i < {dof}u; ++i)\n            \
-             printf(\"%.17g %.17g\\n\", (double)qd[i], (double)limited[i]);\n    }}\n",
+             arm_friction_derivatives(qd, slope);\n        arm_friction_torques(qd, qd);\n        \
+             arm_limit_torques(tau, limited);\n        for (unsigned i = 0; i < {dof}u; ++i)\n            \
+             printf(\"%.17g %.17g %.17g\\n\", (double)qd[i], (double)limited[i], (double)slope[i]);\n    }}\n",
             list(qd),
             list(tau)
         );
@@ -66,8 +66,8 @@ fn of_c(name: &str, robot: &str, real: &str, form: &str, states: &[[Vec<f64>; 2]
     fs::write(folder.join("main.c"), code + &main + "    return 0;\n}\n").expect("written");
     let printed = printed(&folder, &["main.c"], &["-Wfloat-conversion", "-Wdouble-promotion"])?;
     let numbers: Vec<f64> = printed.split_whitespace().map(|word| word.parse().expect("a number")).collect();
-    let rows: Vec<&[f64]> = numbers.chunks(2).collect();
-    Some(rows.chunks(dof).map(|rows| [0, 1].map(|k| rows.iter().map(|row| row[k]).collect())).collect())
+    let rows: Vec<&[f64]> = numbers.chunks(3).collect();
+    Some(rows.chunks(dof).map(|rows| [0, 1, 2].map(|k| rows.iter().map(|row| row[k]).collect())).collect())
 }
 
 /// Friction by hand: the law of `actuator_torques_smooth`.
@@ -76,6 +76,13 @@ fn by_hand(motor: [f64; 5], qd: f64) -> f64 {
     let s = qd / (qd * qd + width * width).sqrt();
     let coulomb = 0.5 * (forward - backward) * s + 0.5 * (forward + backward) * s * s;
     ratio * ratio * viscous * qd + ratio * coulomb
+}
+
+/// Its derivative by hand: ds/dq̇ = width² / (q̇² + width²)^(3/2).
+fn slope_by_hand([ratio, viscous, forward, backward, width]: [f64; 5], qd: f64) -> f64 {
+    let root = (qd * qd + width * width).sqrt();
+    let (s, slope) = (qd / root, width * width / root.powi(3));
+    ratio * ratio * viscous + ratio * (0.5 * (forward - backward) + (forward + backward) * s) * slope
 }
 
 #[test]
@@ -113,7 +120,7 @@ fn friction_and_limits_are_those_of_the_runtime_and_of_closed_forms() {
             for form in ["reduced", "seven_steps"] {
                 let Some(found) = of_c(name, &file, real, form, &states) else { return };
                 assert_eq!(found.len(), states.len());
-                for ([friction, limited], [qd, tau]) in found.iter().zip(&states) {
+                for ([friction, limited, slope], [qd, tau]) in found.iter().zip(&states) {
                     for joint in 0..3 {
                         let what = format!("{name}, {real}, {form}, joint {joint} at {}", qd[joint]);
                         let of_hand = by_hand(motors[joint], qd[joint]);
@@ -130,6 +137,11 @@ fn friction_and_limits_are_those_of_the_runtime_and_of_closed_forms() {
                         let size = ratio * ratio * viscous * qd[joint].abs() + ratio * forward;
                         let error = (friction[joint] - of_hand).abs().max((friction[joint] - of_runtime).abs());
                         assert!(error <= 4.0 * epsilon * size, "{what}: {} is not {of_hand}", friction[joint]);
+                        let slopes = runtime.actuator_torques_smooth_derivatives(qd, width).expect("three");
+                        let of_hand = slope_by_hand(motors[joint], qd[joint]);
+                        let size = ratio * ratio * viscous + ratio * forward / width;
+                        let error = (slope[joint] - of_hand).abs().max((slope[joint] - slopes[joint][joint]).abs());
+                        assert!(error <= 8.0 * epsilon * size, "{what}: the slope {} is not {of_hand}", slope[joint]);
                         let expected = tau[joint].max(-limits[joint]).min(limits[joint]);
                         assert!(limited[joint] == expected, "{what}: {} is not {expected}", limited[joint]);
                     }
@@ -187,7 +199,7 @@ fn friction_and_limits_are_straight_on_a_microcontroller() {
         run(compiler, &options.concat());
         let listing = run("arm-none-eabi-objdump", &["--disassemble", "--no-show-raw-insn", "arm.o"]);
         let functions = rne_certify::listing::functions(&listing).expect("a listing");
-        for function in ["arm_friction_torques", "arm_limit_torques"] {
+        for function in ["arm_friction_torques", "arm_friction_derivatives", "arm_limit_torques"] {
             let (count, faults) = rne_certify::listing::judge(&functions[function]);
             println!("{function} on {}: {} instructions", core.name(), count.instructions);
             let faults: Vec<_> = faults.iter().filter(|fault| fault.callee() != Some("arm_inverse_root")).collect();

@@ -78,6 +78,29 @@ impl JointFriction {
         }
     }
 
+    /// The derivative of the friction by the speed, N m s/rad or N s/m.
+    #[must_use]
+    pub fn derivative(&self, qd: f64) -> f64 {
+        self.derivative_in(qd, |number| number, |x| 1.0 / x.sqrt())
+    }
+
+    /// The derivative of the friction by the speed, viscous + (odd + 2 even s) width² r³ with r = 1/√(q̇² + width²), in
+    /// another type of numbers, as [`torque_in`](Self::torque_in).
+    pub fn derivative_in<T: Real>(&self, qd: T, number: impl Fn(f64) -> T, inverse_root: impl Fn(T) -> T) -> T {
+        let viscous = (self.viscous != 0.0).then(|| number(self.viscous));
+        let coulomb = (self.odd != 0.0).then(|| {
+            let square = number(self.width * self.width);
+            let r = inverse_root(qd * qd + square);
+            let slope = square * r * r * r;
+            let odd = number(self.odd);
+            if self.even == 0.0 { odd * slope } else { (odd + number(2.0 * self.even) * (qd * r)) * slope }
+        });
+        match (viscous, coulomb) {
+            (Some(viscous), Some(coulomb)) => viscous + coulomb,
+            (one, other) => one.or(other).unwrap_or_else(|| number(0.0)),
+        }
+    }
+
     fn of_joint(robot: &Robot, index: usize, joint: &Joint) -> Result<Self, NoFriction> {
         let Some(motor) = joint.motor else { return Ok(Self { viscous: 0.0, odd: 0.0, even: 0.0, width: 1.0 }) };
         let name = || joint.name.clone();
@@ -161,7 +184,14 @@ pub(super) fn declarations(file: &File) -> String {
              Tc-)/2, even is |G| (Tc+ + Tc-)/2, and width is coulomb_width, all of the robot file. The error of s is \
              below 4 ulp. Speeds up to 1e18 are allowed.",
         ));
-        let _ = writeln!(text, "{};", friction_head(file));
+        let _ = writeln!(text, "{};\n", friction_head(file));
+        text.push_str(&comment(
+            "///",
+            "Derivative of the friction of each joint by its speed qd, N m s/rad or N s/m: viscous + (odd + 2 * even * s) \
+             * width^2 / (qd^2 + width^2)^(3/2). These are the elements of a diagonal matrix. Speeds up to 1e18 are \
+             allowed.",
+        ));
+        let _ = writeln!(text, "{};", derivatives_head(file));
     }
     if file.additions.limits {
         text.push('\n');
@@ -191,7 +221,7 @@ pub(super) fn definitions(file: &File) -> Result<String, ConstantTooLarge> {
         if has_coulomb(file) {
             let _ = write!(text, "\n{}", inverse_root(file));
         }
-        let _ = write!(text, "\n{}", friction(file, frictions)?);
+        let _ = write!(text, "\n{}\n{}", friction(file, frictions)?, derivatives(file, frictions)?);
     }
     if file.additions.limits {
         let _ = write!(text, "\n{}", limits(file));
@@ -210,6 +240,12 @@ fn friction_head(file: &File) -> String {
     let (real, dof) = (file.precision.c_type(), file.robot.dof());
     let arguments = [format!("const {real} qd[{dof}]"), format!("{real} friction[{dof}]")];
     wrapped(&format!("void {}_friction_torques(", file.prefix), &arguments)
+}
+
+fn derivatives_head(file: &File) -> String {
+    let (real, dof) = (file.precision.c_type(), file.robot.dof());
+    let arguments = [format!("const {real} qd[{dof}]"), format!("{real} derivatives[{dof}]")];
+    wrapped(&format!("void {}_friction_derivatives(", file.prefix), &arguments)
 }
 
 fn limits_head(file: &File) -> String {
@@ -240,6 +276,13 @@ fn inverse_root(file: &File) -> String {
     text + "    return y;\n}\n"
 }
 
+/// A number of a joint's friction as the code has it.
+fn constant(file: &File, quantity: Quantity, joint: usize, value: f64) -> Result<String, ConstantTooLarge> {
+    let too_large =
+        ConstantTooLarge { name: Name::scalar(quantity, joint), value, function: Function::ActuatorTorques };
+    file.precision.literal(value).ok_or(too_large)
+}
+
 fn friction(file: &File, frictions: &[JointFriction]) -> Result<String, ConstantTooLarge> {
     let (real, prefix) = (file.precision.c_type(), file.prefix);
     let mut text = format!("{}\n{{\n", friction_head(file));
@@ -250,18 +293,14 @@ fn friction(file: &File, frictions: &[JointFriction]) -> Result<String, Constant
     }
     for (index, friction) in frictions.iter().enumerate() {
         let joint = index + 1;
-        let literal = |quantity, value| {
-            let name = Name::scalar(quantity, joint);
-            let too_large = ConstantTooLarge { name, value, function: Function::ActuatorTorques };
-            file.precision.literal(value).ok_or(too_large)
-        };
         let _ = writeln!(text, "\n    // joint {joint}");
         let mut sum = Vec::new();
         if friction.viscous != 0.0 {
-            sum.push(format!("({} * qd{joint})", literal(Quantity::ViscousFriction, friction.viscous)?));
+            let viscous = constant(file, Quantity::ViscousFriction, joint, friction.viscous)?;
+            sum.push(format!("({viscous} * qd{joint})"));
         }
         if friction.odd != 0.0 {
-            let coulomb = |value| literal(Quantity::CoulombFriction, value);
+            let coulomb = |value| constant(file, Quantity::CoulombFriction, joint, value);
             let square = coulomb(friction.width * friction.width)?;
             let _ = writeln!(
                 text,
@@ -278,6 +317,44 @@ fn friction(file: &File, frictions: &[JointFriction]) -> Result<String, Constant
         }
         let sum = if sum.is_empty() { file.syntax().zero().to_owned() } else { sum.join(" + ") };
         let _ = writeln!(text, "    friction[{index}] = {sum};");
+    }
+    Ok(text + "}\n")
+}
+
+/// The derivatives of the friction by the speeds.
+fn derivatives(file: &File, frictions: &[JointFriction]) -> Result<String, ConstantTooLarge> {
+    let (real, prefix) = (file.precision.c_type(), file.prefix);
+    let mut text = format!("{}\n{{\n", derivatives_head(file));
+    for (index, _) in frictions.iter().enumerate().filter(|(_, friction)| friction.odd != 0.0) {
+        let _ = writeln!(text, "    const {real} qd{} = qd[{index}];", index + 1);
+    }
+    if !has_coulomb(file) {
+        text.push_str("    (void)qd; // the derivatives are constants\n");
+    }
+    for (index, friction) in frictions.iter().enumerate() {
+        let joint = index + 1;
+        let _ = writeln!(text, "\n    // joint {joint}");
+        let mut sum = Vec::new();
+        if friction.viscous != 0.0 {
+            sum.push(constant(file, Quantity::ViscousFriction, joint, friction.viscous)?);
+        }
+        if friction.odd != 0.0 {
+            let coulomb = |value| constant(file, Quantity::CoulombFriction, joint, value);
+            let square = coulomb(friction.width * friction.width)?;
+            let _ = writeln!(
+                text,
+                "    const {real} r{joint} = {prefix}_inverse_root((qd{joint} * qd{joint}) + {square});\n    \
+                 const {real} slope{joint} = (({square} * r{joint}) * r{joint}) * r{joint};"
+            );
+            let odd = coulomb(friction.odd)?;
+            sum.push(if friction.even == 0.0 {
+                format!("({odd} * slope{joint})")
+            } else {
+                format!("(({odd} + ({} * (qd{joint} * r{joint}))) * slope{joint})", coulomb(2.0 * friction.even)?)
+            });
+        }
+        let sum = if sum.is_empty() { file.syntax().zero().to_owned() } else { sum.join(" + ") };
+        let _ = writeln!(text, "    derivatives[{index}] = {sum};");
     }
     Ok(text + "}\n")
 }

@@ -37,7 +37,7 @@ pub fn c_tests(
     let tests = Tests { robot, programs, precision, prefix: prefix.as_str(), golden };
     let mut functions: Vec<(String, String)> = (0..programs.len()).filter_map(|index| tests.values(index)).collect();
     functions.extend(Law::of(programs).filter_map(|law| tests.law(law)));
-    functions.extend(additions.friction.map(|frictions| tests.friction(frictions)));
+    functions.extend(additions.friction.into_iter().flat_map(|frictions| tests.friction(frictions)));
     functions.extend(additions.limits.then(|| tests.limits()));
     let steps =
         [("runge_kutta_step", Function::EulerStep), ("runge_kutta_step_derivatives", Function::EulerStepDerivatives)];
@@ -238,15 +238,21 @@ impl Tests<'_> {
         Some((name, text))
     }
 
-    /// The function that compares friction with its law in double precision, at the speeds of the states.
-    fn friction(&self, frictions: &[JointFriction]) -> (String, String) {
+    /// The functions that compare friction and its derivatives with their laws in double precision, at the speeds of the
+    /// states.
+    fn friction(&self, frictions: &[JointFriction]) -> [(String, String); 2] {
         let speeds: Vec<&[f64]> = self.golden.iter().map(|state| state.argument("qd")).collect();
-        let of_state =
-            |qd: &&[f64]| -> Vec<f64> { frictions.iter().zip(*qd).map(|(law, qd)| law.torque(*qd)).collect() };
-        let expected: Vec<Vec<f64>> = speeds.iter().map(of_state).collect();
-        let largest = expected.iter().flatten().fold(0.0_f64, |largest, torque| largest.max(torque.abs()));
-        let compared = format!("{}_friction_torques(test_qd[state], found);", self.prefix);
-        self.joints("friction_torques", &compared, "", &expected, &format!("test_tolerance * {largest:?}"))
+        let laws = [
+            ("friction_torques", JointFriction::torque as fn(&_, _) -> _),
+            ("friction_derivatives", JointFriction::derivative),
+        ];
+        laws.map(|(function, law)| {
+            let of_state = |qd: &&[f64]| frictions.iter().zip(*qd).map(|(of_joint, qd)| law(of_joint, *qd)).collect();
+            let expected: Vec<Vec<f64>> = speeds.iter().map(of_state).collect();
+            let largest = expected.iter().flatten().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+            let compared = format!("{}_{function}(test_qd[state], found);", self.prefix);
+            self.joints(function, &compared, "", &expected, &format!("test_tolerance * {largest:?}"))
+        })
     }
 
     /// The function that compares limited torques: above, below and within the limits of each joint.
