@@ -2,7 +2,7 @@
 //! precision, as the code computes them, and exactly.
 
 use rne_emit::JointFriction;
-use rne_model::Robot;
+use rne_model::{JointKind, Robot};
 
 use crate::accuracy::{self, Error, Sample, largest_errors, single};
 use crate::board::{self, Call};
@@ -13,6 +13,8 @@ use crate::interval::Interval;
 pub enum JointFunction {
     /// `friction_torques`, of the speeds.
     Friction(Vec<JointFriction>),
+    /// `friction_derivatives`, of the speeds.
+    FrictionDerivatives(Vec<JointFriction>),
     /// `limit_torques`, of torques; the effort limits of the joints, N m or N.
     Limits(Vec<Option<f64>>),
 }
@@ -32,6 +34,7 @@ impl JointFunction {
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Friction(_) => "friction_torques",
+            Self::FrictionDerivatives(_) => "friction_derivatives",
             Self::Limits(_) => "limit_torques",
         }
     }
@@ -41,7 +44,18 @@ impl JointFunction {
     pub const fn result(&self) -> &'static str {
         match self {
             Self::Friction(_) => "friction",
+            Self::FrictionDerivatives(_) => "derivatives",
             Self::Limits(_) => "limited",
+        }
+    }
+
+    /// The unit of its result at a joint.
+    #[must_use]
+    pub const fn unit(&self, kind: JointKind) -> &'static str {
+        match (self, kind) {
+            (Self::FrictionDerivatives(_), JointKind::Revolute) => "N m s/rad",
+            (Self::FrictionDerivatives(_), JointKind::Prismatic) => "N s/m",
+            _ => kind.effort_unit(),
         }
     }
 
@@ -49,7 +63,7 @@ impl JointFunction {
     #[must_use]
     pub const fn helper(&self) -> &'static str {
         match self {
-            Self::Friction(_) => "inverse_root",
+            Self::Friction(_) | Self::FrictionDerivatives(_) => "inverse_root",
             Self::Limits(_) => "limited",
         }
     }
@@ -73,7 +87,7 @@ impl JointFunction {
     pub fn result_at(&self, number: u32, dof: usize) -> Vec<f32> {
         let [_, qd, qdd] = board::state(number, dof);
         match self {
-            Self::Friction(_) => self.in_single_precision(&qd),
+            Self::Friction(_) | Self::FrictionDerivatives(_) => self.in_single_precision(&qd),
             Self::Limits(limits) => {
                 let torques = qdd.iter().zip(limits).map(|(x, limit)| limit.map_or(*x, |limit| x * single(limit)));
                 self.in_single_precision(&torques.collect::<Vec<_>>())
@@ -87,7 +101,7 @@ impl JointFunction {
         let ranges = accuracy::ranges(robot);
         largest_errors(sample, robot.dof(), |_, rng| {
             let largest = ranges.iter().map(|range| match self {
-                Self::Friction(_) => range.velocity,
+                Self::Friction(_) | Self::FrictionDerivatives(_) => range.velocity,
                 Self::Limits(_) => BEYOND * range.torque,
             });
             let arguments: Vec<f32> = largest.map(|largest| single((2.0 * rng.f64() - 1.0) * largest)).collect();
@@ -100,6 +114,10 @@ impl JointFunction {
             Self::Friction(frictions) => {
                 let torque = |(law, qd): (&JointFriction, &f32)| law.torque_in(*qd, single, inverse_root);
                 frictions.iter().zip(arguments).map(torque).collect()
+            }
+            Self::FrictionDerivatives(frictions) => {
+                let derivative = |(law, qd): (&JointFriction, &f32)| law.derivative_in(*qd, single, inverse_root);
+                frictions.iter().zip(arguments).map(derivative).collect()
             }
             Self::Limits(limits) => {
                 // a limit that is infinite in single precision limits nothing
@@ -119,6 +137,12 @@ impl JointFunction {
                     law.torque_in(qd, Interval::exactly, Interval::inverse_root)
                 };
                 frictions.iter().zip(arguments).map(torque).collect()
+            }
+            Self::FrictionDerivatives(frictions) => {
+                let derivative = |(law, qd): (&JointFriction, Interval)| {
+                    law.derivative_in(qd, Interval::exactly, Interval::inverse_root)
+                };
+                frictions.iter().zip(arguments).map(derivative).collect()
             }
             Self::Limits(limits) => {
                 limits.iter().zip(arguments).map(|(limit, tau)| limit.map_or(tau, |limit| tau.limited(limit))).collect()
@@ -142,7 +166,7 @@ mod tests {
     use rne_model::Robot;
 
     use super::{JointFriction, JointFunction};
-    use crate::accuracy::Sample;
+    use crate::accuracy::{Sample, single};
 
     /// A slider whose friction is 0.5 N per m/s, 3 N forward and 2 N backward, and which can give 7.3 N.
     const SLIDER: &str = "{format: 1, name: one, source: doc, convention: standard, gravity: [0, 0, 0], joints: [
@@ -166,6 +190,25 @@ mod tests {
         assert!(error.largest > 4.9 && error.largest < 5.0, "{error:?}");
         // some roundings of the largest friction, and no fewer than half of one
         assert!(error.bound > 2.0 * ROUNDING && error.bound < 8.0 * 5.0 * ROUNDING, "{error:?}");
+    }
+
+    #[test]
+    fn the_derivative_of_friction_is_that_of_the_law() {
+        let robot = Robot::from_yaml(SLIDER).expect("a robot");
+        let law = JointFriction::of(&robot).expect("friction");
+        let derivatives = JointFunction::FrictionDerivatives(law.clone());
+        // by hand: at rest, 0.5 + (3 + 2) / 2 / 0.01; far from rest, the viscous friction and (2.5 ± 1) 0.01² / |4|³
+        for (qd, expected) in [(0.0, 250.5), (4.0, 0.5 + 3.5e-4 / 64.0), (-4.0, 0.5 + 1.5e-4 / 64.0)] {
+            let found = f64::from(derivatives.in_single_precision(&[qd])[0]);
+            assert!((found - expected).abs() < 1e-6 * expected, "{found} at {qd}");
+        }
+        for qd in [-0.02, -0.003, 0.001, 0.01, 0.05] {
+            let slope = (law[0].torque(qd + 1e-6) - law[0].torque(qd - 1e-6)) / 2e-6;
+            let exact = derivatives.exactly(&[single(qd)])[0];
+            assert!(exact.farthest(slope) < 1e-5 * 250.0 && exact.high - exact.low < 1e-11, "{exact:?} at {qd}");
+        }
+        let error = derivatives.errors(&robot, SAMPLE).expect("errors")[0];
+        assert!(error.largest > 0.5 && error.bound < 20.0 * 250.0 * ROUNDING, "{error:?}");
     }
 
     #[test]

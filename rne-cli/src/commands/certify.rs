@@ -89,7 +89,7 @@ pub(crate) struct Arguments {
     /// Prefix of names in C [default: the robot's name]
     #[arg(long, value_name = "P")]
     pub(super) prefix: Option<Prefix>,
-    /// Certify friction_torques, too
+    /// Certify friction and its derivatives, too
     #[arg(long)]
     friction: bool,
     /// Certify limit_torques, too
@@ -173,8 +173,9 @@ impl Arguments {
         };
         let mut subjects: Vec<Subject> = programs.iter().map(subject).collect();
         if self.friction {
-            let friction = JointFunction::Friction(emit_c::friction(&self.file, robot)?);
-            subjects.push(Subject::Joints(friction));
+            let friction = emit_c::friction(&self.file, robot)?;
+            subjects.push(Subject::Joints(JointFunction::Friction(friction.clone())));
+            subjects.push(Subject::Joints(JointFunction::FrictionDerivatives(friction)));
         }
         if self.limits {
             subjects.push(Subject::Joints(JointFunction::limits(robot)));

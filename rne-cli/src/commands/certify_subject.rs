@@ -87,6 +87,9 @@ impl Subject<'_> {
             Self::Joints(function) => {
                 let other = match function {
                     JointFunction::Friction(_) => "`actuator_torques_smooth` of its runtime library",
+                    JointFunction::FrictionDerivatives(_) => {
+                        "`actuator_torques_smooth_derivatives` of its runtime library"
+                    }
                     JointFunction::Limits(_) => "the smaller of torque and limit",
                 };
                 vec![format!(
@@ -102,18 +105,16 @@ impl Subject<'_> {
     pub(super) fn accuracy(&self, robot: &Robot, sample: Sample) -> Result<Accuracy, Failure> {
         let errors = self.errors(robot, sample);
         let errors = errors.ok_or_else(|| Failure::input("the interpreter cannot run this function"))?;
-        let of_joints = |array: &str| {
+        let of_joints = |array: &str, unit: &dyn Fn(JointKind) -> &'static str| {
             let joints = robot.coordinates().enumerate();
             joints
-                .map(|(index, joint)| {
-                    (format!("`{array}[{index}]`"), Some(joint), robot.joints[joint].row.kind.effort_unit())
-                })
+                .map(|(index, joint)| (format!("`{array}[{index}]`"), Some(joint), unit(robot.joints[joint].row.kind)))
                 .collect()
         };
         let names: Vec<(String, Option<usize>, &str)> = match self {
             Self::Program(program) => program.outputs.iter().map(|output| named(program, robot, output.name)).collect(),
-            Self::Observer(..) => of_joints("external"),
-            Self::Joints(function) => of_joints(function.result()),
+            Self::Observer(..) => of_joints("external", &JointKind::effort_unit),
+            Self::Joints(function) => of_joints(function.result(), &|kind| function.unit(kind)),
         };
         let named = |(error, (name, joint, unit)): (Error, (String, Option<usize>, &'static str))| {
             let joint = joint.and_then(|joint| robot.joints.get(joint)).map(|joint| joint.name.clone());
@@ -148,7 +149,7 @@ impl Subject<'_> {
                 low_pass.period,
                 observer::UPDATES
             ),
-            Self::Joints(JointFunction::Friction(_)) => format!(
+            Self::Joints(JointFunction::Friction(_) | JointFunction::FrictionDerivatives(_)) => format!(
                 "{random} The exact result is that of the law in the header for G² B, |G| (Tc⁺ - Tc⁻)/2, |G| (Tc⁺ + \
                  Tc⁻)/2 and the square of `coulomb_width`, which rne computes in `double`."
             ),
@@ -172,7 +173,7 @@ impl Subject<'_> {
             let effort =
                 |torque: f64| format!("{torque_is} up to {torque} {torque_unit} ({})", of(limits.effort.is_some()));
             let parts = match self {
-                Self::Joints(JointFunction::Friction(_)) => vec![speed],
+                Self::Joints(JointFunction::Friction(_) | JointFunction::FrictionDerivatives(_)) => vec![speed],
                 Self::Joints(JointFunction::Limits(_)) => vec![effort(BEYOND * torque)],
                 Self::Program(program) | Self::Observer(program, _) => {
                     let takes_torques = program.function.takes(Argument::Torques);

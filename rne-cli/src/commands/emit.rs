@@ -66,7 +66,7 @@ pub(crate) struct Arguments {
     /// Parameters of FILE that become function arguments, NAME,NAME,…; the others are constants
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     run_time: Vec<String>,
-    /// Add friction of the joints to C code: friction_torques
+    /// Add joint friction and its derivatives to C code
     #[arg(long)]
     friction: bool,
     /// Add effort limits to C code: limit_torques

@@ -27,7 +27,7 @@ fn friction_and_limits_are_certified_and_checked_again() {
     let names: Vec<&str> = others.iter().map(|other| other["function"].as_str().expect("a name")).collect();
     assert_eq!(
         (&json["function"], &names[..]),
-        (&"gravity_torques".into(), &["friction_torques", "limit_torques"][..])
+        (&"gravity_torques".into(), &["friction_torques", "friction_derivatives", "limit_torques"][..])
     );
     for certified in others.iter().chain([&json]) {
         let cost = &certified["cost"];
@@ -39,14 +39,14 @@ fn friction_and_limits_are_certified_and_checked_again() {
         assert_eq!(Some(sum), cost["instructions"].as_u64(), "each instruction is of one kind");
     }
     for (joint, limit) in [40.0, 40.0, 15.0].into_iter().enumerate() {
-        let [friction, limited] = [0, 1].map(|other| &others[other]["accuracy"]["results"][joint]);
+        let [friction, limited] = [0, 2].map(|other| &others[other]["accuracy"]["results"][joint]);
         // roundings of a friction of some N m; the limits are numbers of single precision, so nothing is rounded
         let bound = friction["bound"].as_f64().expect("a number");
         assert!(bound > 1e-9 && bound < 1e-6, "{friction}");
         assert_eq!((limited["largest"].as_f64(), limited["bound"].as_f64()), (Some(limit), Some(0.0)), "{limited}");
     }
     let traced = json["trace"].as_array().expect("lines");
-    for name in ["friction[2]", "limited[2]"] {
+    for name in ["friction[2]", "derivatives[2]", "limited[2]"] {
         assert_eq!(traced.iter().filter(|line| line["name"] == name).count(), 1, "{name}");
     }
     // the tests of the code are not checked for the rules, which they violate
@@ -57,6 +57,7 @@ fn friction_and_limits_are_certified_and_checked_again() {
     let page = fs::read_to_string(out).expect("it was written");
     for part in [
         "## Cost of a call of `friction_torques`",
+        "## Error in single precision of `friction_derivatives`",
         "## Error in single precision of `limit_torques`",
         "does not cover `friction_torques`",
         "does not cover `limit_torques`",

@@ -45,7 +45,9 @@ fn of_c(name: &str, robot: &str, real: &str, form: &str, states: &[[Vec<f64>; 2]
         "--limits",
     ]);
     let dof = states[0][0].len();
-    let mut main = format!("#include <stdio.h>\n#include <math.h>\nint main(void)\n{{\n    {real} limited[{dof}], slope[{dof}];\n");
+    let mut main = format!(
+        "#include <stdio.h>\n#include <math.h>\nint main(void)\n{{\n    {real} limited[{dof}], slope[{dof}];\n"
+    );
     for [qd, tau] in states {
         let list = |numbers: &[f64]| {
             let numbers: Vec<String> =

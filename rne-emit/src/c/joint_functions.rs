@@ -187,8 +187,8 @@ pub(super) fn declarations(file: &File) -> String {
         let _ = writeln!(text, "{};\n", friction_head(file));
         text.push_str(&comment(
             "///",
-            "Derivative of the friction of each joint by its speed qd, N m s/rad or N s/m: viscous + (odd + 2 * even * s) \
-             * width^2 / (qd^2 + width^2)^(3/2). These are the elements of a diagonal matrix. Speeds up to 1e18 are \
+            "Derivative of the friction of each joint by its speed qd, N m s/rad or N s/m: viscous + (odd + 2 * even * \
+             s) * width^2 / (qd^2 + width^2)^(3/2). These are the elements of a diagonal matrix. Speeds up to 1e18 are \
              allowed.",
         ));
         let _ = writeln!(text, "{};", derivatives_head(file));

@@ -238,8 +238,8 @@ impl Tests<'_> {
         Some((name, text))
     }
 
-    /// The functions that compare friction and its derivatives with their laws in double precision, at the speeds of the
-    /// states.
+    /// The functions that compare friction and its derivatives with their laws in double precision, at the speeds of
+    /// the states.
     fn friction(&self, frictions: &[JointFriction]) -> [(String, String); 2] {
         let speeds: Vec<&[f64]> = self.golden.iter().map(|state| state.argument("qd")).collect();
         let laws = [
