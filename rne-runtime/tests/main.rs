@@ -8,7 +8,6 @@ mod contract;
 mod dyn_arm;
 mod evaluation_order;
 mod floating_integrator;
-mod floats;
 mod frames;
 mod functions;
 mod integrator;
