@@ -1,8 +1,9 @@
 //! Derivatives for optimisers without rounding, in the fields of the proof: reverse mode against forward mode, and the
 //! derivatives of the accelerations against those of the torques.
 
+use rne_codegen::plan::{Formulation, Reference};
 use rne_codegen::{ExactFunction, Function, Name, Quantity, Residue};
-use rne_model::Robot;
+use rne_model::{Reader, Robot};
 
 fn robots() -> impl Iterator<Item = Robot> {
     ["puma560", "panda", "ur5", "scara_cobra600", "stanford"].into_iter().map(|name| {
@@ -100,5 +101,21 @@ fn the_hessian_is_that_of_a_quadratic_form_of_the_rates() {
                 assert!(is_symmetric, "{}", robot.name);
             }
         }
+    }
+}
+
+/// At accelerations that are solved for, a torque is the torque that was given, and the forces on a free base are zero:
+/// no fold may take that for a reason that their derivatives vanish.
+#[test]
+fn derivatives_at_solved_accelerations_do_not_fold_by_what_is_solved() {
+    let file = format!("{}/../docs/satellite.yaml", env!("CARGO_MANIFEST_DIR"));
+    let yaml = std::fs::read(&file).unwrap_or_else(|error| panic!("{file}: {error}"));
+    let satellite = Reader::new("satellite").trees().read(&yaml).unwrap_or_else(|report| panic!("{report}")).robot;
+    let floating = [(satellite, Function::FloatingEulerStepDerivatives)];
+    let functions = [Function::ForwardDynamicsDerivatives, Function::EulerStepDerivatives];
+    for (robot, function) in robots().flat_map(|robot| functions.map(|of| (robot.clone(), of))).chain(floating) {
+        let reference = Reference::of(&robot, function).unwrap_or_else(|error| panic!("{error}"));
+        let proof = reference.proof(function, Formulation::numbered(&robot, function));
+        assert!(proof.is_ok(), "{}, {function}: {proof:?}", robot.name);
     }
 }

@@ -170,6 +170,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let inverse = adjoint::Inverse::of(builder, &system, &self.upper_half());
         // the same quantities come again, at these accelerations
         inverse.keep_accelerations(builder.unnamed(|| self.tau()));
+        builder.hold_accelerations();
         let solved = Self::new(builder, self.robot, function);
         let joints = solved.coordinates().joints();
         let torques = solved.tau();
@@ -184,6 +185,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let (builder, system) = (self.builder, self.system());
         let bias = builder.unnamed(|| self.floating_torques());
         let step = FloatingStep::new(builder, &system, &self.floating_half(), bias, self.arm.gravity);
+        builder.hold_accelerations();
         let solved = Self::new(builder, self.robot, Function::FloatingEulerStepDerivatives);
         let forces: Vec<_> = solved.floating_torques().into_iter().map(|(_, force)| force).collect();
         let variables = floating::variables(solved.coordinates()).concat();

@@ -40,6 +40,8 @@ pub(crate) struct Builder {
     of_loops: RefCell<(Vec<Vec<Ref>>, Vec<Ref>)>,
     /// The accelerations that were solved for, by name, where a function goes on with them.
     solved: RefCell<FxHashMap<Name, Ref>>,
+    /// Arguments that stand for them, and what was solved for.
+    held: RefCell<FxHashMap<Ref, Ref>>,
 }
 
 impl Builder {
@@ -66,6 +68,7 @@ impl Builder {
             is_unnamed: Cell::default(),
             of_loops: RefCell::default(),
             solved: RefCell::default(),
+            held: RefCell::default(),
         }
     }
 
@@ -79,6 +82,7 @@ impl Builder {
         self.graph.get_mut().clear(embedding);
         self.of_loops.take();
         self.solved.take();
+        self.held.take();
     }
 
     fn embedding(&self) -> Embedding {
@@ -213,9 +217,16 @@ impl Builder {
         Some(Vector([x?, y?, z?]))
     }
 
-    /// The nodes of accelerations that were solved for: derivatives of the torques do not follow them.
-    pub(super) fn held(&self) -> Vec<usize> {
-        self.solved.borrow().values().map(|at| at.index()).collect()
+    /// Has arguments stand for the accelerations that were solved for until the graph is finished. Derivatives hold
+    /// them, so formulas must not fold by what they are: at these accelerations, torques are those that were given.
+    pub(crate) fn hold_accelerations(&self) {
+        let mut graph = self.graph.borrow_mut();
+        for (&name, at) in self.solved.borrow_mut().iter_mut() {
+            if !graph.is_constant(*at) {
+                let argument = graph.input(Input::new(name));
+                self.held.borrow_mut().insert(argument, std::mem::replace(at, argument));
+            }
+        }
     }
 
     /// An element of the map of closed loops: zero before it is kept.
@@ -418,7 +429,8 @@ impl Builder {
         graph.outputs = outputs;
         let mut trace = self.trace.map(RefCell::into_inner).unwrap_or_default();
         trace.births.resize_with(graph.len(), || None);
-        Traced { graph, trace }
+        let (traced, held) = (Traced { graph, trace }, self.held.into_inner());
+        if held.is_empty() { traced } else { traced.with_values(&held) }
     }
 }
 

@@ -1,5 +1,7 @@
 //! Value numbering: the live part of a graph written once more, with equal values as one node.
 
+use rustc_hash::FxHashMap;
+
 use super::{Birth, Component, Definition, Graph, Op, Place, Policy, Quantity, Ref, Step, Trace, Traced, mark_live};
 
 /// Writes what is live of `from` into `to`, a numbered graph, in its order: of equal values the first one stays.
@@ -10,6 +12,42 @@ pub(crate) fn number_values(from: &Graph, to: &mut Graph, live: &mut Vec<bool>, 
 }
 
 impl Traced {
+    /// Puts what was solved for in place of the arguments that stood for it: a value, and what is to be put there. What
+    /// was folded among others is folded once more.
+    pub(crate) fn with_values(self, of: &FxHashMap<Ref, Ref>) -> Self {
+        let Self { graph: from, mut trace } = self;
+        let mut graph = Graph::new(from.policy, from.embedding());
+        let mut map: Vec<Ref> = Vec::with_capacity(from.len());
+        let (mut births, mut roles, mut lengths) = (Vec::new(), FxHashMap::default(), Vec::new());
+        for (index, node) in from.nodes.iter().enumerate() {
+            let (old, before) = (Ref::new(index), graph.len());
+            lengths.push(before);
+            let new = match (of.get(&old), node.op) {
+                (Some(value), _) => value.mapped(&map),
+                (None, Op::Constant(place)) => graph.constant_like(&from, place),
+                (None, op) => graph.transcribed(op, node.residue, &map),
+            };
+            births.resize(before, None);
+            births.resize(graph.len(), trace.births.get(index).copied().flatten());
+            for operand in node.op.operands().filter(|at| from.is_constant(*at)) {
+                if let Some(name) = trace.roles.get(&(old, operand.magnitude())) {
+                    roles.entry((new.magnitude(), operand.mapped(&map).magnitude())).or_insert(*name);
+                }
+            }
+            map.push(new);
+        }
+        graph.outputs = from.outputs.iter().map(|at| at.mapped(&map)).collect();
+        for definition in &mut trace.definitions {
+            definition.at = definition.at.mapped(&map);
+            definition.after = lengths.get(definition.after).copied().unwrap_or(graph.len());
+        }
+        if let Some(terms) = &mut trace.terms {
+            terms.map_nodes(|at| at.mapped(&map));
+        }
+        (trace.births, trace.roles) = (births, roles);
+        Self { graph, trace }
+    }
+
     /// Numbers the values of a graph and its trace: a name stays with its value, wherever that is computed now.
     pub(crate) fn numbered(self) -> Self {
         let Self { graph, trace: told } = self;
