@@ -168,49 +168,6 @@ impl Arm {
         slf.py().import("rne.optimal_control")?.call_method1("external", (slf, function))
     }
 
-    /// The state after steps of the classical Runge-Kutta method of duration `step` (s) under torques `tau`.
-    ///
-    /// `steps` steps follow each other under the same torques. Each of them computes `forward_dynamics` four times; the
-    /// error of a motion is of order h⁴. `step` is a number, or an array of shape (N,).
-    ///
-    /// Returns the positions and the velocities after the steps, two arrays of shape (n,) or (N, n).
-    #[pyo3(signature = (q, qd, tau, step, *, steps=1, payload=None, parameters=None))]
-    #[allow(clippy::too_many_arguments)] // those of Python
-    fn runge_kutta_step<'py>(
-        slf: &Bound<'py, Self>,
-        q: &Bound<'py, PyAny>,
-        qd: &Bound<'py, PyAny>,
-        tau: &Bound<'py, PyAny>,
-        step: &Bound<'py, PyAny>,
-        steps: usize,
-        payload: Option<&Bound<'py, PyAny>>,
-        parameters: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let arguments = (slf, q, qd, tau, step, steps, payload, parameters);
-        slf.py().import("rne.integrator")?.call_method1("runge_kutta_step", arguments)
-    }
-
-    /// Derivatives of `runge_kutta_step` by q, by q̇ and by τ: the linear model δx' = A δx + B δτ with x = (q, q̇).
-    ///
-    /// They are exact up to rounding, by the chain rule over all `steps`.
-    ///
-    /// Returns A and B, of shape (2 n, 2 n) and (2 n, n), or (N, 2 n, 2 n) and (N, 2 n, n).
-    #[pyo3(signature = (q, qd, tau, step, *, steps=1, payload=None, parameters=None))]
-    #[allow(clippy::too_many_arguments)] // those of Python
-    fn runge_kutta_step_derivatives<'py>(
-        slf: &Bound<'py, Self>,
-        q: &Bound<'py, PyAny>,
-        qd: &Bound<'py, PyAny>,
-        tau: &Bound<'py, PyAny>,
-        step: &Bound<'py, PyAny>,
-        steps: usize,
-        payload: Option<&Bound<'py, PyAny>>,
-        parameters: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let arguments = (slf, q, qd, tau, step, steps, payload, parameters);
-        slf.py().import("rne.integrator")?.call_method1("runge_kutta_step_derivatives", arguments)
-    }
-
     /// Why another tool's torques differ: the usual slips that give them, the likeliest first.
     ///
     /// Arguments are of one state, shape (n,). Returns a dict: `agrees`, `error` (in parts of the largest torque) and
