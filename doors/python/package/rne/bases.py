@@ -84,7 +84,7 @@ def base_from_mujoco(qpos, qvel, qacc, *, gravity=_GRAVITY):
 
 def skew(vector):
     """The matrix of the cross product with a vector."""
-    return np.cross(vector[..., None, :], np.eye(3)).swapaxes(-1, -2)
+    return np.cross(vector[..., None, :], np.eye(3, dtype=vector.dtype)).swapaxes(-1, -2)
 
 
 def _in_base(quaternion, vector):
