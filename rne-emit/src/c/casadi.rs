@@ -29,7 +29,7 @@ const SECOND: &str = include_str!("casadi_second.c");
 const ACADOS: &str = include_str!("acados.c");
 
 /// Matrices that one call of a function of the file gives: the field of the result, and the input by which the result
-/// of the CasADi function is derived.
+/// of the CasADi function is derived. The derivatives of a step combine matrices, so there are none for it.
 struct Source {
     function: Function,
     blocks: &'static [(&'static str, usize)],
@@ -61,22 +61,30 @@ fn derivatives(function: Function) -> Option<Derivatives> {
     const MASS: Source = Source { function: Function::MassMatrix, blocks: &[("", 2)] };
     const OF_MOTION: Source =
         Source { function: Function::ForwardDynamicsDerivatives, blocks: &[("dq", 0), ("dqd", 1), ("dtau", 2)] };
+    const OF_STEP: [Source; 3] = [
+        Source { function: Function::ForwardDynamics, blocks: &[] },
+        Source { function: Function::ForwardDynamicsDerivatives, blocks: &[] },
+        Source { function: Function::TorqueHessian, blocks: &[] },
+    ];
     let (sources, fields): (&'static [Source], &'static [&'static str]) = match function {
         Function::InverseDynamics => (&const { [source(&[("dq", 0), ("dqd", 1)]), MASS] }, &["dq", "dqd", "dqdd"]),
         Function::BiasTorques => (&const { [source(&[("dq", 0), ("dqd", 1)])] }, &["dq", "dqd"]),
         Function::GravityTorques => (&const { [source(&[("dq", 0)])] }, &["dq"]),
         Function::ForwardDynamics => (&const { [OF_MOTION] }, &[]),
+        Function::EulerStep => (&OF_STEP, &[]),
         _ => return None,
     };
     let gradient = (!fields.is_empty()).then_some((Function::TorqueGradient, fields));
     Some(Derivatives { sources, gradient })
 }
 
-/// Whether CasADi can call a program: all that it takes are vectors, and it returns a number, a vector or a matrix.
+/// Whether CasADi can call a program: all that it takes are vectors, and it returns a number, a vector or a matrix, or
+/// the state after a step.
 #[must_use]
 pub fn is_for_casadi(program: &Program) -> bool {
-    let takes_vectors = inputs(program).iter().all(|array| array.lengths().len() == 1);
-    takes_vectors && !parameters::are_used(program) && shape(&program.layout()).is_some()
+    let are_vectors = || inputs(program).iter().all(|array| array.lengths().len() == 1);
+    let is_shaped = program.function == Function::EulerStep || are_vectors() && shape(&program.layout()).is_some();
+    is_shaped && !parameters::are_used(program)
 }
 
 /// The name that a function for CasADi and a function of C with this prefix would both have, if there is one: a robot
@@ -105,11 +113,25 @@ fn shape(layout: &Layout) -> Option<(usize, usize)> {
 
 /// A function as CasADi sees it: names and compressed columns of inputs and outputs.
 #[derive(Default)]
-struct Interface {
-    name: String,
-    inputs: Vec<(String, String)>,
-    outputs: Vec<(String, String)>,
-    body: String,
+pub(super) struct Interface {
+    pub(super) name: String,
+    pub(super) inputs: Vec<(String, String)>,
+    pub(super) outputs: Vec<(String, String)>,
+    pub(super) body: String,
+}
+
+/// The bodies of a function, of its Jacobians and of its directional derivatives.
+pub(super) struct Bodies {
+    pub(super) value: String,
+    pub(super) jacobian: String,
+    pub(super) forward: String,
+    pub(super) reverse: String,
+}
+
+/// Whether an element of a matrix, whose elements stand row by row after the first `skipped` outputs, is not zero in
+/// every state.
+pub(super) fn is_there(program: &Program, skipped: usize, row: usize, column: usize) -> bool {
+    program.values.get(program.outputs[skipped + row * program.dof + column].value) != Value::Constant(0.0)
 }
 
 /// The functions for CasADi.
@@ -135,8 +157,13 @@ pub(super) fn definitions(file: &File) -> String {
     if derived.iter().any(|derivatives| derivatives.gradient.is_none()) {
         text.push_str(&writer.filled(TRANSPOSED));
     }
-    if derived.iter().any(|derivatives| derivatives.gradient.is_some()) {
+    let steps = |derivatives: &Derivatives| derivatives.sources.iter().all(|source| source.blocks.is_empty());
+    let has_step = derived.iter().any(steps);
+    if has_step || derived.iter().any(|derivatives| derivatives.gradient.is_some()) {
         text.push_str(&writer.filled(SECOND));
+    }
+    if has_step {
+        text.push_str(&writer.helper_of_step());
     }
     text.push_str("\n// rows, columns; then 1 if all elements are there, else starts of the columns and the rows\n");
     for (index, pattern) in writer.patterns.iter().enumerate() {
@@ -152,58 +179,64 @@ pub(super) fn definitions(file: &File) -> String {
     text
 }
 
-struct Writer<'a> {
-    file: &'a File<'a>,
+pub(super) struct Writer<'a> {
+    pub(super) file: &'a File<'a>,
     /// The compressed columns, each once.
     patterns: Vec<Vec<usize>>,
 }
 
 impl Writer<'_> {
     /// Text with the numbers and names of the file. The prefix comes last: it may be any word.
-    fn filled(&self, text: &str) -> String {
+    pub(super) fn filled(&self, text: &str) -> String {
         text.replace("DOF", &self.file.robot.dof().to_string()).replace("PREFIX", self.file.prefix)
     }
 
     /// The name of compressed columns.
-    fn pattern(&mut self, pattern: Vec<usize>) -> String {
+    pub(super) fn pattern(&mut self, pattern: Vec<usize>) -> String {
         let index = self.patterns.iter().position(|other| *other == pattern).unwrap_or_else(|| {
             self.patterns.push(pattern);
             self.patterns.len() - 1
         });
+        self.pattern_name(index)
+    }
+
+    fn pattern_name(&self, index: usize) -> String {
         format!("{}_pattern_{index}", self.file.prefix)
     }
 
-    fn dense(&mut self, rows: usize, columns: usize) -> String {
+    pub(super) fn dense(&mut self, rows: usize, columns: usize) -> String {
         self.pattern(vec![rows, columns, 1])
     }
 
     /// A square matrix of zeros.
-    fn nothing(&mut self) -> String {
+    pub(super) fn nothing(&mut self) -> String {
         let dof = self.file.robot.dof();
         self.pattern([vec![dof, dof], vec![0; dof + 1]].concat())
     }
 
-    /// The compressed columns of a square matrix, or of its transpose, whose elements, row by row, stand after the
-    /// first `skipped` outputs.
-    fn square(&mut self, program: &Program, skipped: usize, is_transposed: bool) -> String {
-        let dof = program.dof;
-        let is_there = |row: usize, column: usize| {
+    /// The compressed columns of a square matrix of a program, or of its transpose, whose elements, row by row, stand
+    /// after the first `skipped` outputs.
+    fn block(&mut self, program: &Program, skipped: usize, is_transposed: bool) -> String {
+        self.square(program.dof, |row, column| {
             let (row, column) = if is_transposed { (column, row) } else { (row, column) };
-            let output = &program.outputs[skipped + row * dof + column];
-            program.values.get(output.value) != Value::Constant(0.0)
-        };
-        let (mut starts, mut rows) = (vec![0], Vec::new());
-        for column in 0..dof {
-            rows.extend((0..dof).filter(|&row| is_there(row, column)));
-            starts.push(rows.len());
-        }
-        if rows.len() == dof * dof {
-            return self.dense(dof, dof);
-        }
-        self.pattern([vec![dof, dof], starts, rows].concat())
+            is_there(program, skipped, row, column)
+        })
     }
 
-    fn find(&self, function: Function) -> Option<&Program> {
+    /// The compressed columns of a square matrix with these elements.
+    pub(super) fn square(&mut self, size: usize, is_there: impl Fn(usize, usize) -> bool) -> String {
+        let (mut starts, mut rows) = (vec![0], Vec::new());
+        for column in 0..size {
+            rows.extend((0..size).filter(|&row| is_there(row, column)));
+            starts.push(rows.len());
+        }
+        if rows.len() == size * size {
+            return self.dense(size, size);
+        }
+        self.pattern([vec![size, size], starts, rows].concat())
+    }
+
+    pub(super) fn find(&self, function: Function) -> Option<&Program> {
         self.file.programs.iter().find(|program| program.function == function)
     }
 
@@ -215,10 +248,13 @@ impl Writer<'_> {
 
     /// A function, and its derivatives if it has any.
     fn interfaces(&mut self, program: &Program) -> Vec<Interface> {
-        let Some((rows, columns)) = shape(&program.layout()) else { return Vec::new() };
         let arrays = inputs(program);
         let given: Vec<(String, String)> =
             arrays.iter().map(|array| (array.name.to_owned(), self.dense(array.elements.len(), 1))).collect();
+        if program.function == Function::EulerStep {
+            return self.of_step(program, &given);
+        }
+        let Some((rows, columns)) = shape(&program.layout()) else { return Vec::new() };
         let result = match program.function {
             Function::ForwardDynamics => "qdd",
             function if function.returns_torques() => "tau",
@@ -228,44 +264,70 @@ impl Writer<'_> {
             },
         };
         let returned = (result.to_owned(), self.dense(rows, columns));
-        let value = Interface {
-            name: program.name.clone(),
-            inputs: given.clone(),
-            outputs: vec![returned.clone()],
-            body: self.value(program, &arrays, columns),
+        let value = self.value(program, &arrays, columns);
+        let Some(derivatives) = self.sources(program) else {
+            return vec![Interface { name: program.name.clone(), inputs: given, outputs: vec![returned], body: value }];
         };
-        let Some(derivatives) = self.sources(program) else { return vec![value] };
+        let blocks = self.blocks(&derivatives, false);
+        let bodies = Bodies {
+            value,
+            jacobian: self.jacobian(&arrays, &derivatives, &blocks),
+            forward: self.forward(&arrays, &derivatives),
+            reverse: self.reverse(&arrays, &derivatives),
+        };
+        let [value, jacobian, forward, reverse] = self.family(&program.name, &given, &[returned], &blocks, bodies);
+        let second = self.second(&reverse, &arrays, &derivatives);
+        [value, jacobian, forward, reverse].into_iter().chain(second).collect()
+    }
 
-        let absent = (format!("out_{result}"), self.pattern([vec![rows, 1], vec![0, 0]].concat()));
+    /// A function, its Jacobians with these compressed columns, and its directional derivatives.
+    pub(super) fn family(
+        &mut self,
+        name: &str,
+        given: &[(String, String)],
+        returned: &[(String, String)],
+        blocks: &[String],
+        bodies: Bodies,
+    ) -> [Interface; 4] {
         let named = |start: &str, of: &[(String, String)]| -> Vec<(String, String)> {
             of.iter().map(|(name, pattern)| (format!("{start}{name}"), pattern.clone())).collect()
         };
-        let at = [given.clone(), vec![absent]].concat();
-        let blocks = self.blocks(&derivatives, false);
-        let jacobian = Interface {
-            name: format!("jac_{}", program.name),
-            inputs: at.clone(),
-            outputs: given
-                .iter()
-                .zip(&blocks)
-                .map(|((by, _), block)| (format!("jac_{result}_{by}"), block.clone()))
-                .collect(),
-            body: self.jacobian(&arrays, &derivatives, &blocks),
-        };
+        let value =
+            Interface { name: name.to_owned(), inputs: given.to_vec(), outputs: returned.to_vec(), body: bodies.value };
+        let jacobian = self.jacobian_of(&value, blocks, bodies.jacobian);
+        let at = jacobian.inputs.clone();
         let forward = Interface {
-            name: format!("fwd1_{}", program.name),
-            inputs: [at.clone(), named("fwd_", &given)].concat(),
-            outputs: named("fwd_", std::slice::from_ref(&returned)),
-            body: self.forward(&arrays, &derivatives),
+            name: format!("fwd1_{name}"),
+            inputs: [at.clone(), named("fwd_", given)].concat(),
+            outputs: named("fwd_", returned),
+            body: bodies.forward,
         };
         let reverse = Interface {
-            name: format!("adj1_{}", program.name),
-            inputs: [at, named("adj_", &[returned])].concat(),
-            outputs: named("adj_", &given),
-            body: self.reverse(&arrays, &derivatives),
+            name: format!("adj1_{name}"),
+            inputs: [at, named("adj_", returned)].concat(),
+            outputs: named("adj_", given),
+            body: bodies.reverse,
         };
-        let second = self.second(&reverse, &arrays, &derivatives);
-        [value, jacobian, forward, reverse].into_iter().chain(second).collect()
+        [value, jacobian, forward, reverse]
+    }
+
+    /// The Jacobians of a function: those of an output stand together.
+    pub(super) fn jacobian_of(&mut self, of: &Interface, blocks: &[String], body: String) -> Interface {
+        let mut inputs = of.inputs.clone();
+        for (name, pattern) in &of.outputs {
+            let rows = self.rows(pattern);
+            inputs.push((format!("out_{name}"), self.pattern([vec![rows, 1], vec![0, 0]].concat())));
+        }
+        let by = |output: &str| of.inputs.iter().map(|(input, _)| format!("jac_{output}_{input}")).collect::<Vec<_>>();
+        let pairs = of.outputs.iter().flat_map(|(output, _)| by(output));
+        let outputs = pairs.zip(blocks.iter().cloned()).collect();
+        Interface { name: format!("jac_{}", of.name), inputs, outputs, body }
+    }
+
+    /// The rows of the compressed columns with a name.
+    fn rows(&self, name: &str) -> usize {
+        let named = self.patterns.iter().enumerate().find(|(index, _)| self.pattern_name(*index) == name);
+        named.and_then(|(_, pattern)| pattern.first().copied()).unwrap_or(0)
     }
 
     /// The Jacobian of the reverse derivatives by all that these take, where the file has the Hessian.
@@ -289,7 +351,7 @@ impl Writer<'_> {
             .iter()
             .map(|&(.., block, is_transposed)| {
                 let program = self.file.programs.iter().find(|program| program.function == Function::TorqueHessian);
-                program.map_or_else(String::new, |program| self.square(program, block * dof * dof, is_transposed))
+                program.map_or_else(String::new, |program| self.block(program, block * dof * dof, is_transposed))
             })
             .collect();
         let mut body = String::new();
@@ -310,27 +372,14 @@ impl Writer<'_> {
         };
         body.push_str(&self.with_matrices(arrays, derivatives, place, put));
         let nothing = self.nothing();
-        let absent = self.pattern([vec![dof, 1], vec![0, 0]].concat());
-        let output = |(of, row): (&(String, String), usize)| {
-            let by = |(column, (by, _)): (usize, &(String, String))| {
-                let place = places.iter().position(|&(i, j, ..)| (i, j) == (row, column));
-                let of_multipliers = (column == count + 1).then(|| of_torques[row].clone());
-                let pattern = place.map(|place| patterns[place].clone()).or(of_multipliers);
-                (format!("jac_{}_{by}", of.0), pattern.unwrap_or_else(|| nothing.clone()))
-            };
-            reverse.inputs.iter().enumerate().map(by).collect::<Vec<_>>()
+        let block = |(row, column): (usize, usize)| {
+            let place = places.iter().position(|&(i, j, ..)| (i, j) == (row, column));
+            let of_multipliers = (column == count + 1).then(|| of_torques[row].clone());
+            place.map(|place| patterns[place].clone()).or(of_multipliers).unwrap_or_else(|| nothing.clone())
         };
-        Some(Interface {
-            name: format!("jac_{}", reverse.name),
-            inputs: reverse
-                .inputs
-                .iter()
-                .cloned()
-                .chain(reverse.outputs.iter().map(|(name, _)| (format!("out_{name}"), absent.clone())))
-                .collect(),
-            outputs: reverse.outputs.iter().zip(0..).flat_map(output).collect(),
-            body,
-        })
+        let blocks: Vec<_> =
+            (0..count).flat_map(|row| (0..columns).map(move |column| (row, column))).map(block).collect();
+        Some(self.jacobian_of(reverse, &blocks, body))
     }
 
     /// The functions of an explicit differential equation as acados has CasADi generate them: x = (q, qd), u = tau, and
@@ -376,7 +425,7 @@ impl Writer<'_> {
                 else {
                     continue;
                 };
-                blocks.push(self.square(program, place * program.dof * program.dof, is_transposed));
+                blocks.push(self.block(program, place * program.dof * program.dof, is_transposed));
             }
         }
         blocks

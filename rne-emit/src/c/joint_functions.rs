@@ -132,7 +132,9 @@ impl JointFriction {
         let [forward, backward] = motor.coulomb.map(|friction| ratio * friction);
         let width = match width.or(joint.coulomb_width) {
             _ if forward == 0.0 && backward == 0.0 => 1.0,
-            _ if width.is_none() && joint.coulomb_displacement.is_some() => return Err(NoFriction::Displacement(name())),
+            _ if width.is_none() && joint.coulomb_displacement.is_some() => {
+                return Err(NoFriction::Displacement(name()));
+            }
             None => return Err(NoFriction::NoWidth(name())),
             Some(width) if width < Self::NARROWEST => return Err(NoFriction::NarrowWidth(name(), width)),
             Some(width) => width,
