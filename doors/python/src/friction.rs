@@ -31,8 +31,8 @@ impl Arm {
 impl Arm {
     /// Friction of the joints at velocities: viscous, and Coulomb's with a smooth change of sign.
     ///
-    /// G² B qd + |G| (½ (Tc⁺ - Tc⁻) s + ½ (Tc⁺ + Tc⁻) s²) with s = qd / √(qd² + w²), by the key `motor` of each joint of
-    /// the robot file. Positive for a positive velocity, zero at rest, and zero for a joint without friction in the
+    /// G² B qd + |G| (½ (Tc⁺ - Tc⁻) s + ½ (Tc⁺ + Tc⁻) s²) with s = qd / √(qd² + w²), by the key `motor` of each joint
+    /// of the robot file. Positive for a positive velocity, zero at rest, and zero for a joint without friction in the
     /// file: add it to the torques of `inverse_dynamics`, or subtract it from those of `forward_dynamics`. It is the
     /// friction of `rollout`, and the function `friction_torques` of `rne emit --lang c --friction`. Unlike
     /// `actuator_torques`, it has no jump at rest and no torque of rotors.

@@ -159,10 +159,11 @@ impl Arm {
     ///
     /// A compiler of C, `$CC` or cc, gcc or clang, compiles its code once, to a library in the user's cache folder (the
     /// variable RNE_CACHE names another). Inputs and outputs have the names, order and units of the function.
-    /// `inverse_dynamics`, `forward_dynamics`, `gravity_torques` and `bias_torques` have Jacobians, forward and reverse
-    /// derivatives by all inputs, computed without finite differences; other functions have none, and CasADi refuses to
-    /// derive them. The functions that return torques have second derivatives; for `forward_dynamics`, give IPOPT the
-    /// option `hessian_approximation="limited-memory"`. Needs the package casadi, 3.6 or later.
+    /// `inverse_dynamics`, `forward_dynamics`, `gravity_torques`, `bias_torques` and `euler_step` have Jacobians,
+    /// forward and reverse derivatives by all inputs, computed without finite differences; other functions have none,
+    /// and CasADi refuses to derive them. The functions that return torques and `euler_step` have second derivatives;
+    /// for `forward_dynamics`, give IPOPT the option `hessian_approximation="limited-memory"`. Needs the package
+    /// casadi, 3.6 or later.
     #[pyo3(signature = (function="inverse_dynamics"))]
     fn casadi<'py>(slf: &Bound<'py, Self>, function: &str) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("rne.optimal_control")?.call_method1("external", (slf, function))

@@ -57,8 +57,8 @@ impl Arm {
     /// step must stay below a whole turn. The rotation after a step is orthogonal to rounding.
     ///
     /// Returns the pose after the steps, a homogeneous matrix of shape (4, 4) or (N, 4, 4), the velocity of the base,
-    /// linear then angular, in its axes, of shape (6,) or (N, 6), and the positions and the velocities of the joints, of
-    /// shape (n,) or (N, n).
+    /// linear then angular, in its axes, of shape (6,) or (N, 6), and the positions and the velocities of the joints,
+    /// of shape (n,) or (N, n).
     #[pyo3(signature = (q, qd, tau, pose, twist, step, wrenches=None, *, steps=1, parameters=None))]
     #[allow(clippy::too_many_arguments)] // those of Python
     fn floating_runge_kutta_step<'py>(
@@ -80,8 +80,8 @@ impl Arm {
     /// Derivatives of `floating_runge_kutta_step` by positions, velocities and τ: the linear model of its steps.
     ///
     /// They are exact up to rounding, by the chain rule over all `steps`. A change of the positions of the base is a
-    /// shift of its origin and a rotation vector, both in axes of the base: before the steps for columns, after them for
-    /// rows. The velocities of the base are `twist`.
+    /// shift of its origin and a rotation vector, both in axes of the base: before the steps for columns, after them
+    /// for rows. The velocities of the base are `twist`.
     ///
     /// Returns A and B, of shape (12 + 2 n, 12 + 2 n) and (12 + 2 n, n), or (N, 12 + 2 n, 12 + 2 n) and
     /// (N, 12 + 2 n, n); rows and columns are the positions, then the velocities, each of the base before the joints.

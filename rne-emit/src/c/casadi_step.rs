@@ -12,7 +12,7 @@ const STEP: &str = include_str!("casadi_step.c");
 /// The results of the step.
 const NEXT: [&str; 2] = ["next_q", "next_qd"];
 
-/// Which elements of a square matrix are not zero in every state.
+/// The elements of a square matrix that are not zero in every state.
 #[derive(Clone)]
 struct Presence(Vec<Vec<bool>>);
 
