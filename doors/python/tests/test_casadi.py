@@ -372,7 +372,8 @@ def test_the_page_runs_as_it_stands(tmp_path, monkeypatch):
         pytest.skip("RNE names no command line")
     monkeypatch.chdir(tmp_path)
     (command,) = re.findall(r"^cargo run -- (export .*)$", text, re.MULTILINE)
-    (tmp_path / "robots").symlink_to(ROBOTS)
+    for folder in ("robots", "docs"):
+        (tmp_path / folder).symlink_to(ROBOTS.parent / folder)
     subprocess.run([program, *shlex.split(command)], check=True)
     run_examples(page)
     # the commands of the shell, and what reads their library
