@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use rne_codegen::{Function, Program};
 
-use super::casadi::{Bodies, Interface, Writer, is_there};
+use super::casadi::{Writer, is_there};
+use super::casadi_interface::{Bodies, Interface};
 
 /// The helper of the bodies, and these, in the order of [`Writer::of_step`].
 const STEP: &str = include_str!("casadi_step.c");
