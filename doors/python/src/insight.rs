@@ -159,56 +159,14 @@ impl Arm {
     ///
     /// A compiler of C, `$CC` or cc, gcc or clang, compiles its code once, to a library in the user's cache folder (the
     /// variable RNE_CACHE names another). Inputs and outputs have the names, order and units of the function.
-    /// `inverse_dynamics`, `forward_dynamics`, `gravity_torques` and `bias_torques` have Jacobians, forward and reverse
-    /// derivatives by all inputs, computed without finite differences; other functions have none, and CasADi refuses to
-    /// derive them. The functions that return torques have second derivatives; for `forward_dynamics`, give IPOPT the
-    /// option `hessian_approximation="limited-memory"`. Needs the package casadi, 3.6 or later.
+    /// `inverse_dynamics`, `forward_dynamics`, `gravity_torques`, `bias_torques` and `euler_step` have Jacobians,
+    /// forward and reverse derivatives by all inputs, computed without finite differences; other functions have none,
+    /// and CasADi refuses to derive them. The functions that return torques and `euler_step` have second derivatives;
+    /// for `forward_dynamics`, give IPOPT the option `hessian_approximation="limited-memory"`. Needs the package
+    /// casadi, 3.6 or later.
     #[pyo3(signature = (function="inverse_dynamics"))]
     fn casadi<'py>(slf: &Bound<'py, Self>, function: &str) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("rne.optimal_control")?.call_method1("external", (slf, function))
-    }
-
-    /// The state after steps of the classical Runge-Kutta method of duration `step` (s) under torques `tau`.
-    ///
-    /// `steps` steps follow each other under the same torques. Each of them computes `forward_dynamics` four times; the
-    /// error of a motion is of order h⁴. `step` is a number, or an array of shape (N,).
-    ///
-    /// Returns the positions and the velocities after the steps, two arrays of shape (n,) or (N, n).
-    #[pyo3(signature = (q, qd, tau, step, *, steps=1, payload=None, parameters=None))]
-    #[allow(clippy::too_many_arguments)] // those of Python
-    fn runge_kutta_step<'py>(
-        slf: &Bound<'py, Self>,
-        q: &Bound<'py, PyAny>,
-        qd: &Bound<'py, PyAny>,
-        tau: &Bound<'py, PyAny>,
-        step: &Bound<'py, PyAny>,
-        steps: usize,
-        payload: Option<&Bound<'py, PyAny>>,
-        parameters: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let arguments = (slf, q, qd, tau, step, steps, payload, parameters);
-        slf.py().import("rne.integrator")?.call_method1("runge_kutta_step", arguments)
-    }
-
-    /// Derivatives of `runge_kutta_step` by q, by q̇ and by τ: the linear model δx' = A δx + B δτ with x = (q, q̇).
-    ///
-    /// They are exact up to rounding, by the chain rule over all `steps`.
-    ///
-    /// Returns A and B, of shape (2 n, 2 n) and (2 n, n), or (N, 2 n, 2 n) and (N, 2 n, n).
-    #[pyo3(signature = (q, qd, tau, step, *, steps=1, payload=None, parameters=None))]
-    #[allow(clippy::too_many_arguments)] // those of Python
-    fn runge_kutta_step_derivatives<'py>(
-        slf: &Bound<'py, Self>,
-        q: &Bound<'py, PyAny>,
-        qd: &Bound<'py, PyAny>,
-        tau: &Bound<'py, PyAny>,
-        step: &Bound<'py, PyAny>,
-        steps: usize,
-        payload: Option<&Bound<'py, PyAny>>,
-        parameters: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let arguments = (slf, q, qd, tau, step, steps, payload, parameters);
-        slf.py().import("rne.integrator")?.call_method1("runge_kutta_step_derivatives", arguments)
     }
 
     /// Why another tool's torques differ: the usual slips that give them, the likeliest first.

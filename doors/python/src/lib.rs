@@ -1,8 +1,8 @@
 //! Python's door to rne: any arm at run time, with numpy in and out.
 //!
-//! Thin: [`arm`] has the class, [`dynamics`], [`operational_space`], [`pose`], [`rollout`] and [`insight`] its methods,
-//! [`arrays`] what numpy's arrays are to the machine, [`xla`] what those of JAX are and `gpu` what those on a graphics
-//! card are, [`load`] how an arm is read, [`errors`] what goes wrong.
+//! Thin: [`arm`] has the class, [`dynamics`], [`operational_space`], [`pose`], [`rollout`], [`integrator`],
+//! [`friction`] and [`insight`] its methods, [`arrays`] what numpy's arrays are to the machine, [`xla`] what those of
+//! JAX are and `gpu` what those on a graphics card are, [`load`] how an arm is read, [`errors`] what goes wrong.
 //! [`logs`], [`identification`], [`watching`] and [`excitation`] are about logs of arms; [`log_errors`] words what goes
 //! wrong there, and [`interruption`] lets Ctrl-C end them. The package around it is in `rne/`.
 
@@ -11,11 +11,13 @@ mod arrays;
 mod dynamics;
 mod errors;
 mod excitation;
+mod friction;
 mod functions;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod identification;
 mod insight;
+mod integrator;
 mod interruption;
 mod load;
 mod log_errors;

@@ -64,6 +64,12 @@ class Expressions:
         self.forward_dynamics = ca.Function(
             "forward_dynamics", [q, qd, tau], [accelerations], ["q", "qd", "tau"], ["qdd"]
         )
+        step = ca.MX.sym("step")
+        velocities = qd + step * accelerations
+        self.euler_step = ca.Function(
+            "euler_step", [q, qd, tau, step], [q + step * velocities, velocities],
+            ["q", "qd", "tau", "step"], ["next_q", "next_qd"],
+        )
 
     def _row(self, joint, position):
         """The turns and moves of a row of the table in their order, and the place of the joint among them."""

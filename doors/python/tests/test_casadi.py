@@ -54,7 +54,7 @@ def difference(found, expected):
 def states(function, count, seed=5):
     random = np.random.default_rng(seed)
     # torques that do not throw light links about
-    scale = {"tau": 0.5}
+    scale = {"tau": 0.5, "step": 0.03}
     for _ in range(count):
         yield [random.uniform(-1.5, 1.5, size) * scale.get(name, 1) for name, size in
                ((function.name_in(index), function.size1_in(index)) for index in range(function.n_in()))]
@@ -65,12 +65,12 @@ def described(function):
     return inputs, [(function.name_out(index), function.size_out(index)) for index in range(function.n_out())]
 
 
-@pytest.mark.parametrize("name", FUNCTIONS)
+@pytest.mark.parametrize("name", [*FUNCTIONS, "euler_step"])
 def test_numbers_and_derivatives_are_those_of_expressions(both, name):
     arm, expressions = both
     ours, theirs = arm.casadi(name), getattr(expressions, name)
     # forward dynamics divide by a mass matrix, whose smallest parts are thousandths of its largest
-    tolerance = 1e-8 if name == "forward_dynamics" else 1e-11
+    tolerance = 1e-8 if name in ("forward_dynamics", "euler_step") else 1e-11
     pairs = [(ours, theirs), (ours.jacobian(), theirs.jacobian())]
     pairs += [(ours.forward(count), theirs.forward(count)) for count in (1, 3)]
     pairs += [(ours.reverse(count), theirs.reverse(count)) for count in (1, 3)]
@@ -79,10 +79,9 @@ def test_numbers_and_derivatives_are_those_of_expressions(both, name):
         random = np.random.default_rng(11)
         for state in states(ours, 10):
             directions = [random.normal(size=found.size_in(index)) for index in range(len(state), found.n_in())]
-            value = theirs(*state)
             arguments = [*state, *directions]
             if len(arguments) > len(state):
-                arguments[len(state)] = value
+                arguments[len(state) : len(state) + theirs.n_out()] = theirs.call(state)
             for ours_out, theirs_out in zip(found.call(arguments), expected.call(arguments), strict=True):
                 assert difference(ours_out, theirs_out) < tolerance, found
 
@@ -123,10 +122,27 @@ def test_second_derivatives_are_those_of_expressions(both, name):
         assert difference(found, expected) < 1e-10
 
 
+def test_second_derivatives_of_a_step_are_those_of_expressions(both):
+    """The Hessian of the multipliers of both results, by the state, the torques and the duration."""
+    arm, expressions = both
+    ours, theirs = (of.euler_step if of is expressions else of.casadi("euler_step") for of in (arm, expressions))
+    ours, theirs = ours.reverse(1).jacobian(), theirs.reverse(1).jacobian()
+    assert described(ours) == described(theirs)
+    random = np.random.default_rng(6)
+    for state in states(ours, 5):
+        state[3] = random.choice([0.01, -0.02, 0.0, 0.5])
+        for index, (found, expected) in enumerate(zip(ours.call(state), theirs.call(state), strict=True)):
+            assert difference(found, expected) < 1e-7, ours.name_out(index)
+
+
 def test_zeros_of_a_tree_are_left_out():
     jacobian = rne.load(ROBOTS / "trees/hyq.yaml").casadi("inverse_dynamics").jacobian()
     # four legs of three joints
     assert [jacobian.nnz_out(index) <= 4 * 9 for index in range(3)] == [True] * 3
+    step = rne.load(ROBOTS / "trees/hyq.yaml").casadi("euler_step")
+    jacobian, hessian = step.jacobian(), step.reverse(1).jacobian()
+    assert all(jacobian.nnz_out(index) <= 4 * 9 for index in range(8))
+    assert all(hessian.nnz_out(index) <= 4 * 9 for index in range(hessian.n_out()))
 
 
 def test_absent_arguments_are_zero():
@@ -264,6 +280,43 @@ def test_a_swing_up_has_the_same_optimum():
     assert abs(found - expected) < 1e-6 * abs(expected)
 
 
+def turned_up(next_state):
+    """Two links from hanging to level by 30 discrete steps, whose duration is free: multiple shooting."""
+    opti, nodes = ca.Opti(), 30
+    q, qd, tau, step = opti.variable(2, nodes + 1), opti.variable(2, nodes + 1), opti.variable(2, nodes), opti.variable()
+    for node in range(nodes):
+        next_q, next_qd = next_state(q[:, node], qd[:, node], tau[:, node], step)
+        opti.subject_to(q[:, node + 1] == next_q)
+        opti.subject_to(qd[:, node + 1] == next_qd)
+        opti.set_initial(q[0, node], -np.pi / 2 + np.pi / 2 * node / nodes)
+    for node, pose in ((0, [-np.pi / 2, 0]), (nodes, [0, 0])):
+        opti.subject_to(q[:, node] == pose)
+        opti.subject_to(qd[:, node] == [0, 0])
+    opti.subject_to(opti.bounded(0.005, step, 0.1))
+    opti.set_initial(step, 0.03)
+    opti.minimize(nodes * step + 1e-2 * step * ca.sumsqr(tau))
+    return opti
+
+
+@pytest.mark.parametrize("hessian", ["exact", "limited-memory"])
+def test_discrete_steps_of_a_free_duration_have_the_same_optimum(hessian):
+    functions = {"rne": rne.robots.planar2.casadi("euler_step"), "expressions": Expressions("planar2").euler_step}
+    costs, iterations, durations = [], [], []
+    for function in functions.values():
+        opti = turned_up(function)
+        opti.solver("ipopt", {**OPTIONS, "ipopt": {**OPTIONS["ipopt"], "hessian_approximation": hessian}})
+        solution = opti.solve()
+        costs.append(solution.value(opti.f))
+        iterations.append(solution.stats()["iter_count"])
+        durations.append(solution.value(opti.x)[-1])
+        called = {name for name in solution.stats() if name.startswith("n_call_nlp")}
+        assert "n_call_nlp_jac_g" in called and ("n_call_nlp_hess_l" in called) == (hessian == "exact")
+    assert abs(costs[0] - costs[1]) < 1e-6 * abs(costs[1]), (costs, iterations)
+    assert abs(durations[0] - durations[1]) < 1e-5, durations
+    if hessian == "exact":
+        assert iterations[0] == iterations[1], iterations
+
+
 def test_a_reach_of_the_panda_has_the_same_optimum():
     arm, expressions = rne.robots.panda, Expressions("panda")
     functions = {"rne": arm.casadi("inverse_dynamics"), "expressions": expressions.inverse_dynamics}
@@ -319,7 +372,8 @@ def test_the_page_runs_as_it_stands(tmp_path, monkeypatch):
         pytest.skip("RNE names no command line")
     monkeypatch.chdir(tmp_path)
     (command,) = re.findall(r"^cargo run -- (export .*)$", text, re.MULTILINE)
-    (tmp_path / "robots").symlink_to(ROBOTS)
+    for folder in ("robots", "docs"):
+        (tmp_path / folder).symlink_to(ROBOTS.parent / folder)
     subprocess.run([program, *shlex.split(command)], check=True)
     run_examples(page)
     # the commands of the shell, and what reads their library

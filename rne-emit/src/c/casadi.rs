@@ -9,8 +9,9 @@ use std::fmt::Write;
 
 use rne_codegen::{ArgumentArray, Function, Layout, Program, Value};
 
+use super::casadi_interface::{Bodies, Interface};
 use super::signature::{inputs, record_type, wrapped};
-use super::{File, Prefix, comment};
+use super::{File, Prefix};
 use crate::parameters;
 
 /// The part that is the same for all functions; PREFIX, DOF and LONGEST are replaced.
@@ -29,7 +30,7 @@ const SECOND: &str = include_str!("casadi_second.c");
 const ACADOS: &str = include_str!("acados.c");
 
 /// Matrices that one call of a function of the file gives: the field of the result, and the input by which the result
-/// of the CasADi function is derived.
+/// of the CasADi function is derived. The derivatives of a step combine matrices, so there are none for it.
 struct Source {
     function: Function,
     blocks: &'static [(&'static str, usize)],
@@ -61,22 +62,30 @@ fn derivatives(function: Function) -> Option<Derivatives> {
     const MASS: Source = Source { function: Function::MassMatrix, blocks: &[("", 2)] };
     const OF_MOTION: Source =
         Source { function: Function::ForwardDynamicsDerivatives, blocks: &[("dq", 0), ("dqd", 1), ("dtau", 2)] };
+    const OF_STEP: [Source; 3] = [
+        Source { function: Function::ForwardDynamics, blocks: &[] },
+        Source { function: Function::ForwardDynamicsDerivatives, blocks: &[] },
+        Source { function: Function::TorqueHessian, blocks: &[] },
+    ];
     let (sources, fields): (&'static [Source], &'static [&'static str]) = match function {
         Function::InverseDynamics => (&const { [source(&[("dq", 0), ("dqd", 1)]), MASS] }, &["dq", "dqd", "dqdd"]),
         Function::BiasTorques => (&const { [source(&[("dq", 0), ("dqd", 1)])] }, &["dq", "dqd"]),
         Function::GravityTorques => (&const { [source(&[("dq", 0)])] }, &["dq"]),
         Function::ForwardDynamics => (&const { [OF_MOTION] }, &[]),
+        Function::EulerStep => (&OF_STEP, &[]),
         _ => return None,
     };
     let gradient = (!fields.is_empty()).then_some((Function::TorqueGradient, fields));
     Some(Derivatives { sources, gradient })
 }
 
-/// Whether CasADi can call a program: all that it takes are vectors, and it returns a number, a vector or a matrix.
+/// Whether CasADi can call a program: all that it takes are vectors, and it returns a number, a vector or a matrix, or
+/// the state after a step.
 #[must_use]
 pub fn is_for_casadi(program: &Program) -> bool {
-    let takes_vectors = inputs(program).iter().all(|array| array.lengths().len() == 1);
-    takes_vectors && !parameters::are_used(program) && shape(&program.layout()).is_some()
+    let are_vectors = || inputs(program).iter().all(|array| array.lengths().len() == 1);
+    let is_shaped = program.function == Function::EulerStep || are_vectors() && shape(&program.layout()).is_some();
+    is_shaped && !parameters::are_used(program)
 }
 
 /// The name that a function for CasADi and a function of C with this prefix would both have, if there is one: a robot
@@ -103,13 +112,10 @@ fn shape(layout: &Layout) -> Option<(usize, usize)> {
     }
 }
 
-/// A function as CasADi sees it: names and compressed columns of inputs and outputs.
-#[derive(Default)]
-struct Interface {
-    name: String,
-    inputs: Vec<(String, String)>,
-    outputs: Vec<(String, String)>,
-    body: String,
+/// Whether an element of a matrix, whose elements stand row by row after the first `skipped` outputs, is not zero in
+/// every state.
+pub(super) fn is_there(program: &Program, skipped: usize, row: usize, column: usize) -> bool {
+    program.values.get(program.outputs[skipped + row * program.dof + column].value) != Value::Constant(0.0)
 }
 
 /// The functions for CasADi.
@@ -135,8 +141,13 @@ pub(super) fn definitions(file: &File) -> String {
     if derived.iter().any(|derivatives| derivatives.gradient.is_none()) {
         text.push_str(&writer.filled(TRANSPOSED));
     }
-    if derived.iter().any(|derivatives| derivatives.gradient.is_some()) {
+    let steps = |derivatives: &Derivatives| derivatives.sources.iter().all(|source| source.blocks.is_empty());
+    let has_step = derived.iter().any(steps);
+    if has_step || derived.iter().any(|derivatives| derivatives.gradient.is_some()) {
         text.push_str(&writer.filled(SECOND));
+    }
+    if has_step {
+        text.push_str(&writer.helper_of_step());
     }
     text.push_str("\n// rows, columns; then 1 if all elements are there, else starts of the columns and the rows\n");
     for (index, pattern) in writer.patterns.iter().enumerate() {
@@ -152,58 +163,64 @@ pub(super) fn definitions(file: &File) -> String {
     text
 }
 
-struct Writer<'a> {
-    file: &'a File<'a>,
+pub(super) struct Writer<'a> {
+    pub(super) file: &'a File<'a>,
     /// The compressed columns, each once.
-    patterns: Vec<Vec<usize>>,
+    pub(super) patterns: Vec<Vec<usize>>,
 }
 
 impl Writer<'_> {
     /// Text with the numbers and names of the file. The prefix comes last: it may be any word.
-    fn filled(&self, text: &str) -> String {
+    pub(super) fn filled(&self, text: &str) -> String {
         text.replace("DOF", &self.file.robot.dof().to_string()).replace("PREFIX", self.file.prefix)
     }
 
     /// The name of compressed columns.
-    fn pattern(&mut self, pattern: Vec<usize>) -> String {
+    pub(super) fn pattern(&mut self, pattern: Vec<usize>) -> String {
         let index = self.patterns.iter().position(|other| *other == pattern).unwrap_or_else(|| {
             self.patterns.push(pattern);
             self.patterns.len() - 1
         });
+        self.pattern_name(index)
+    }
+
+    pub(super) fn pattern_name(&self, index: usize) -> String {
         format!("{}_pattern_{index}", self.file.prefix)
     }
 
-    fn dense(&mut self, rows: usize, columns: usize) -> String {
+    pub(super) fn dense(&mut self, rows: usize, columns: usize) -> String {
         self.pattern(vec![rows, columns, 1])
     }
 
     /// A square matrix of zeros.
-    fn nothing(&mut self) -> String {
+    pub(super) fn nothing(&mut self) -> String {
         let dof = self.file.robot.dof();
         self.pattern([vec![dof, dof], vec![0; dof + 1]].concat())
     }
 
-    /// The compressed columns of a square matrix, or of its transpose, whose elements, row by row, stand after the
-    /// first `skipped` outputs.
-    fn square(&mut self, program: &Program, skipped: usize, is_transposed: bool) -> String {
-        let dof = program.dof;
-        let is_there = |row: usize, column: usize| {
+    /// The compressed columns of a square matrix of a program, or of its transpose, whose elements, row by row, stand
+    /// after the first `skipped` outputs.
+    fn block(&mut self, program: &Program, skipped: usize, is_transposed: bool) -> String {
+        self.square(program.dof, |row, column| {
             let (row, column) = if is_transposed { (column, row) } else { (row, column) };
-            let output = &program.outputs[skipped + row * dof + column];
-            program.values.get(output.value) != Value::Constant(0.0)
-        };
-        let (mut starts, mut rows) = (vec![0], Vec::new());
-        for column in 0..dof {
-            rows.extend((0..dof).filter(|&row| is_there(row, column)));
-            starts.push(rows.len());
-        }
-        if rows.len() == dof * dof {
-            return self.dense(dof, dof);
-        }
-        self.pattern([vec![dof, dof], starts, rows].concat())
+            is_there(program, skipped, row, column)
+        })
     }
 
-    fn find(&self, function: Function) -> Option<&Program> {
+    /// The compressed columns of a square matrix with these elements.
+    pub(super) fn square(&mut self, size: usize, is_there: impl Fn(usize, usize) -> bool) -> String {
+        let (mut starts, mut rows) = (vec![0], Vec::new());
+        for column in 0..size {
+            rows.extend((0..size).filter(|&row| is_there(row, column)));
+            starts.push(rows.len());
+        }
+        if rows.len() == size * size {
+            return self.dense(size, size);
+        }
+        self.pattern([vec![size, size], starts, rows].concat())
+    }
+
+    pub(super) fn find(&self, function: Function) -> Option<&Program> {
         self.file.programs.iter().find(|program| program.function == function)
     }
 
@@ -215,10 +232,13 @@ impl Writer<'_> {
 
     /// A function, and its derivatives if it has any.
     fn interfaces(&mut self, program: &Program) -> Vec<Interface> {
-        let Some((rows, columns)) = shape(&program.layout()) else { return Vec::new() };
         let arrays = inputs(program);
         let given: Vec<(String, String)> =
             arrays.iter().map(|array| (array.name.to_owned(), self.dense(array.elements.len(), 1))).collect();
+        if program.function == Function::EulerStep {
+            return self.of_step(program, &given);
+        }
+        let Some((rows, columns)) = shape(&program.layout()) else { return Vec::new() };
         let result = match program.function {
             Function::ForwardDynamics => "qdd",
             function if function.returns_torques() => "tau",
@@ -228,42 +248,18 @@ impl Writer<'_> {
             },
         };
         let returned = (result.to_owned(), self.dense(rows, columns));
-        let value = Interface {
-            name: program.name.clone(),
-            inputs: given.clone(),
-            outputs: vec![returned.clone()],
-            body: self.value(program, &arrays, columns),
+        let value = self.value(program, &arrays, columns);
+        let Some(derivatives) = self.sources(program) else {
+            return vec![Interface { name: program.name.clone(), inputs: given, outputs: vec![returned], body: value }];
         };
-        let Some(derivatives) = self.sources(program) else { return vec![value] };
-
-        let absent = (format!("out_{result}"), self.pattern([vec![rows, 1], vec![0, 0]].concat()));
-        let named = |start: &str, of: &[(String, String)]| -> Vec<(String, String)> {
-            of.iter().map(|(name, pattern)| (format!("{start}{name}"), pattern.clone())).collect()
-        };
-        let at = [given.clone(), vec![absent]].concat();
         let blocks = self.blocks(&derivatives, false);
-        let jacobian = Interface {
-            name: format!("jac_{}", program.name),
-            inputs: at.clone(),
-            outputs: given
-                .iter()
-                .zip(&blocks)
-                .map(|((by, _), block)| (format!("jac_{result}_{by}"), block.clone()))
-                .collect(),
-            body: self.jacobian(&arrays, &derivatives, &blocks),
+        let bodies = Bodies {
+            value,
+            jacobian: self.jacobian(&arrays, &derivatives, &blocks),
+            forward: self.forward(&arrays, &derivatives),
+            reverse: self.reverse(&arrays, &derivatives),
         };
-        let forward = Interface {
-            name: format!("fwd1_{}", program.name),
-            inputs: [at.clone(), named("fwd_", &given)].concat(),
-            outputs: named("fwd_", std::slice::from_ref(&returned)),
-            body: self.forward(&arrays, &derivatives),
-        };
-        let reverse = Interface {
-            name: format!("adj1_{}", program.name),
-            inputs: [at, named("adj_", &[returned])].concat(),
-            outputs: named("adj_", &given),
-            body: self.reverse(&arrays, &derivatives),
-        };
+        let [value, jacobian, forward, reverse] = self.family(&program.name, &given, &[returned], &blocks, bodies);
         let second = self.second(&reverse, &arrays, &derivatives);
         [value, jacobian, forward, reverse].into_iter().chain(second).collect()
     }
@@ -289,7 +285,7 @@ impl Writer<'_> {
             .iter()
             .map(|&(.., block, is_transposed)| {
                 let program = self.file.programs.iter().find(|program| program.function == Function::TorqueHessian);
-                program.map_or_else(String::new, |program| self.square(program, block * dof * dof, is_transposed))
+                program.map_or_else(String::new, |program| self.block(program, block * dof * dof, is_transposed))
             })
             .collect();
         let mut body = String::new();
@@ -310,27 +306,14 @@ impl Writer<'_> {
         };
         body.push_str(&self.with_matrices(arrays, derivatives, place, put));
         let nothing = self.nothing();
-        let absent = self.pattern([vec![dof, 1], vec![0, 0]].concat());
-        let output = |(of, row): (&(String, String), usize)| {
-            let by = |(column, (by, _)): (usize, &(String, String))| {
-                let place = places.iter().position(|&(i, j, ..)| (i, j) == (row, column));
-                let of_multipliers = (column == count + 1).then(|| of_torques[row].clone());
-                let pattern = place.map(|place| patterns[place].clone()).or(of_multipliers);
-                (format!("jac_{}_{by}", of.0), pattern.unwrap_or_else(|| nothing.clone()))
-            };
-            reverse.inputs.iter().enumerate().map(by).collect::<Vec<_>>()
+        let block = |(row, column): (usize, usize)| {
+            let place = places.iter().position(|&(i, j, ..)| (i, j) == (row, column));
+            let of_multipliers = (column == count + 1).then(|| of_torques[row].clone());
+            place.map(|place| patterns[place].clone()).or(of_multipliers).unwrap_or_else(|| nothing.clone())
         };
-        Some(Interface {
-            name: format!("jac_{}", reverse.name),
-            inputs: reverse
-                .inputs
-                .iter()
-                .cloned()
-                .chain(reverse.outputs.iter().map(|(name, _)| (format!("out_{name}"), absent.clone())))
-                .collect(),
-            outputs: reverse.outputs.iter().zip(0..).flat_map(output).collect(),
-            body,
-        })
+        let blocks: Vec<_> =
+            (0..count).flat_map(|row| (0..columns).map(move |column| (row, column))).map(block).collect();
+        Some(self.jacobian_of(reverse, &blocks, body))
     }
 
     /// The functions of an explicit differential equation as acados has CasADi generate them: x = (q, qd), u = tau, and
@@ -376,7 +359,7 @@ impl Writer<'_> {
                 else {
                     continue;
                 };
-                blocks.push(self.square(program, place * program.dof * program.dof, is_transposed));
+                blocks.push(self.block(program, place * program.dof * program.dof, is_transposed));
             }
         }
         blocks
@@ -475,25 +458,5 @@ impl Writer<'_> {
             let _ = writeln!(text, "    {prefix}_copy(by.{field}, res[{index}]);");
         }
         text
-    }
-
-    /// The tables and the code of a function.
-    fn definition(&self, interface: &Interface) -> String {
-        let Interface { name, inputs, outputs, body } = interface;
-        let prefix = self.file.prefix;
-        let all = || inputs.iter().chain(outputs);
-        let list = |items: Vec<String>| crate::wrap::fill(&items.join(", "), crate::wrap::WIDTH, "    ", "    ");
-        let names = list(all().map(|(name, _)| format!("\"{name}\"")).collect());
-        let patterns = list(all().map(|(_, pattern)| pattern.clone()).collect());
-        let listed = |of: &[(String, String)]| of.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
-        let about = comment("//", &format!("{name}: ({}) -> ({})", listed(inputs), listed(outputs)));
-        format!(
-            "\n{about}static const char *const {prefix}_names_{name}[] = {{\n{names}\n}};\n\
-             static const casadi_int *const {prefix}_patterns_{name}[] = {{\n{patterns}\n}};\n\
-             {prefix}_external({name}, {}, {})\n{{\n    (void)arg;\n    (void)iw;\n    (void)w;\n    (void)mem;\n\
-             {body}    return 0;\n}}\n",
-            inputs.len(),
-            outputs.len()
-        )
     }
 }

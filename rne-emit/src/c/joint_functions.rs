@@ -40,21 +40,36 @@ pub enum NoFriction {
     RunTime(String),
 }
 
-/// The smallest width, rad/s or m/s.
-const NARROWEST: f64 = 1e-9;
-
 impl JointFriction {
+    /// The smallest width, rad/s or m/s.
+    pub const NARROWEST: f64 = 1e-9;
+
     /// The friction of the joints from base to tip.
     ///
     /// # Errors
     /// When no joint has friction, or that of one cannot be computed from its speed alone.
     pub fn of(robot: &Robot) -> Result<Vec<Self>, NoFriction> {
-        let frictions = robot.coordinates().map(|index| Self::of_joint(robot, index, &robot.joints[index]));
-        let frictions: Vec<Self> = frictions.collect::<Result<_, _>>()?;
+        let frictions = Self::about(robot, None)?;
         if frictions.iter().all(|friction| friction.viscous == 0.0 && friction.odd == 0.0) {
             return Err(NoFriction::Nowhere);
         }
         Ok(frictions)
+    }
+
+    /// The friction of the joints from base to tip, zero at a joint that has none. Coulomb friction changes its sign
+    /// about the speed `width`, rad/s or m/s, or about the `coulomb_width` of each joint. A `width` is at least
+    /// [`NARROWEST`](Self::NARROWEST).
+    ///
+    /// # Errors
+    /// When the friction of a joint cannot be computed from its speed alone.
+    pub fn about(robot: &Robot, width: Option<f64>) -> Result<Vec<Self>, NoFriction> {
+        robot.coordinates().map(|index| Self::of_joint(robot, index, &robot.joints[index], width)).collect()
+    }
+
+    /// The numbers viscous, odd, even and width of the law.
+    #[must_use]
+    pub fn numbers(&self) -> [f64; 4] {
+        [self.viscous, self.odd, self.even, self.width]
     }
 
     /// The friction at a speed, N m or N.
@@ -101,7 +116,7 @@ impl JointFriction {
         }
     }
 
-    fn of_joint(robot: &Robot, index: usize, joint: &Joint) -> Result<Self, NoFriction> {
+    fn of_joint(robot: &Robot, index: usize, joint: &Joint, width: Option<f64>) -> Result<Self, NoFriction> {
         let Some(motor) = joint.motor else { return Ok(Self { viscous: 0.0, odd: 0.0, even: 0.0, width: 1.0 }) };
         let name = || joint.name.clone();
         let entries = [
@@ -115,11 +130,13 @@ impl JointFriction {
         }
         let ratio = motor.gear_ratio.abs();
         let [forward, backward] = motor.coulomb.map(|friction| ratio * friction);
-        let width = match joint.coulomb_width {
+        let width = match width.or(joint.coulomb_width) {
             _ if forward == 0.0 && backward == 0.0 => 1.0,
-            _ if joint.coulomb_displacement.is_some() => return Err(NoFriction::Displacement(name())),
+            _ if width.is_none() && joint.coulomb_displacement.is_some() => {
+                return Err(NoFriction::Displacement(name()));
+            }
             None => return Err(NoFriction::NoWidth(name())),
-            Some(width) if width < NARROWEST => return Err(NoFriction::NarrowWidth(name(), width)),
+            Some(width) if width < Self::NARROWEST => return Err(NoFriction::NarrowWidth(name(), width)),
             Some(width) => width,
         };
         let viscous = ratio * ratio * motor.viscous;
@@ -139,11 +156,14 @@ impl fmt::Display for NoFriction {
                 "the joint {joint} has Coulomb friction without `coulomb_width`; write the speed about which the \
                  friction changes its sign in `motor` of the joint, for example `coulomb_width: 0.02` (rad/s or m/s)"
             ),
-            Self::NarrowWidth(joint, width) => write!(
-                f,
-                "the joint {joint} has `coulomb_width: {width}`; the smallest width for this function is {NARROWEST:e} \
-                 rad/s or m/s"
-            ),
+            Self::NarrowWidth(joint, width) => {
+                let narrowest = JointFriction::NARROWEST;
+                write!(
+                    f,
+                    "the joint {joint} has `coulomb_width: {width}`; the smallest width for this function is \
+                     {narrowest:e} rad/s or m/s"
+                )
+            }
             Self::Displacement(joint) => write!(
                 f,
                 "the joint {joint} has `coulomb_displacement`: its friction depends on the way since the last \

@@ -1,6 +1,8 @@
 //! Programs as C99 without a library: a header that documents the functions, and the source.
 
 mod casadi;
+mod casadi_interface;
+mod casadi_step;
 pub(crate) mod header;
 mod joint_functions;
 mod motors;

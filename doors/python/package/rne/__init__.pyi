@@ -457,6 +457,20 @@ class Arm:
         payload: ArrayLike | None = ..., parameters: Parameters = ...,
     ) -> tuple[Floats, Floats]:
         """Derivatives of `runge_kutta_step` by q, by q̇ and by τ: the linear model δx' = A δx + B δτ with x = (q, q̇)."""
+    def floating_runge_kutta_step(
+        self, q: Joints, qd: Joints, tau: Joints, pose: ArrayLike, twist: ArrayLike, step: ArrayLike,
+        wrenches: ArrayLike | dict[str, ArrayLike] | None = ..., *, steps: int = ..., parameters: Parameters = ...,
+    ) -> tuple[Floats, Floats, Floats, Floats]:
+        """The state after steps of the classical Runge-Kutta method where nothing holds the base."""
+    def floating_runge_kutta_step_derivatives(
+        self, q: Joints, qd: Joints, tau: Joints, pose: ArrayLike, twist: ArrayLike, step: ArrayLike,
+        wrenches: ArrayLike | dict[str, ArrayLike] | None = ..., *, steps: int = ..., parameters: Parameters = ...,
+    ) -> tuple[Floats, Floats]:
+        """Derivatives of `floating_runge_kutta_step` by positions, velocities and τ: the linear model of its steps."""
+    def friction_torques(self, qd: Joints, *, width: float | None = ...) -> Floats:
+        """Friction of the joints at velocities: viscous, and Coulomb's with a smooth change of sign."""
+    def friction_derivatives(self, qd: Joints, *, width: float | None = ...) -> Floats:
+        """Derivatives of `friction_torques`: of the friction of each joint by its velocity."""
     @property
     def passive_joints(self) -> list[str]:
         """The names of the dependent joints of closed loops, in the order of `passive`."""

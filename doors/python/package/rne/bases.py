@@ -62,9 +62,9 @@ def derivatives_to_pinocchio(derivatives, mass, q, v, *, gravity=_GRAVITY):
     x, y, z, w = np.moveaxis(q[..., 3:7], -1, 0)
     gravity = _in_base((w, x, y, z), gravity)
     # Pinocchio holds gravity in world axes, and its spatial acceleration a - ω × v
-    turned = -linear @ _skew(gravity)
+    turned = -linear @ skew(gravity)
     by_q = np.concatenate([np.zeros_like(turned), turned, dq], axis=-1)
-    by_linear, by_angular = linear @ _skew(v[..., 3:6]), domega - linear @ _skew(v[..., :3])
+    by_linear, by_angular = linear @ skew(v[..., 3:6]), domega - linear @ skew(v[..., :3])
     return by_q, np.concatenate([by_linear, by_angular, dqd], axis=-1)
 
 
@@ -82,9 +82,9 @@ def base_from_mujoco(qpos, qvel, qacc, *, gravity=_GRAVITY):
     return _told(qvel[..., 3:6], qacc[..., 3:6], _in_base(turn, qacc[..., :3]), _in_base(turn, gravity))
 
 
-def _skew(vector):
+def skew(vector):
     """The matrix of the cross product with a vector."""
-    return np.cross(vector[..., None, :], np.eye(3)).swapaxes(-1, -2)
+    return np.cross(vector[..., None, :], np.eye(3, dtype=vector.dtype)).swapaxes(-1, -2)
 
 
 def _in_base(quaternion, vector):

@@ -2,16 +2,20 @@
 
 import numpy
 
-from .names import in_order, of_number
+from .names import have_one_count, of_joints, of_number
 
 
-def _given(arm, q, qd, tau, step, steps):
-    """Arrays of the joints and of the duration, with a last axis."""
+def given(arm, q, qd, tau, step, steps, **more):
+    """The arguments of a step as arrays: of the joints, of more vectors, and of the duration, which has a last axis."""
     if steps < 1:
         raise ValueError(f"`steps` is {steps}; it is the number of steps, 1 or more")
-    named = [(q, "q"), (qd, "qd"), (tau, "tau")]
-    joints = [in_order(one, arm.joints, name, "joint") if isinstance(one, dict) else one for one, name in named]
-    return *map(numpy.asarray, joints), numpy.asarray(of_number(step, "step"))
+    joints = {"q": q, "qd": qd, "tau": tau}
+    vectors = {name: of_joints(arm, numbers, name) for name, numbers in joints.items()} | more
+    step = of_number(step, "step")
+    if not isinstance(step, numpy.ndarray):
+        step = numpy.array(step, dtype=numpy.result_type(*vectors.values()))
+    have_one_count({**vectors, "step": step})
+    return *vectors.values(), step
 
 
 def _stages(accelerations, q, qd, step):
@@ -37,34 +41,35 @@ def _step(accelerations, q, qd, step):
     return (q + step * (qd + sixth * mean), qd + sixth * rates), states
 
 
-def _keywords(payload, parameters):
-    given = {"payload": payload, "parameters": parameters}
-    return {name: value for name, value in given.items() if value is not None}
+def keywords(payload, parameters):
+    """Arguments that are not None, by their names."""
+    asked = {"payload": payload, "parameters": parameters}
+    return {name: value for name, value in asked.items() if value is not None}
 
 
 def runge_kutta_step(arm, q, qd, tau, step, steps, payload, parameters):
     """As `Arm.runge_kutta_step`."""
-    q, qd, tau, step = _given(arm, q, qd, tau, step, steps)
-    keywords = _keywords(payload, parameters)
+    q, qd, tau, step = given(arm, q, qd, tau, step, steps)
+    options = keywords(payload, parameters)
     for _ in range(steps):
-        (q, qd), _ = _step(lambda q, qd: arm.forward_dynamics(q, qd, tau, **keywords), q, qd, step)
+        (q, qd), _ = _step(lambda q, qd: arm.forward_dynamics(q, qd, tau, **options), q, qd, step)
     return q, qd
 
 
 def runge_kutta_step_derivatives(arm, q, qd, tau, step, steps, payload, parameters):
     """As `Arm.runge_kutta_step_derivatives`."""
-    q, qd, tau, step = _given(arm, q, qd, tau, step, steps)
-    keywords, n = _keywords(payload, parameters), arm.dof
+    q, qd, tau, step = given(arm, q, qd, tau, step, steps)
+    options, n = keywords(payload, parameters), arm.dof
     by_x, by_u = numpy.eye(2 * n), numpy.zeros((2 * n, n))
     # rows of positions and of velocities, columns of q, qd and tau
     still = numpy.hstack([numpy.zeros((n, n)), numpy.eye(n), numpy.zeros((n, n))])
     start = numpy.hstack([numpy.eye(n), numpy.zeros((n, 2 * n))])
     h = step[..., None]
     for _ in range(steps):
-        (next_q, next_qd), states = _step(lambda q, qd: arm.forward_dynamics(q, qd, tau, **keywords), q, qd, step)
+        (next_q, next_qd), states = _step(lambda q, qd: arm.forward_dynamics(q, qd, tau, **options), q, qd, step)
         moved, changes = (start, still), []
         for state, duration in zip(states, (0.5 * h, 0.5 * h, h, h)):
-            dq, dqd, dtau = arm.forward_dynamics_derivatives(*state, tau, **keywords)
+            dq, dqd, dtau = arm.forward_dynamics_derivatives(*state, tau, **options)
             change = dq @ moved[0] + dqd @ moved[1]
             change[..., 2 * n :] += dtau
             changes.append(change)

@@ -94,6 +94,38 @@ def of_number(number, argument):
     return array if array.ndim == 2 and hasattr(number, "dtype") else array.tolist()
 
 
+def of_vector(vector, length, argument):
+    """Numbers of one state or of many, as an array of shape (length,) or (N, length) of single or double precision."""
+    try:
+        array = numpy.ma.asanyarray(vector)
+    except ValueError:
+        array = numpy.ma.asanyarray(None)  # rows of different lengths
+    if array.dtype.kind not in "fiub":
+        raise TypeError(f"`{argument}` is not an array of real numbers")
+    if numpy.ma.is_masked(array):
+        raise ValueError(f"`{argument}`: there are masked elements, which are not numbers: drop or fill them before")
+    if array.ndim not in (1, 2) or array.shape[-1] != length:
+        raise ValueError(f"`{argument}` has the shape {array.shape}; it is ({length},) for one state or (N, {length}) for many")
+    array = numpy.asarray(array)
+    return array if array.dtype == numpy.float32 else array.astype(float)
+
+
+def of_joints(arm, values, argument):
+    """Numbers of the joints of an arm, an array or a dict by their names, as an array of shape (n,) or (N, n)."""
+    if isinstance(values, dict):
+        values = in_order(values, arm.joints, argument, "joint")
+    return of_vector(values, arm.dof, argument)
+
+
+def have_one_count(arrays):
+    """Refuses arrays (N, …) of different numbers of states; one of a single state serves all."""
+    counts = {name: len(array) for name, array in arrays.items() if array.ndim == 2 and len(array) != 1}
+    for name, count in counts.items():
+        for other, expected in counts.items():
+            if count != expected:
+                raise ValueError(f"`{other}` has {expected} states, but `{name}` has {count}")
+
+
 def rows(array, shape, argument, known, follows):
     """Rows of numbers, or those of N states, one after the other; lists follow the precision of other arguments."""
     if array.dtype.kind not in "fiub":
