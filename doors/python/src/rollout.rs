@@ -17,7 +17,7 @@ use crate::functions::arguments;
 
 #[pymethods]
 impl Arm {
-    /// States of N samples after each of T steps under torques, by semi-implicit Euler.
+    /// States of N samples after each of T steps under torques, by semi-implicit Euler. A floating base does not move.
     ///
     /// For predictive control by sampling, such as MPPI. A step takes q, qd and a torque to the next state. It does
     /// this, in this order:
