@@ -2,7 +2,7 @@
 //! derivatives of the accelerations against those of the torques.
 
 use rne_codegen::plan::{Formulation, Reference};
-use rne_codegen::{ExactFunction, Function, Name, Quantity, Residue};
+use rne_codegen::{Compiler, ExactFunction, Form, Function, Name, Quantity, Residue};
 use rne_model::{Reader, Robot};
 
 fn robots() -> impl Iterator<Item = Robot> {
@@ -118,4 +118,19 @@ fn derivatives_at_solved_accelerations_do_not_fold_by_what_is_solved() {
         let proof = reference.proof(function, Formulation::numbered(&robot, function));
         assert!(proof.is_ok(), "{}, {function}: {proof:?}", robot.name);
     }
+}
+
+/// A value inside a statement gets its name from a later statement in this robot, whose rotor turns with one joint.
+#[test]
+fn a_value_may_get_its_name_behind_the_statement_that_has_it() {
+    let yaml = "format: 2\nname: rotor\nsource: x\nconvention: modified\ngravity: [0, 0, 0]\njoints:\n\
+        - {name: j1, type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: 0}}\n\
+        - {name: j2, type: revolute, at: {rpy: [1, 0, 0]}, dh: {theta: 0, d: 0, a: 0, alpha: 0}}\n\
+        - {name: j3, type: revolute, dh: {theta: 0, d: 0, a: 1, alpha: 0}, link: {mass: 1, first_moment: [0, 1, 0]}}\n\
+        motors:\n- {turns: {j3: 1}, rotor: {axis: [1, 0, 1], inertia: 1}}\n";
+    let read = Reader::new("rotor").trees().couplings().read(yaml.as_bytes());
+    let robot = read.unwrap_or_else(|report| panic!("{report}")).robot;
+    let program = Compiler::new(&robot).compile(Function::ForwardDynamicsDerivatives, Form::Reduced);
+    let program = program.unwrap_or_else(|error| panic!("{error}"));
+    assert!(program.proof.is_some(), "{:?}", program.refusals);
 }
