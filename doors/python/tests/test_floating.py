@@ -32,7 +32,8 @@ def times(matrices, vectors):
 
 def poses():
     pose = np.tile(np.eye(4), (N, 1, 1))
-    pose[:, :3, :3] = np.linalg.qr(random.normal(size=(N, 3, 3)))[0]
+    turn = np.linalg.qr(random.normal(size=(N, 3, 3)))[0]
+    pose[:, :3, :3] = turn * np.linalg.det(turn)[:, None, None]
     pose[:, :3, 3] = random.normal(size=(N, 3))
     return pose
 

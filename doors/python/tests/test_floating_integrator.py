@@ -11,7 +11,6 @@ import rne
 N, DOF = q.shape
 FOLDER = Path(__file__).parents[3] / "tests/functions/floating"
 POSE = poses()
-POSE[:, :3, :3] *= np.linalg.det(POSE[:, :3, :3])[:, None, None]
 GIVEN = (q, qd, tau, POSE, TWIST)
 TIP = np.random.default_rng(9).normal(size=(N, 1, 6))
 
@@ -197,3 +196,17 @@ def test_mistakes_are_told():
     singular = rne.robots.planar2.floating_runge_kutta_step_derivatives
     with pytest.raises(ValueError, match="the mass matrix is singular"):
         singular([0, 0], [0, 0], [0, 0], np.eye(4), [0] * 6, 0.01)
+
+
+def test_a_matrix_that_is_no_pose_is_refused():
+    twice, mirrored, row = (np.eye(4) for _ in range(3))
+    twice[:3, :3] *= 2
+    mirrored[2, 2] = -1
+    row[3, 0] = 1
+    for pose, words in ((twice, "no rigid pose"), (mirrored, "right-handed"), (row, "last row")):
+        for name in ("floating_euler_step", "floating_runge_kutta_step", "floating_runge_kutta_step_derivatives"):
+            with pytest.raises(ValueError, match=words):
+                getattr(ARM, name)(*of_state(0)[:3], pose, TWIST[0], 0.01)
+    unknown = np.where(np.eye(4) == 1, np.nan, 0)
+    unknown[3, 3] = 1
+    assert np.isnan(ARM.floating_runge_kutta_step(*of_state(0)[:3], unknown, TWIST[0], 0.01)[0]).any()

@@ -42,11 +42,25 @@ def in_order(values, names, argument, kind):
 
 
 def of_pose(pose, argument):
-    """Homogeneous matrices, (4, 4) or (N, 4, 4), as arrays of twelve numbers: rows of the rotation, then the origin."""
+    """Homogeneous matrices, (4, 4) or (N, 4, 4), as arrays of twelve numbers: rows of the rotation, then the origin.
+
+    Rotations are checked to 1e-4, as single precision has them. A matrix with a NaN passes: its results are NaN.
+    """
     array = numpy.ma.asanyarray(pose)
     if array.ndim not in (2, 3) or array.shape[-2:] != (4, 4):
         raise ValueError(f"`{argument}`: a pose has the shape (4, 4) or (N, 4, 4), not {array.shape}")
-    numbers = (array[..., :3, :3].reshape(*array.shape[:-2], 9), array[..., :3, 3])
+    rotation = array[..., :3, :3]
+    if rotation.dtype.kind in "fiu":
+        x, y, z = (rotation[..., row, :].astype(float) for row in range(3))
+        errors = [(x * x).sum(-1) - 1, (y * y).sum(-1) - 1, (x * y).sum(-1), *numpy.moveaxis(z - numpy.cross(x, y), -1, 0)]
+        if numpy.any([numpy.abs(error) > 1e-4 for error in errors]):
+            raise ValueError(
+                f"`{argument}` is no rigid pose: the three rows of its rotation must have the length 1, be at right angles "
+                "to each other, and be right-handed"
+            )
+        if numpy.any(numpy.abs(array[..., 3, :].astype(float) - [0, 0, 0, 1]) > 1e-4):
+            raise ValueError(f"`{argument}` is no homogeneous matrix: its last row must be 0, 0, 0, 1")
+    numbers = (rotation.reshape(*array.shape[:-2], 9), array[..., :3, 3])
     numbers = numpy.ma.concatenate(numbers, axis=-1)
     return numbers if numpy.ma.is_masked(array) else numpy.asarray(numbers)
 
