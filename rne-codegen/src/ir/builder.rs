@@ -217,10 +217,19 @@ impl Builder {
         Some(Vector([x?, y?, z?]))
     }
 
-    /// Has arguments stand for the accelerations that were solved for until the graph is finished. Derivatives hold
-    /// them, so formulas must not fold by what they are: at these accelerations, torques are those that were given.
+    /// The nodes of accelerations that were solved for: derivatives of the torques do not follow them.
+    pub(super) fn held(&self) -> Vec<usize> {
+        self.solved.borrow().values().map(|at| at.index()).collect()
+    }
+
+    /// Where formulas fold by value, has arguments stand for the accelerations that were solved for until the graph is
+    /// finished. Derivatives hold them, so formulas must not fold by what they are: at these accelerations, torques are
+    /// those that were given.
     pub(crate) fn hold_accelerations(&self) {
         let mut graph = self.graph.borrow_mut();
+        if graph.policy() == Policy::Structure {
+            return;
+        }
         for (&name, at) in self.solved.borrow_mut().iter_mut() {
             if !graph.is_constant(*at) {
                 let argument = graph.input(Input::new(name));

@@ -10,6 +10,8 @@ struct Formulas {
     births: Vec<Option<Birth>>,
     definitions: FxHashMap<usize, Vec<Definition>>,
     live: Vec<bool>,
+    /// Nodes that do not change.
+    held: Vec<usize>,
 }
 
 impl Builder {
@@ -33,17 +35,17 @@ impl Builder {
             graph.nodes().map(|(_, op)| op).collect()
         };
         // what derivatives add to the graph is none of what they are derivatives of
-        let formulas = Formulas { ops, births, definitions, live };
+        let formulas = Formulas { ops, births, definitions, live, held: self.held() };
         by.map(|by| self.derivatives_of(&formulas, of, by)).collect()
     }
 
     fn derivatives_of<'s>(&'s self, formulas: &Formulas, of: &[Symbol<'s>], by: WithRespectTo) -> Vec<Symbol<'s>> {
-        let Formulas { ops, births, definitions, live } = formulas;
+        let Formulas { ops, births, definitions, live, held } = formulas;
         let variable = Input::new(by.variable());
         let symbol = |at: Ref| self.symbol(at);
         let (zero, one) = (self.constant(0.0, Cause::Arithmetic), self.one());
         let mut rates: Vec<Symbol<'s>> = vec![zero; ops.len()];
-        for (index, op) in ops.iter().enumerate().filter(|(index, _)| live[*index]) {
+        for (index, op) in ops.iter().enumerate().filter(|(index, _)| live[*index] && !held.contains(index)) {
             if let Op::Input(input) = op {
                 rates[index] = if *input == variable { one } else { zero };
                 continue;

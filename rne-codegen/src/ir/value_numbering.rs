@@ -41,9 +41,6 @@ impl Traced {
             definition.at = definition.at.mapped(&map);
             definition.after = lengths.get(definition.after).copied().unwrap_or(graph.len());
         }
-        if let Some(terms) = &mut trace.terms {
-            terms.map_nodes(|at| at.mapped(&map));
-        }
         (trace.births, trace.roles) = (births, roles);
         Self { graph, trace }
     }

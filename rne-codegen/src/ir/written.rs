@@ -58,15 +58,6 @@ impl WrittenTerms {
         TermId(u32::try_from(self.0.len()).unwrap_or_default())
     }
 
-    /// The nodes have become others.
-    pub(crate) fn map_nodes(&mut self, map: impl Fn(Ref) -> Ref) {
-        for term in &mut self.0 {
-            if let Written::Node(at, _) | Written::Operation { at, .. } = term {
-                *at = map(*at);
-            }
-        }
-    }
-
     /// The term; `None` for [`TermId::NONE`].
     pub(crate) fn get(&self, id: TermId) -> Option<Written> {
         self.0.get((id.0 as usize).checked_sub(1)?).copied()
