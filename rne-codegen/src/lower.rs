@@ -68,8 +68,7 @@ pub(crate) fn lower(
     }
     let angles = of_angles.iter().map(|definition| writing.statement(definition)).collect();
     let sines_and_cosines = writing.sines_and_cosines();
-    let mut statements: Vec<_> = definitions.iter().map(|definition| writing.statement(definition)).collect();
-    cells::settle(&writing.values, &mut statements, &sines_and_cosines);
+    let statements = definitions.iter().map(|definition| writing.statement(definition)).collect();
     let outputs = returned.iter().map(|(name, value)| writing.output(*name, value)).collect();
     let resolutions = lowering.resolutions(&definitions.iter().map(|definition| definition.name).collect());
     let program = Program {
@@ -100,8 +99,9 @@ pub(crate) fn lower(
         proof: None,
         refusals: Vec::new(),
     };
-    let program = program.in_written_order();
+    let mut program = program.in_written_order();
     program.check_names()?;
+    cells::settle(&program.values, &mut program.statements, &program.sines_and_cosines);
     Ok((program, exactly))
 }
 
@@ -215,6 +215,13 @@ impl<'w> Lowering<'w> {
                     }
                 }
                 _ => {}
+            }
+        }
+        // a quantity that is written twice, with two values: the second one is called as what has no name is
+        let mut taken = FxHashSet::default();
+        for (given, _) in self.names.iter_mut().zip(&self.uses).filter(|(_, uses)| **uses > 0) {
+            if given.is_some_and(|given| !taken.insert(given.name)) {
+                *given = None;
             }
         }
     }

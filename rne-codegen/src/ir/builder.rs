@@ -40,8 +40,6 @@ pub(crate) struct Builder {
     of_loops: RefCell<(Vec<Vec<Ref>>, Vec<Ref>)>,
     /// The accelerations that were solved for, by name, where a function goes on with them.
     solved: RefCell<FxHashMap<Name, Ref>>,
-    /// Arguments that stand for them, and what was solved for.
-    held: RefCell<FxHashMap<Ref, Ref>>,
 }
 
 impl Builder {
@@ -68,7 +66,6 @@ impl Builder {
             is_unnamed: Cell::default(),
             of_loops: RefCell::default(),
             solved: RefCell::default(),
-            held: RefCell::default(),
         }
     }
 
@@ -82,7 +79,6 @@ impl Builder {
         self.graph.get_mut().clear(embedding);
         self.of_loops.take();
         self.solved.take();
-        self.held.take();
     }
 
     fn embedding(&self) -> Embedding {
@@ -222,18 +218,16 @@ impl Builder {
         self.solved.borrow().values().map(|at| at.index()).collect()
     }
 
-    /// Where formulas fold by value, has arguments stand for the accelerations that were solved for until the graph is
-    /// finished. Derivatives hold them, so formulas must not fold by what they are: at these accelerations, torques are
+    /// Where formulas fold by value, has arguments stand for the accelerations that were solved for until the values are
+    /// numbered. Derivatives hold them, so formulas must not fold by what they are: at these accelerations, torques are
     /// those that were given.
     pub(crate) fn hold_accelerations(&self) {
         let mut graph = self.graph.borrow_mut();
-        if graph.policy() == Policy::Structure {
-            return;
-        }
+        let Some(trace) = self.trace.as_ref().filter(|_| graph.policy() == Policy::Value) else { return };
         for (&name, at) in self.solved.borrow_mut().iter_mut() {
             if !graph.is_constant(*at) {
                 let argument = graph.input(Input::new(name));
-                self.held.borrow_mut().insert(argument, std::mem::replace(at, argument));
+                trace.borrow_mut().held.push((argument, std::mem::replace(at, argument)));
             }
         }
     }
@@ -438,8 +432,7 @@ impl Builder {
         graph.outputs = outputs;
         let mut trace = self.trace.map(RefCell::into_inner).unwrap_or_default();
         trace.births.resize_with(graph.len(), || None);
-        let (traced, held) = (Traced { graph, trace }, self.held.into_inner());
-        if held.is_empty() { traced } else { traced.with_values(&held) }
+        Traced { graph, trace }
     }
 }
 

@@ -40,6 +40,8 @@ pub(crate) struct Trace {
     /// As what a constant entered a node: (node, constant) → its name there.
     pub(crate) roles: FxHashMap<(Ref, Ref), Name>,
     pub(crate) causes: KnownCauses,
+    /// Arguments that stand for values that derivatives hold, each with its value.
+    pub(super) held: Vec<(Ref, Ref)>,
     /// The formulas as they were written, if they are kept.
     pub(crate) terms: Option<WrittenTerms>,
     place: Option<Place>,

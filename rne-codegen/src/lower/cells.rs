@@ -30,9 +30,7 @@ pub(super) fn settle(values: &Values, statements: &mut [Statement], turns: &[Sin
         statements.iter().map(|statement| values.defined(statement.value).names().collect()).collect();
     let mut is_early: Vec<bool> = Vec::with_capacity(statements.len());
     for names in &used {
-        // a part of a statement may get its name from one that stands behind it
-        let is_early_at = |&at: &usize| is_early.get(at).is_some_and(|is| *is);
-        let is_known = |name: &Name| !turned.contains_key(name) && index.get(name).is_none_or(is_early_at);
+        let is_known = |name: &Name| !turned.contains_key(name) && index.get(name).is_none_or(|&at| is_early[at]);
         let is = names.iter().all(is_known);
         is_early.push(is);
     }
