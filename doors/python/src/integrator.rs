@@ -20,7 +20,7 @@ impl Arm {
         qd: &Bound<'py, PyAny>,
         tau: &Bound<'py, PyAny>,
         step: &Bound<'py, PyAny>,
-        steps: usize,
+        steps: i64,
         payload: Option<&Bound<'py, PyAny>>,
         parameters: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -41,7 +41,7 @@ impl Arm {
         qd: &Bound<'py, PyAny>,
         tau: &Bound<'py, PyAny>,
         step: &Bound<'py, PyAny>,
-        steps: usize,
+        steps: i64,
         payload: Option<&Bound<'py, PyAny>>,
         parameters: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -70,7 +70,7 @@ impl Arm {
         twist: &Bound<'py, PyAny>,
         step: &Bound<'py, PyAny>,
         wrenches: Option<&Bound<'py, PyAny>>,
-        steps: usize,
+        steps: i64,
         parameters: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let arguments = (slf, q, qd, tau, pose, twist, step, wrenches, steps, parameters);
@@ -96,7 +96,7 @@ impl Arm {
         twist: &Bound<'py, PyAny>,
         step: &Bound<'py, PyAny>,
         wrenches: Option<&Bound<'py, PyAny>>,
-        steps: usize,
+        steps: i64,
         parameters: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let arguments = (slf, q, qd, tau, pose, twist, step, wrenches, steps, parameters);

@@ -79,6 +79,14 @@ def test_states_names_and_precisions():
     assert not rne.load(robot("", "")).friction_torques([1.0, 2.0]).any()
 
 
+def test_squares_of_fast_joints_do_not_overflow():
+    arm = rne.load(robot("motor: {coulomb: [3, -2], coulomb_width: 0.02}"))
+    for speed in (1e200, -1e200, np.float32(1e25)):
+        qd = np.array([speed])
+        assert arm.friction_torques(qd)[0] == pytest.approx(3 if speed > 0 else -2)
+        assert arm.friction_derivatives(qd)[0] == pytest.approx(0)
+
+
 def test_mistakes_are_told():
     for function in (ARM.friction_torques, ARM.friction_derivatives):
         with pytest.raises(ValueError, match=r"`qd` has the shape \(2,\); it is \(3,\)"):

@@ -91,8 +91,9 @@ def test_the_error_is_of_fourth_order():
 def test_mistakes_are_told():
     arm = rne.robots.planar2
     zeros = [0.0, 0.0]
-    with pytest.raises(ValueError, match="`steps` is 0"):
-        arm.runge_kutta_step(zeros, zeros, zeros, 0.01, steps=0)
+    for steps in (0, -1):
+        with pytest.raises(ValueError, match=f"`steps` is {steps}"):
+            arm.runge_kutta_step(zeros, zeros, zeros, 0.01, steps=steps)
     for of in (arm.euler_step, arm.runge_kutta_step):
         with pytest.raises(TypeError, match="`step` is not a real number"):
             of(zeros, zeros, zeros, "long")

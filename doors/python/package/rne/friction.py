@@ -6,10 +6,10 @@ from .names import of_joints
 
 
 def _law(arm, qd, numbers):
-    """The velocities, 1 / √(qd² + width²), and the numbers in their precision."""
+    """The velocities, 1 / √(qd² + width²), whose squares may be too large, and the numbers in their precision."""
     qd = of_joints(arm, qd, "qd")
     viscous, odd, even, width = numpy.array(numbers, dtype=qd.dtype).reshape(-1, 4).T
-    return qd, 1 / numpy.sqrt(qd * qd + width * width), viscous, odd, even, width
+    return qd, 1 / numpy.hypot(qd, width), viscous, odd, even, width
 
 
 def torques(arm, qd, numbers):
