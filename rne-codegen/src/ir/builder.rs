@@ -218,9 +218,9 @@ impl Builder {
         self.solved.borrow().values().map(|at| at.index()).collect()
     }
 
-    /// Where formulas fold by value, has arguments stand for the accelerations that were solved for until the values are
-    /// numbered. Derivatives hold them, so formulas must not fold by what they are: at these accelerations, torques are
-    /// those that were given.
+    /// Where formulas fold by value, has arguments stand for the accelerations that were solved for, until the values
+    /// are numbered. Derivatives hold these accelerations, so formulas must not fold by what they are: at these
+    /// accelerations, torques are those that were given.
     pub(crate) fn hold_accelerations(&self) {
         let mut graph = self.graph.borrow_mut();
         let Some(trace) = self.trace.as_ref().filter(|_| graph.policy() == Policy::Value) else { return };

@@ -10,8 +10,8 @@ pub(crate) fn number_values(from: &Graph, to: &mut Graph, live: &mut Vec<bool>, 
 }
 
 impl Traced {
-    /// Numbers the values of a graph and its trace: a name stays with its value, wherever that is computed now. What was
-    /// held becomes what it stands for.
+    /// Numbers the values of a graph and its trace: a name stays with its value, wherever that is computed now. A value
+    /// takes the place of the argument that stands for it.
     pub(crate) fn numbered(self) -> Self {
         let Self { graph, trace: told } = self;
         let mut numbered = Graph::new(Policy::Numbered, graph.embedding());
