@@ -31,6 +31,7 @@ pub(crate) fn explained(error: &clap::Error, words: &[String]) -> Option<(String
         let is_stray = error.kind() == ErrorKind::UnknownArgument;
         is_stray.then(|| refused(command, words).or_else(|| of_others(&grammar, command, error))).flatten()
     });
+    let text = text.or_else(|| needed_by_another(command, error, words));
     let text = text.or_else(|| missing_or_too_many(command, error))?;
     Some((format!("rne {name}"), Failure::usage(text)))
 }
@@ -215,19 +216,39 @@ fn example(command: &Command) -> Option<String> {
     Some(line.split("  ").next().unwrap_or(line).to_owned())
 }
 
+/// Names as they are typed.
+fn joined(names: &[String]) -> String {
+    let names: Vec<String> = names.iter().map(|name| format!("{TYPED}{name}{TYPED:#}")).collect();
+    names.join(" and ")
+}
+
+/// An option that needs another one which is missing: without the first, the parser does not miss the second.
+fn needed_by_another(command: &Command, error: &clap::Error, words: &[String]) -> Option<String> {
+    let missing = |error: &clap::Error| match (error.kind(), error.get(ContextKind::InvalidArg)) {
+        (ErrorKind::MissingRequiredArgument, Some(ContextValue::Strings(missing))) => Some(missing.clone()),
+        _ => None,
+    };
+    let names = missing(error).filter(|names| names.iter().all(|name| name.starts_with('-')))?;
+    let is_needless = |start: usize, count: usize| {
+        let rest = words[..start].iter().chain(&words[start + count..]).cloned();
+        let line = std::iter::once(command.get_name().to_owned()).chain(rest);
+        command.clone().try_get_matches_from(line).err().as_ref().and_then(missing).as_ref() != Some(&names)
+    };
+    let needing = words.iter().enumerate().find_map(|(index, word)| {
+        let (arg, value) = option(command, word)?;
+        let count = 1 + usize::from(takes_value(arg) && value.is_none() && index + 1 < words.len());
+        is_needless(index, count).then(|| format!("--{}", arg.get_long().unwrap_or_default()))
+    })?;
+    Some(format!("{TYPED}{needing}{TYPED:#} needs {}; give both, or neither", joined(&names)))
+}
+
 /// Arguments that are missing, and words that no argument takes, where the parser proposes nothing: with an example.
 fn missing_or_too_many(command: &Command, error: &clap::Error) -> Option<String> {
     let name = command.get_name();
     let example = format!("for example {TYPED}{}{TYPED:#}", example(command)?);
     match (error.kind(), error.get(ContextKind::InvalidArg)?) {
         (ErrorKind::MissingRequiredArgument, ContextValue::Strings(missing)) => {
-            let names: Vec<String> = missing.iter().map(|name| format!("{TYPED}{name}{TYPED:#}")).collect();
-            let is_of_others = missing.iter().all(|name| name.starts_with('-'));
-            Some(if is_of_others {
-                format!("an option that is given needs {}, too", names.join(" and "))
-            } else {
-                format!("{TYPED}rne {name}{TYPED:#} needs {}; {example}", names.join(" and "))
-            })
+            Some(format!("{TYPED}rne {name}{TYPED:#} needs {}; {example}", joined(missing)))
         }
         (ErrorKind::UnknownArgument, ContextValue::String(word)) if error.get(ContextKind::SuggestedArg).is_none() => {
             Some(if word.starts_with('-') {
@@ -364,6 +385,8 @@ mod tests {
             assert!(stray.starts_with("error: the argument `more` is one too many for rne e"), "{stray}");
         }
         let needed = said("emit planar2 --lang c --acados").expect("refused");
-        assert_eq!(needed, "error: an option that is given needs --casadi, too");
+        assert_eq!(needed, "error: --acados needs --casadi; give both, or neither");
+        let needed = said("emit planar2 --names --force --lang c").expect("refused");
+        assert_eq!(needed, "error: --force needs --output <OUT>; give both, or neither");
     }
 }

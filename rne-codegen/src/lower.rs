@@ -17,6 +17,7 @@ use crate::ir::derivation;
 use crate::ir::{ExactAngle, Exactly, Indices, Name, Number, Op, Operation, Place, Quantity, Ref, Sign, Step, Traced};
 use crate::program::{Constant, Program, Resolution, ResolvedAs};
 use crate::reduced::Algorithm;
+use crate::registers::Order;
 use crate::values::{Value, Values};
 
 /// Where a statement stands: the index of its node, and an order among those that stand behind one node.
@@ -94,6 +95,7 @@ pub(crate) fn lower(
         fold_report: written.trace.fold_report,
         algorithm: Algorithm::default(),
         is_rewritten: false,
+        order: Order::Formulas,
         scales: Vec::new(),
         choices: Vec::new(),
         proof: None,

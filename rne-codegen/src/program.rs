@@ -11,6 +11,7 @@ use crate::function::{Form, Function, Layout, Sizes};
 use crate::ir::{Causes, FoldReport, Name, Operator, Place, Sign};
 use crate::reduced::{Algorithm, JointFrame, Parameters};
 use crate::refusal::Refusal;
+use crate::registers::Order;
 use crate::values::{Value, ValueId, Values};
 
 /// A function of one robot as straight-line code.
@@ -62,6 +63,8 @@ pub struct Program {
     pub algorithm: Algorithm,
     /// Whether the graph of its formulas was made smaller by algebra: it resembles no recursion any more.
     pub is_rewritten: bool,
+    /// The order of its statements.
+    pub order: Order,
     /// The factors of lengths and forces, where the code measures them in units of the arm.
     pub scales: Vec<Scales>,
     /// The choices of a program that is not the seven steps, one line each.
@@ -320,6 +323,12 @@ impl Program {
     /// Whether it is written by composite or articulated bodies.
     pub const fn is_of_bodies(&self) -> bool {
         matches!(self.algorithm, Algorithm::Crba(_) | Algorithm::Aba(_))
+    }
+
+    /// Whether its statements stand in the order of a recursion, joint by joint.
+    #[must_use]
+    pub fn follows_recursion(&self) -> bool {
+        !self.is_rewritten && self.order == Order::Formulas
     }
 
     /// Whether the processor is longer busy reading the instructions than waiting for the longest chain of them: then

@@ -1,6 +1,6 @@
 //! Why a program that is not the seven steps can be trusted, in words.
 
-use rne_codegen::{Form, Program, Proof, Scales};
+use rne_codegen::{Form, Order, Program, Proof, Scales};
 
 /// The form of a program, its proof and its choices, one sentence or choice per line.
 #[must_use]
@@ -35,6 +35,9 @@ pub fn evidence(program: &Program, proof: &Proof) -> Vec<String> {
             ),
         },
     ];
+    if program.order == Order::Registers {
+        lines.push("Order: statements stand where few values are alive at once, not joint by joint.".to_owned());
+    }
     for Scales { behind, length, force } in &program.scales {
         let links = behind.map_or_else(String::new, |joint| format!(" of the links from joint {joint} on"));
         lines.push(format!(

@@ -296,13 +296,13 @@ fn in_order<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
             continue;
         }
         let opening = match (by, step) {
-            _ if program.is_rewritten => Vec::new(),
+            _ if !program.follows_recursion() => Vec::new(),
             (Some(by), _) => vec![Line::Heading(by_title(robot, program, joint, step, by))],
             (None, Step::Beyond) => vec![Line::Heading(beyond_title(program, quantity, joint))],
             (None, _) => heading(robot, program, joint, step),
         };
         if last_opening.as_ref() != Some(&opening) {
-            let place = (!program.is_rewritten).then_some((joint, step, by));
+            let place = program.follows_recursion().then_some((joint, step, by));
             sections.push(Section { place, lines: opening.clone() });
             last_opening = Some(opening);
         }

@@ -70,8 +70,8 @@ fn nonzero(cx: &Context, node: &Node) -> Option<Quantity> {
 
 fn zero(span: Range<usize>, shown: &str, name: &str) -> Diagnostic {
     let message = format!(
-        "{shown} varies with the run-time parameter {}; such a number must not be 0 in the file, because rne removes \
-         operations with zeros from the code",
+        "{shown} depends on the run-time parameter {}, but such a number must not be 0 in the file, because rne \
+         removes operations with zeros from the code",
         quoted(name)
     );
     Diagnostic::error(span, message).label("zero in the file").help(format!(

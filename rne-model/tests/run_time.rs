@@ -180,12 +180,12 @@ fn errors() {
             "payload",
             ("d: 0, a: 0,", "d: payload, a: 0,"),
             (20, 29, "payload"),
-            "`payload` = 0 varies with the run-time parameter `payload`; such a number must not be 0 in the file",
+            "`payload` = 0 depends on the run-time parameter `payload`, but such a number must not be 0 in the file",
             "give `payload` a value in the file for which this number is not zero, or remove it from the run-time \
              parameters",
         ),
         ("h", ("h - 0.1", "h - 0.3"), (11, 31, "h - 0.3"), "`h - 0.3` = 0 varies with", "give `h` a value"),
-        ("h", ("0.1]}", "h-0.3]}"), (7, 21, "h-0.3"), "`h-0.3` = 0 varies with the run-time parameter `h`", ""),
+        ("h", ("0.1]}", "h-0.3]}"), (7, 21, "h-0.3"), "`h-0.3` = 0 depends on the run-time parameter `h`", ""),
         ("unit", ("mass: unit", "mass: unit - 1"), (21, 18, "unit - 1"), "`unit - 1` = 0 varies with", ""),
         ("unit", ("-60*unit", "unit - 1"), (18, 39, "unit - 1"), "`unit - 1` = 0 varies with", ""),
         ("payload", ("zz: 0.02", "yz: payload"), (15, 73, "payload"), "`payload` = 0 varies with", ""),
@@ -196,7 +196,7 @@ fn errors() {
                 "mass: unit, com: [1, 0, 0], inertia_about: origin, inertia: {yy: 2, zz: 1,",
             ),
             (21, 72, "{yy: 2, zz: 1, xy: -unit/100}"),
-            "the element zz = 0 of the inertia about the centre of mass varies with the run-time parameter `unit`",
+            "the element zz = 0 of the inertia about the centre of mass depends on the run-time parameter `unit`",
             "give `unit` a value",
         ),
         (

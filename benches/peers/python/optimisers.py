@@ -7,8 +7,8 @@ the Hessian of the torques weighted by multipliers, in (q, qd, qdd). CasADi's co
   best           it derives the formulation of fewest operations (`base`), of the accelerations the implicit equation,
                  and removes common subexpressions; the faster of gcc -O3 -march=native and clang with -ffast-math
 
-Ours is the C of `rne emit`, the faster of gcc and clang with -O3 -march=native. All competitors run in turn in one process, one state per call. Every result
-is checked first.
+Ours is the C of `rne emit --order registers`, the faster of gcc and clang with -O3 -march=native. All competitors run
+in turn in one process, one state per call. Every result is checked first.
 Needs the work folder of `benches/peers/run` (its packages and the states), gcc, g++ and clang.
 """
 
@@ -95,8 +95,8 @@ def measured(robot, args):
     file, count = HERE / "models" / f"{robot}.yaml", {}
     ours = [of for of, *_ in FUNCTIONS.values()]
     for compiler, command in (("gcc", "gcc"), ("clang", args.clang)):
-        run(args.rne, "emit", file, "--lang", "c", "--real", "double", "--form", "reduced", "--function", ",".join(ours),
-            "--prefix", compiler, "--force", "-o", f"{compiler}.c")  # fmt: skip
+        run(args.rne, "emit", file, "--lang", "c", "--real", "double", "--form", "reduced", "--order", "registers",
+            "--function", ",".join(ours), "--prefix", compiler, "--force", "-o", f"{compiler}.c")  # fmt: skip
         run(command, *FAST, "-w", "-c", f"{compiler}.c")
     counted = run(args.rne, "ops", file, "--function", ",".join(ours), "--json")
     for row in json.loads(counted):

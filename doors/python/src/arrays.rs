@@ -76,11 +76,10 @@ impl<'py, T: Element + Number> Held<'py, T> {
             [found] if found == elements => None,
             [states, found] if found == elements => Some(states),
             _ => {
-                let shape: Vec<String> = shape.iter().map(ToString::to_string).collect();
                 let point = if name == "payload" { "; 4 numbers in place of 10 are a point mass" } else { "" };
                 let message = format!(
-                    "`{name}` has the shape ({}); it is ({elements},) for one state or (N, {elements}) for many{point}",
-                    shape.join(", ")
+                    "`{name}` has the shape {}; it is ({elements},) for one state or (N, {elements}) for many{point}",
+                    shape_in_words(&shape)
                 );
                 return Err(PyValueError::new_err(message));
             }
@@ -163,6 +162,12 @@ impl<'py, T: Element + Number> Held<'py, T> {
     pub(crate) fn elements(&self) -> usize {
         self.elements
     }
+}
+
+/// A shape as Python writes it.
+pub(crate) fn shape_in_words(shape: &[usize]) -> String {
+    let numbers: Vec<String> = shape.iter().map(ToString::to_string).collect();
+    if numbers.len() == 1 { format!("({},)", numbers[0]) } else { format!("({})", numbers.join(", ")) }
 }
 
 /// An array that cannot be a slice: it is copied before, or refused.
@@ -329,10 +334,8 @@ pub(crate) fn room<'py, T: Element>(
     dtype: &str,
 ) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
     let Some(out) = out else { return Ok(PyArrayDyn::zeros(py, shape, false)) };
-    let wanted = || {
-        let shape: Vec<String> = shape.iter().map(ToString::to_string).collect();
-        format!("`out` must be a writable array in C order of the shape ({}) and of {dtype}", shape.join(", "))
-    };
+    let wanted =
+        || format!("`out` must be a writable array in C order of the shape {} and of {dtype}", shape_in_words(shape));
     let array = out.cast::<PyArrayDyn<T>>().map_err(|_| PyValueError::new_err(wanted()))?;
     if array.shape() != shape || !array.is_c_contiguous() {
         return Err(PyValueError::new_err(wanted()));

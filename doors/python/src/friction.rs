@@ -1,18 +1,26 @@
 //! Friction of the joints: the numbers of the robot file for the module of the package that computes it.
 
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyBool;
 use rne_emit::{JointFriction, NoFriction};
 
 use crate::arm::Arm;
 
 impl Arm {
     /// The numbers viscous, odd, even and width of each joint.
-    fn friction(&self, width: Option<f64>) -> PyResult<Vec<[f64; 4]>> {
+    fn friction(&self, width: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<[f64; 4]>> {
+        let number = |width: &Bound<'_, PyAny>| {
+            let number = if width.is_instance_of::<PyBool>() { None } else { width.extract::<f64>().ok() };
+            number.ok_or_else(|| {
+                PyTypeError::new_err(format!("`width` is {width:?}, but it must be one number, in rad/s or m/s"))
+            })
+        };
+        let width = width.map(number).transpose()?;
         if let Some(width) = width.filter(|width| !(width.is_finite() && *width >= JointFriction::NARROWEST)) {
             let least = JointFriction::NARROWEST;
             return Err(PyValueError::new_err(format!(
-                "`width` is {width}, but it must be a finite number of at least {least:e}, in rad/s or m/s"
+                "`width` is {width:?}, but it must be a finite number of at least {least:e}, in rad/s or m/s"
             )));
         }
         let frictions = JointFriction::about(self.robot(), width).map_err(|why| {
@@ -45,7 +53,7 @@ impl Arm {
     fn friction_torques<'py>(
         slf: &Bound<'py, Self>,
         qd: &Bound<'py, PyAny>,
-        width: Option<f64>,
+        width: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let numbers = slf.borrow().friction(width)?;
         slf.py().import("rne.friction")?.call_method1("torques", (slf, qd, numbers))
@@ -61,7 +69,7 @@ impl Arm {
     fn friction_derivatives<'py>(
         slf: &Bound<'py, Self>,
         qd: &Bound<'py, PyAny>,
-        width: Option<f64>,
+        width: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let numbers = slf.borrow().friction(width)?;
         slf.py().import("rne.friction")?.call_method1("derivatives", (slf, qd, numbers))

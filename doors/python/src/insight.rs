@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rne::DynArm;
 use rne::compiled::SearchOptions;
+use rne_codegen::{Form, Order, Program, ordered_for_registers};
 use rne_diagnose::{Diagnosis, Observation};
 use rne_emit::{Additions, Precision, Prefix, Selection};
 
@@ -20,6 +21,24 @@ use crate::notebook;
 fn rows(py: Python<'_>, parameters: Vec<[f64; 10]>) -> PyResult<Bound<'_, PyAny>> {
     let parameters: Vec<Vec<f64>> = parameters.into_iter().map(Vec::from).collect();
     py.import("numpy")?.call_method1("array", (parameters,))
+}
+
+/// Refuses what is composed of calls of functions, with the function that CasADi can compose it from.
+fn is_no_composition(function: &str) -> PyResult<()> {
+    let instead = match function {
+        "runge_kutta_step" | "runge_kutta_step_derivatives" => {
+            "CasADi composes a step of Runge-Kutta from `arm.casadi(\"forward_dynamics\")`; `arm.casadi(\"euler_step\")` \
+             is a step by itself"
+        }
+        "floating_runge_kutta_step" | "floating_runge_kutta_step_derivatives" => {
+            "it takes and returns poses, and CasADi calls functions of vectors"
+        }
+        "friction_torques" | "friction_derivatives" => {
+            "write the law of friction with CasADi's own operations; `arm.friction_torques` has its formula"
+        }
+        _ => return Ok(()),
+    };
+    Err(PyValueError::new_err(format!("there is no code of `{function}` for CasADi: {instead}")))
 }
 
 impl Arm {
@@ -106,10 +125,13 @@ impl Arm {
     /// A function as code that needs nothing: `language` is `c` (a header and a source in one text) or `rust`.
     ///
     /// `precision`: of C, `double` or `single`. `casadi`: of C in double precision, add the functions that CasADi
-    /// calls, with derivatives, and the functions that these need.
+    /// calls, with derivatives, and the functions that these need. `order`: of the statements of reduced forms, joint by
+    /// joint (`formulas`) or so that few values are alive at once (`registers`), which is faster where code is long.
     #[pyo3(signature = (
         language="c", functions=vec!["inverse_dynamics".to_owned()], *, form=None, precision="double", casadi=false,
+        order="formulas",
     ))]
+    #[allow(clippy::too_many_arguments)] // those of Python
     fn code(
         &self,
         language: &str,
@@ -117,18 +139,33 @@ impl Arm {
         form: Option<&str>,
         precision: &str,
         casadi: bool,
+        order: &str,
     ) -> PyResult<String> {
         if casadi {
             if (language, precision) != ("c", "double") {
                 return Err(PyValueError::new_err("`casadi=True` is for C in double precision"));
             }
+            if let Some(parameter) = self.robot().run_time.names.first() {
+                return Err(PyValueError::new_err(format!(
+                    "this arm has run-time parameters, such as `{parameter}`, and the functions that CasADi calls have \
+                     none: load the robot file without `run_time`"
+                )));
+            }
+            functions.iter().try_for_each(|function| is_no_composition(function))?;
             Self::add_derivatives(&mut functions)?;
         }
-        let programs = functions.iter().map(|name| self.program(name, form)).collect::<PyResult<Vec<_>>>()?;
+        let order: Order = name(order)?;
+        let in_order = |program: Program| match (order, program.form) {
+            (Order::Registers, Form::Reduced) => ordered_for_registers(&program),
+            _ => program,
+        };
+        let programs = functions.iter().map(|name| self.program(name, form).map(in_order));
+        let programs = programs.collect::<PyResult<Vec<_>>>()?;
         if casadi && !programs.iter().any(rne_emit::is_for_casadi) {
             return Err(PyValueError::new_err(
-                "CasADi can call none of these functions: it calls functions that take vectors and no run-time \
-                 parameters, and return a number, a vector or a matrix, such as inverse_dynamics",
+                "CasADi can call none of these functions: it calls functions that take vectors and return a number, a \
+                 vector or a matrix, such as inverse_dynamics. It gets derivatives from the function itself: \
+                 `arm.casadi(\"euler_step\").jacobian()`",
             ));
         }
         let prefix = Prefix::of(self.robot());

@@ -11,7 +11,7 @@ use rne_codegen::{Argument, Sizes};
 use rne_model::Robot;
 
 use crate::arm::Arm;
-use crate::arrays::{Given, Held, are_single, memory, refuse_masked, room, states, writable};
+use crate::arrays::{Given, Held, are_single, memory, refuse_masked, room, shape_in_words, states, writable};
 use crate::errors::of_evaluation;
 use crate::functions::arguments;
 
@@ -116,10 +116,9 @@ fn flat_torques(given: &mut Given<'_>, dof: usize) -> PyResult<(usize, Option<us
         [steps, joints] if joints == dof => (steps, None, vec![steps * dof]),
         [samples, steps, joints] if joints == dof => (steps, Some(samples), vec![samples, steps * dof]),
         _ => {
-            let shape: Vec<String> = shape.iter().map(ToString::to_string).collect();
             return Err(PyValueError::new_err(format!(
-                "`tau` has the shape ({}); it is (T, {dof}) for one sample or (N, T, {dof}) for many",
-                shape.join(", ")
+                "`tau` has the shape {}; it is (T, {dof}) for one sample or (N, T, {dof}) for many",
+                shape_in_words(&shape)
             )));
         }
     };

@@ -163,8 +163,26 @@ def test_a_matrix_and_functions_without_derivatives():
     with pytest.raises(ValueError, match="inverse_dynamic"):
         arm.casadi("inverse_dynamic")
     free = rne.load(Path(ROBOTS.parent, "docs/desk_arm.yaml"), run_time=["upper"])
-    with pytest.raises(ValueError, match="no run-time parameters"):
+    with pytest.raises(ValueError, match="run-time parameters, such as `upper`.* load the robot file without `run_time`"):
         free.casadi()
+    for name, instead in (
+        ("euler_step_derivatives", r"jacobian\(\)"),
+        ("runge_kutta_step", "composes a step of Runge-Kutta from"),
+        ("floating_runge_kutta_step", "it takes and returns poses"),
+        ("friction_torques", "write the law of friction with CasADi's own operations"),
+    ):
+        with pytest.raises(ValueError, match=instead):
+            arm.casadi(name)
+
+
+def test_the_order_of_statements_changes_no_bit():
+    arm = rne.robots.puma560
+    formulas, registers = (arm.code(form="reduced", order=order) for order in ("formulas", "registers"))
+    assert formulas != registers and sorted(formulas.split()) != formulas.split()
+    lines = [{line.strip() for line in code.splitlines() if " = " in line} for code in (formulas, registers)]
+    assert lines[0] == lines[1]
+    with pytest.raises(ValueError, match="`stack` is not a valid order"):
+        arm.code(order="stack")
 
 
 def test_threads_share_a_function():

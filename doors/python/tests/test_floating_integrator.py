@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_floating import ARM, TWIST, close, poses, q, qd, rotation_of, tau, times
+from test_floating import ARM, SATELLITE, TWIST, close, poses, q, qd, rotation_of, tau, times
 
 import rne
 
@@ -193,9 +193,32 @@ def test_mistakes_are_told():
             function(*given[:2], np.ma.masked_array(given[2], mask=[True, False]), *given[3:], 0.01)
         with pytest.raises(ValueError, match=f"`wrenches` has 3 states, but other arguments have {N}"):
             function(*GIVEN, 0.01, np.zeros((3, 1, 6)))
-    singular = rne.robots.planar2.floating_runge_kutta_step_derivatives
-    with pytest.raises(ValueError, match="the mass matrix is singular"):
-        singular([0, 0], [0, 0], [0, 0], np.eye(4), [0] * 6, 0.01)
+    nothing = "link: {mass: 0, com: [0, 0, 0], inertia: {xx: 0, yy: 0, zz: 0}}"
+    weightless = rne.load(SATELLITE.replace("link: {mass: 6, com: [0.4, 0, 0], inertia: {xx: 0.01, yy: 0.5, zz: 0.5}}", nothing))
+    with pytest.raises(ValueError, match="the mass matrix is singular in one of the states"):
+        weightless.floating_runge_kutta_step_derivatives(*given, 0.01)
+
+
+def test_a_base_without_mass_is_named():
+    arm, joints = rne.robots.planar2, ([0, 0], [0, 0], [0, 0])
+    for function in (
+        arm.floating_euler_step,
+        arm.floating_euler_step_derivatives,
+        arm.floating_runge_kutta_step,
+        arm.floating_runge_kutta_step_derivatives,
+    ):
+        with pytest.raises(ValueError, match="the base of planar2 has no mass.* `floating_base: {name: body"):
+            function(*joints, np.eye(4), [0] * 6, 0.01)
+    with pytest.raises(ValueError, match="the base of planar2 has no mass"):
+        arm.floating_forward_dynamics(*joints, [0] * 3)
+    # what needs no acceleration of the base is there without its mass
+    assert np.isfinite(arm.floating_mass_matrix([0, 0])).all()
+    # two arms hold each other: neither can turn against the base alone
+    arm = "type: revolute, dh: {theta: 0, d: 0, a: 1, alpha: 0}, link: {mass: 1, com: [-0.5, 0.1, 0], inertia: {xx: 1, yy: 1, zz: 1}}"
+    first, second = f"{{name: left, parent: base, {arm}}}", f"{{name: right, parent: base, at: {{xyz: [0, 1, 0]}}, {arm}}}"
+    two = rne.load(f"{{format: 2, name: two, source: own, convention: standard, gravity: [0, 0, 0], tool: {{on: left}}, joints: [{first}, {second}]}}")
+    still = [0.1] * two.dof
+    assert np.isfinite(np.hstack(two.floating_forward_dynamics(still, still, still, [0] * 3))).all()
 
 
 def test_a_matrix_that_is_no_pose_is_refused():

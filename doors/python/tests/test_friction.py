@@ -96,6 +96,11 @@ def test_mistakes_are_told():
         for width in (0.0, -1.0, 1e-10, math.nan, math.inf):
             with pytest.raises(ValueError, match="`width` is .*, but it must be a finite number of at least 1e-9"):
                 function([0.1] * 3, width=width)
+        for width in (True, "0.1", [0.1, 0.2]):
+            with pytest.raises(TypeError, match="`width` is .*, but it must be one number, in rad/s or m/s"):
+                function([0.1] * 3, width=width)
+        with pytest.raises(ValueError, match="`width` is 1e-200, but"):
+            function([0.1] * 3, width=1e-200)
     without = robot("motor: {coulomb: [3, -2]}")
     with pytest.raises(ValueError, match="the joint joint1 has Coulomb friction without `coulomb_width`.* one `width`"):
         rne.load(without).friction_torques([0.1])

@@ -180,7 +180,7 @@ def test_nan_stays_in_its_sample():
 
 @pytest.mark.parametrize("arguments, keywords, says", [
     (dict(tau=np.zeros((4, 5))), {}, r"`tau` has the shape \(4, 5\); it is \(T, 6\) for one sample or \(N, T, 6\) for many"),
-    (dict(tau=np.zeros(6)), {}, r"`tau` has the shape \(6\)"),
+    (dict(tau=np.zeros(6)), {}, r"`tau` has the shape \(6,\)"),
     (dict(tau=np.zeros((3, 4, 6))), {}, r"`tau` has the shape \(3, 4, 6\), but `q` has the shape \(9, 6\): .* and N is 9"),
     # the axes of steps and samples exchanged, for one step
     (dict(tau=np.zeros((1, 9, 6))), {}, r"`tau` has the shape \(1, 9, 6\), but `q` has the shape \(9, 6\)"),

@@ -13,7 +13,7 @@ use rne_certify::image::Image;
 use rne_certify::joint_functions::JointFunction;
 use rne_certify::observer::LowPass;
 use rne_certify::{misra, sha256};
-use rne_codegen::{Argument, Form, Function, Program};
+use rne_codegen::{Argument, Form, Function, Order, Program};
 use rne_emit::{CCode, Precision, Prefix};
 use rne_model::Robot;
 
@@ -21,7 +21,7 @@ use crate::commands::certify_check::check;
 use crate::commands::certify_code::{Code, build, emulate};
 use crate::commands::certify_subject::Subject;
 use crate::commands::certify_tools::{self, Tool};
-use crate::commands::emit::Real;
+use crate::commands::emit::{self, Real};
 use crate::commands::emit_c::{self, Request};
 use crate::commands::{certify_trace, toolchain};
 use crate::files::chosen_arm::Rotors;
@@ -38,15 +38,14 @@ use crate::values::choice;
 #[command(after_help = "\
 Examples:
   rne certify docs/desk_arm.yaml --cpu cortex-m4 -o desk_arm.cert.md
-  rne certify docs/desk_arm.yaml --cpu cortex-m4 --check desk_arm.cert.md
+  rne certify docs/desk_arm.yaml --check desk_arm.cert.md
   rne certify docs/desk_arm.yaml --observer --gain 20 --period 0.001
   rne certify docs/desk_arm_identified.yaml --friction --limits
   rne certify docs/desk_arm.yaml --evidence evidence
 
-The command compiles the code that `rne emit --lang c` writes. It reads the
-instructions with objdump, runs the code in QEMU, compares the results with the
-results of this computer, and bounds their error. It fails if the code branches,
-computes in double precision or calls a function of others.
+The command compiles the code of `rne emit --lang c`, reads its instructions by
+objdump, runs it in QEMU, compares the results with those of this computer, and
+bounds their error. It fails if the code branches, uses doubles or calls others.
 
 Needed: arm-none-eabi-gcc with objdump; used if installed: qemu-system-arm,
 cppcheck. See docs/assurance.md. For a file of `rne emit`, repeat its options.")]
@@ -86,6 +85,10 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "F", value_parser = choice::form(), default_value = Form::Reduced.name(),
         hide_possible_values = true)]
     pub(super) form: Form,
+    /// Order: formulas or registers
+    #[arg(long, value_name = "O", default_value_t = Order::Formulas, value_parser = choice::order(),
+        hide_possible_values = true)]
+    order: Order,
     /// Prefix of names in C [default: the robot's name]
     #[arg(long, value_name = "P")]
     pub(super) prefix: Option<Prefix>,
@@ -332,6 +335,7 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
     let compiled = Compiler::new(&arguments.file, &robot);
     let programs = arguments.programs().into_iter().map(|function| compiled.compile(function, arguments.form));
     let programs: Vec<Program> = programs.collect::<Result<_, _>>()?;
+    let programs = emit::in_order(arguments.order, arguments.form, programs)?;
     let subjects = arguments.subjects(&robot, &programs)?;
     let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(&robot));
     let call = |subject: &Subject| subject.call(prefix.as_str(), &robot);
@@ -503,6 +507,7 @@ fn of_emit(arguments: &Arguments) -> String {
     ] {
         options.push_str(if is_given { option } else { "" });
     }
+    options += &emit::of_order(arguments.order);
     options
 }
 

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use rne_codegen::{Form, Function, Program, Target};
+use rne_codegen::{Form, Function, Order, Program, Target, ordered_for_registers};
 use rne_emit::{Precision, Prefix};
 use rne_model::{FrameId, Robot};
 
@@ -63,6 +63,10 @@ pub(crate) struct Arguments {
     /// in Rust, reduced in others]
     #[arg(long, value_name = "F", value_parser = choice::form(), hide_possible_values = true)]
     form: Option<Form>,
+    /// Order of statements: formulas (joint by joint) or registers (few live values)
+    #[arg(long, value_name = "O", default_value_t = Order::Formulas, value_parser = choice::order(),
+        hide_possible_values = true)]
+    order: Order,
     /// Parameters of FILE that become function arguments, NAME,NAME,…; the others are constants
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     run_time: Vec<String>,
@@ -78,8 +82,8 @@ pub(crate) struct Arguments {
     /// Add kernels to PTX that roll out forward dynamics
     #[arg(long)]
     rollout: bool,
-    /// Add functions for CasADi, in double precision; docs/optimal-control.md lists those with derivatives
-    #[arg(long, conflicts_with = "run_time")]
+    /// Add functions for CasADi, in double precision
+    #[arg(long)]
     casadi: bool,
     /// Add functions for acados to those for CasADi
     #[arg(long, requires = "casadi")]
@@ -102,7 +106,7 @@ pub(crate) struct Arguments {
     /// Overwrite OUT even if rne did not generate it
     #[arg(long, requires = "output")]
     force: bool,
-    /// Write nothing; check that this file contains the code that rne would write
+    /// Write nothing; check that this file is up to date
     #[arg(long, value_name = "OUT", conflicts_with = "output")]
     check: Option<PathBuf>,
 }
@@ -195,6 +199,12 @@ struct Generated {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     only_of_one_language(arguments)?;
     is_named_once(&arguments.run_time)?;
+    if arguments.casadi && !arguments.run_time.is_empty() {
+        return Err(Failure::usage(format_args!(
+            "the functions that CasADi calls have no parameters, so all numbers of the robot file are constants there: \
+             leave out {TYPED}--run-time{TYPED:#} or {TYPED}--casadi{TYPED:#}"
+        )));
+    }
     let out = arguments.output.as_deref().filter(|out| !is_standard_output(out)).or(arguments.check.as_deref());
     if arguments.check.as_deref().is_some_and(is_standard_output) {
         return Err(Failure::usage(format_args!(
@@ -485,7 +495,29 @@ fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failur
             programs.push(program);
         }
     }
-    Ok(programs)
+    in_order(arguments.order, arguments.form(), programs)
+}
+
+/// Programs with their statements in an order. One that fell back to the seven steps keeps their order.
+pub(super) fn in_order(order: Order, form: Form, programs: Vec<Program>) -> Result<Vec<Program>, Failure> {
+    match (order, form) {
+        (Order::Formulas, _) => Ok(programs),
+        (Order::Registers, Form::SevenSteps) => Err(Failure::usage(format_args!(
+            "{TYPED}--order registers{TYPED:#} is for {TYPED}--form reduced{TYPED:#}: code of the seven steps keeps \
+             their order"
+        ))),
+        (Order::Registers, Form::Reduced) => {
+            let is_reduced = |program: &Program| program.form == Form::Reduced;
+            let ordered =
+                |program: Program| if is_reduced(&program) { ordered_for_registers(&program) } else { program };
+            Ok(programs.into_iter().map(ordered).collect())
+        }
+    }
+}
+
+/// The option of an order, where it is not the usual one.
+pub(super) fn of_order(order: Order) -> String {
+    if order == Order::Formulas { String::new() } else { format!(" --order {order}") }
 }
 
 /// The frames asked for, or those of the list `frames`.
@@ -616,6 +648,7 @@ fn command(arguments: &Arguments, out: &Path) -> String {
     if let Some(form) = arguments.form {
         let _ = write!(command, " --form {form}");
     }
+    command.push_str(&of_order(arguments.order));
     if !arguments.run_time.is_empty() {
         let _ = write!(command, " --run-time {}", arguments.run_time.join(","));
     }

@@ -5,7 +5,7 @@ use std::fmt;
 use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use rne_codegen::plan::Trick;
-use rne_codegen::{Argument, Form, Function, Quantity, Step};
+use rne_codegen::{Argument, Form, Function, Order, Quantity, Step};
 use rne_model::{Convention, Robot};
 
 use crate::outcome::Failure;
@@ -24,8 +24,15 @@ pub(crate) fn composed(name: &str) -> Option<String> {
             "it is composed of calls of forward_dynamics: {TYPED}rne emit FILE --lang c --runge-kutta{TYPED:#} writes \
              it in C, and Rust and Python have it as a method"
         ),
-        "floating_runge_kutta_step" => {
-            "it is composed of calls of other functions, and Rust has it as a method".to_owned()
+        "floating_runge_kutta_step" | "floating_runge_kutta_step_derivatives" => {
+            "it is composed of calls of other functions, and Rust and Python have it as a method".to_owned()
+        }
+        "friction_torques" | "friction_derivatives" => {
+            return Some(format!(
+                "`{name}` is no value of {TYPED}--function{TYPED:#}: {TYPED}rne emit FILE --lang c \
+                 --friction{TYPED:#} writes it in C, and Python has it as a method; see the section Friction and limits \
+                 in C of docs/firmware.md"
+            ));
         }
         _ => return None,
     };
@@ -70,6 +77,15 @@ pub(crate) fn form() -> impl TypedValueParser<Value = Form> {
     PossibleValuesParser::new(Form::ALL.map(value)).try_map(|name| name.parse::<Form>())
 }
 
+/// Reads the name of an order of statements.
+pub(crate) fn order() -> impl TypedValueParser<Value = Order> {
+    let value = |order: Order| match order {
+        Order::Formulas => PossibleValue::new(order.name()).help("Joint by joint, as the formulas"),
+        Order::Registers => PossibleValue::new(order.name()).help("Few values are alive at once"),
+    };
+    PossibleValuesParser::new(Order::ALL.map(value)).try_map(|name| name.parse::<Order>())
+}
+
 /// Reads the name of a trick of the reduced form.
 pub(crate) fn trick() -> impl TypedValueParser<Value = Trick> {
     let value = |trick: Trick| PossibleValue::new(trick.name()).help(trick.formula());
@@ -102,7 +118,12 @@ pub(crate) fn step(text: &str) -> Result<Step, String> {
     let step = Step::ALL.into_iter().find(|step| step.number().to_string() == text);
     step.ok_or_else(|| {
         let steps: Vec<String> = Step::ALL.iter().map(|step| format!("{} {}", step.number(), step.title())).collect();
-        format!("the steps are {}", steps.join(", "))
+        let duration = if text.parse::<f64>().is_ok() && text.parse::<i64>().is_err() {
+            "; the duration of a step of an integrator is `--duration`"
+        } else {
+            ""
+        };
+        format!("the steps are {}{duration}", steps.join(", "))
     })
 }
 

@@ -327,3 +327,68 @@ fn comments_in_ascii() {
     assert_eq!(rne(&[&emit[..], &["--check", &out]].concat()).status, 0);
     fails(1, &["emit", ROBOT, "--lang", "c", "--check", &out], &["is stale"]);
 }
+
+/// The order of the statements changes no bit, and a result may take the place of an argument.
+#[test]
+fn the_order_for_registers_gives_the_same_bits() {
+    let folder = folder("c_order");
+    let functions = "inverse_dynamics,forward_dynamics,inverse_dynamics_derivatives,euler_step";
+    for (order, prefix) in [("formulas", "one"), ("registers", "other")] {
+        let out = path(&folder, &format!("{prefix}.c"));
+        let written = ["emit", "robots/puma560.yaml", "--lang", "c", "--real", "double", "--function", functions];
+        assert_eq!(rne(&[&written[..], &["--order", order, "--prefix", prefix, "-o", &out]].concat()).status, 0);
+        let check = [&written[..], &["--order", order, "--prefix", prefix, "--check", &out]].concat();
+        assert_eq!(rne(&check).status, 0);
+    }
+    let header = read(&folder, "other.h");
+    assert!(header.contains("// Order: statements stand where few values are alive at once"), "{header}");
+    let stale = rne(&["emit", "puma560", "--lang", "c", "--order", "registers", "--check", &path(&folder, "one.c")]);
+    assert!(stale.status == 1 && stale.err.contains("--lang c --order registers -o "), "{}", stale.err);
+    let main = r#"
+#include <stdio.h>
+#include <string.h>
+#include "one.h"
+#include "other.h"
+static int differs(const void *a, const void *b, size_t size) { return memcmp(a, b, size) != 0; }
+int main(void)
+{
+    int wrong = 0;
+    for (int state = 0; state < 100; state++) {
+        double q[6], qd[6], qdd[6], a[6], b[6];
+        for (int i = 0; i < 6; i++) {
+            q[i] = 0.37 * state - 1.1 * i;
+            qd[i] = 0.1 * i - 0.01 * state;
+            qdd[i] = 2.0 - i;
+        }
+        one_torque_derivatives c;
+        other_torque_derivatives d;
+        one_inverse_dynamics_derivatives(q, qd, qdd, &c);
+        other_inverse_dynamics_derivatives(q, qd, qdd, &d);
+        wrong += differs(c.dq, d.dq, sizeof c.dq) + differs(c.dqd, d.dqd, sizeof c.dqd);
+        one_forward_dynamics(q, qd, qdd, a);
+        other_forward_dynamics(q, qd, qdd, b);
+        wrong += differs(a, b, sizeof a);
+        one_inverse_dynamics(q, qd, qdd, a);
+        other_inverse_dynamics(q, qd, qdd, b);
+        wrong += differs(a, b, sizeof a);
+        other_inverse_dynamics(q, qd, qdd, q);
+        wrong += differs(a, q, sizeof a);
+    }
+    printf("%d wrong\n", wrong);
+    return 0;
+}
+"#;
+    fs::write(folder.join("main.c"), main).expect("written");
+    let Some(said) = printed(&folder, &["main.c", "one.c", "other.c"], &[]) else { return };
+    assert_eq!(said, "0 wrong\n");
+}
+
+#[test]
+fn an_order_is_for_the_reduced_form() {
+    for command in [&["emit", "planar2"][..], &["emit", "planar2", "--lang", "c", "--form", "seven_steps"]] {
+        fails(2, &[command, &["--order", "registers"]].concat(), &["--order registers is for --form reduced"]);
+    }
+    fails(2, &["emit", "planar2", "--order", "stack"], &["--order <O>", "formulas, registers"]);
+    let code = fine(&["emit", "planar2", "--form", "reduced", "--order", "registers"]);
+    assert!(code.contains("Order: statements stand where few values are alive at once"), "{code}");
+}

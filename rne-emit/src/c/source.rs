@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use rne_codegen::{ArgumentArray, Layout, Program};
+use rne_codegen::{ArgumentArray, Layout, Order, Program, statements_of_outputs};
 
 use super::header::columns;
 use super::signature::{head, inputs, places, subscript};
@@ -82,14 +82,41 @@ fn function(file: &File, program: &Program) -> Result<String, ConstantTooLarge> 
         }
         text.push_str(&turns(file, program));
     }
+    if program.order == Order::Registers && program.layout() != Layout::Number {
+        text.push('\n');
+        text.push_str(&stored_at_once(file, program));
+        text.push_str("}\n");
+        return Ok(text);
+    }
     let statements = listing(file.robot, program, Selection::default());
     if !statements.is_empty() {
         let _ = write!(text, "\n{}", statements.text(syntax));
     }
     text.push('\n');
-    text.push_str(&result(file, program));
+    text.extend(result(file, program));
     text.push_str("}\n");
     Ok(text)
+}
+
+/// The statements, each result stored as soon as it is known: then it is alive no longer. The arguments were read
+/// before, so a result may take the place of one.
+fn stored_at_once(file: &File, program: &Program) -> String {
+    let mut results = result(file, program).into_iter().zip(statements_of_outputs(program)).collect::<Vec<_>>();
+    // stable: the results of one statement keep their order
+    results.sort_by_key(|(_, after)| *after);
+    let mut results = results.into_iter().peekable();
+    let mut text = String::new();
+    let mut store = |text: &mut String, known: Option<usize>| {
+        while let Some((line, _)) = results.next_if(|(_, after)| *after <= known) {
+            text.push_str(&line);
+        }
+    };
+    store(&mut text, None);
+    for (index, statement) in program.statements.iter().enumerate() {
+        let _ = writeln!(text, "{}", Line::statement(program, statement).indented(file.syntax()));
+        store(&mut text, Some(index));
+    }
+    text
 }
 
 /// The elements that are used, by their names.
@@ -140,7 +167,8 @@ fn turns(file: &File, program: &Program) -> String {
     places + &calls
 }
 
-fn result(file: &File, program: &Program) -> String {
+/// The lines that return the results, in the order of these.
+fn result(file: &File, program: &Program) -> Vec<String> {
     let syntax = file.syntax();
     let values = program.outputs.iter().map(|output| program.values.used(output.value));
     let starts = match program.layout() {

@@ -509,6 +509,7 @@ class Arm:
     def code(
         self, language: Literal["c", "rust"] = ..., functions: Sequence[str] = ..., *, form: Form | None = ...,
         precision: Literal["double", "single"] = ..., casadi: bool = ...,
+        order: Literal["formulas", "registers"] = ...,
     ) -> str: ...
     def casadi(self, function: str = ...) -> Any:
         """A function as a `casadi.Function`, with its derivatives for optimisers such as IPOPT."""

@@ -20,7 +20,7 @@ def external(arm, function):
         import casadi
     except ImportError as error:
         raise ImportError("`Arm.casadi` needs the package casadi, 3.6 or later: pip install casadi") from error
-    code = arm.code("c", [function], casadi=True)
+    code = arm.code("c", [function], casadi=True, order="registers")
     library = str(_library(arm.name, code))
     # By default CasADi derives a large problem direction by direction, and calls `fwd1_` for each. For many directions
     # it calls the Jacobian once, but not for up to two multipliers: the Jacobian has no derivatives, and `adj1_` has.
