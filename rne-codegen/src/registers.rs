@@ -17,7 +17,7 @@ use crate::values::ValueId;
 named! {
     /// The order of the statements of a program.
     Order, "order" {
-        /// That of its formulas, joint by joint.
+        /// The order of its formulas, joint by joint.
         Formulas = "formulas",
         /// One in which few values are alive at once.
         Registers = "registers",

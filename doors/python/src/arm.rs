@@ -200,8 +200,8 @@ impl Arm {
             return Err(PyValueError::new_err(format!(
                 "{function}: the base of {} has no mass, so its acceleration is not defined: the mass matrix is \
                  singular at every position. Write the base into the robot file, such as `floating_base: {{name: body, \
-                 link: {{mass: 20, com: [0, 0, 0], inertia: {{xx: 1, yy: 1, zz: 1}}}}}}`. For a base that does not move, call the function \
-                 without `floating_` in its name",
+                 link: {{mass: 20, com: [0, 0, 0], inertia: {{xx: 1, yy: 1, zz: 1}}}}}}`. For a base \
+                 that does not move, call the function without `floating_` in its name",
                 robot.name
             )));
         }

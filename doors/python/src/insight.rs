@@ -27,8 +27,8 @@ fn rows(py: Python<'_>, parameters: Vec<[f64; 10]>) -> PyResult<Bound<'_, PyAny>
 fn is_no_composition(function: &str) -> PyResult<()> {
     let instead = match function {
         "runge_kutta_step" | "runge_kutta_step_derivatives" => {
-            "CasADi composes a step of Runge-Kutta from `arm.casadi(\"forward_dynamics\")`; `arm.casadi(\"euler_step\")` \
-             is a step by itself"
+            "CasADi composes a step of Runge-Kutta from `arm.casadi(\"forward_dynamics\")`; \
+             `arm.casadi(\"euler_step\")` is a step by itself"
         }
         "floating_runge_kutta_step" | "floating_runge_kutta_step_derivatives" => {
             "it takes and returns poses, and CasADi calls functions of vectors"
@@ -125,8 +125,9 @@ impl Arm {
     /// A function as code that needs nothing: `language` is `c` (a header and a source in one text) or `rust`.
     ///
     /// `precision`: of C, `double` or `single`. `casadi`: of C in double precision, add the functions that CasADi
-    /// calls, with derivatives, and the functions that these need. `order`: of the statements of reduced forms, joint by
-    /// joint (`formulas`) or so that few values are alive at once (`registers`), which is faster where code is long.
+    /// calls, with derivatives, and the functions that these need. `order`: the order of the statements of reduced
+    /// forms, joint by joint (`formulas`) or so that few values are alive at once (`registers`), which is faster where
+    /// code is long.
     #[pyo3(signature = (
         language="c", functions=vec!["inverse_dynamics".to_owned()], *, form=None, precision="double", casadi=false,
         order="formulas",
@@ -198,9 +199,8 @@ impl Arm {
     /// variable RNE_CACHE names another). Inputs and outputs have the names, order and units of the function.
     /// `inverse_dynamics`, `forward_dynamics`, `gravity_torques`, `bias_torques` and `euler_step` have Jacobians,
     /// forward and reverse derivatives by all inputs, computed without finite differences; other functions have none,
-    /// and CasADi refuses to derive them. The functions that return torques and `euler_step` have second derivatives;
-    /// for `forward_dynamics`, give IPOPT the option `hessian_approximation="limited-memory"`. Needs the package
-    /// casadi, 3.6 or later.
+    /// and CasADi refuses to derive them. These five have second derivatives, too: the Hessian of their results times
+    /// multipliers. Needs the package casadi, 3.6 or later.
     #[pyo3(signature = (function="inverse_dynamics"))]
     fn casadi<'py>(slf: &Bound<'py, Self>, function: &str) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("rne.optimal_control")?.call_method1("external", (slf, function))

@@ -101,17 +101,18 @@ def test_derivatives_go_through_expressions(both, name):
             assert difference(found, expected) < tolerance
 
 
-@pytest.mark.parametrize("name", FUNCTIONS[:1] + FUNCTIONS[2:])
+@pytest.mark.parametrize("name", FUNCTIONS)
 def test_second_derivatives_are_those_of_expressions(both, name):
-    """The Hessian of λᵀτ, as CasADi asks for it: the Jacobian of what goes backwards."""
+    """The Hessian of λᵀτ or λᵀq̈, as CasADi asks for it: the Jacobian of what goes backwards."""
     arm, expressions = both
+    tolerance = 1e-8 if name == "forward_dynamics" else 1e-10
     ours, theirs = (of.reverse(1).jacobian() for of in (arm.casadi(name), getattr(expressions, name)))
     assert described(ours) == described(theirs)
     random = np.random.default_rng(6)
     for _ in range(10):
         arguments = [random.uniform(-1.5, 1.5, size=ours.size_in(index)) for index in range(ours.n_in())]
         for found, expected in zip(ours.call(arguments), theirs.call(arguments), strict=True):
-            assert difference(found, expected) < 1e-10
+            assert difference(found, expected) < tolerance
     # the number of a Lagrangian
     x, multipliers = ca.MX.sym("x", arm.dof), ca.MX.sym("multipliers", arm.dof)
     hessians = [ca.Function("hessian", [x, multipliers], [ca.hessian(
@@ -119,7 +120,7 @@ def test_second_derivatives_are_those_of_expressions(both, name):
         for of in (arm.casadi(name), getattr(expressions, name))]
     for point in random.uniform(-0.7, 0.7, size=(5, 2, arm.dof)):
         found, expected = (hessian(*point) for hessian in hessians)
-        assert difference(found, expected) < 1e-10
+        assert difference(found, expected) < tolerance
 
 
 def test_second_derivatives_of_a_step_are_those_of_expressions(both):

@@ -229,7 +229,7 @@ def test_payloads():
     assert np.array_equal(of(points), of(whole))
     assert np.array_equal(of(points[7]), of(rne.payload(points[7, 0], points[7, 1:])))
     assert np.array_equal(of(points.tolist()), of(whole))
-    with pytest.raises(ValueError, match=r"shape \(5\); it is \(10,\) .* 4 numbers in place of 10 are a point mass"):
+    with pytest.raises(ValueError, match=r"shape \(5,\); it is \(10,\) .* 4 numbers in place of 10 are a point mass"):
         of([1.0] * 5)
     points[5, 0] = -0.5
     room = np.full((N, 7), 7.0)

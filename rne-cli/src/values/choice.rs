@@ -30,8 +30,8 @@ pub(crate) fn composed(name: &str) -> Option<String> {
         "friction_torques" | "friction_derivatives" => {
             return Some(format!(
                 "`{name}` is no value of {TYPED}--function{TYPED:#}: {TYPED}rne emit FILE --lang c \
-                 --friction{TYPED:#} writes it in C, and Python has it as a method; see the section Friction and limits \
-                 in C of docs/firmware.md"
+                 --friction{TYPED:#} writes it in C, and Python has it as a method; see the section Friction and \
+                 limits in C of docs/firmware.md"
             ));
         }
         _ => return None,

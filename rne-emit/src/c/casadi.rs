@@ -20,17 +20,11 @@ const INTERFACE: &str = include_str!("casadi.c");
 /// The operations on matrices that the derivatives need.
 const MATRICES: &str = include_str!("casadi_matrices.c");
 
-/// The operation that derivatives without a gradient need.
-const TRANSPOSED: &str = include_str!("casadi_transposed.c");
-
-/// The operation that second derivatives need.
-const SECOND: &str = include_str!("casadi_second.c");
-
 /// The bodies of the functions for acados, in the order of [`Writer::of_acados`].
 const ACADOS: &str = include_str!("acados.c");
 
 /// Matrices that one call of a function of the file gives: the field of the result, and the input by which the result
-/// of the CasADi function is derived. The derivatives of a step combine matrices, so there are none for it.
+/// of the CasADi function is derived. No matrix of a function stands where derivatives combine several.
 struct Source {
     function: Function,
     blocks: &'static [(&'static str, usize)],
@@ -62,16 +56,16 @@ fn derivatives(function: Function) -> Option<Derivatives> {
     const MASS: Source = Source { function: Function::MassMatrix, blocks: &[("", 2)] };
     const OF_MOTION: Source =
         Source { function: Function::ForwardDynamicsDerivatives, blocks: &[("dq", 0), ("dqd", 1), ("dtau", 2)] };
-    const OF_STEP: [Source; 3] = [
-        Source { function: Function::ForwardDynamics, blocks: &[] },
-        Source { function: Function::ForwardDynamicsDerivatives, blocks: &[] },
-        Source { function: Function::TorqueHessian, blocks: &[] },
-    ];
+    const fn part(function: Function) -> Source {
+        Source { function, blocks: &[] }
+    }
+    const OF_STEP: [Source; 3] =
+        [part(Function::ForwardDynamics), part(Function::ForwardDynamicsDerivatives), part(Function::TorqueHessian)];
     let (sources, fields): (&'static [Source], &'static [&'static str]) = match function {
         Function::InverseDynamics => (&const { [source(&[("dq", 0), ("dqd", 1)]), MASS] }, &["dq", "dqd", "dqdd"]),
         Function::BiasTorques => (&const { [source(&[("dq", 0), ("dqd", 1)])] }, &["dq", "dqd"]),
         Function::GravityTorques => (&const { [source(&[("dq", 0)])] }, &["dq"]),
-        Function::ForwardDynamics => (&const { [OF_MOTION] }, &[]),
+        Function::ForwardDynamics => (&const { [OF_MOTION, part(Function::TorqueHessian)] }, &[]),
         Function::EulerStep => (&OF_STEP, &[]),
         _ => return None,
     };
@@ -139,14 +133,10 @@ pub(super) fn definitions(file: &File) -> String {
         text.push_str(&writer.filled(MATRICES));
     }
     if derived.iter().any(|derivatives| derivatives.gradient.is_none()) {
-        text.push_str(&writer.filled(TRANSPOSED));
+        text.push_str(&writer.helper_of_motion());
     }
-    let steps = |derivatives: &Derivatives| derivatives.sources.iter().all(|source| source.blocks.is_empty());
-    let has_step = derived.iter().any(steps);
-    if has_step || derived.iter().any(|derivatives| derivatives.gradient.is_some()) {
-        text.push_str(&writer.filled(SECOND));
-    }
-    if has_step {
+    let is_step = |derivatives: &Derivatives| derivatives.sources.iter().all(|source| source.blocks.is_empty());
+    if derived.iter().any(is_step) {
         text.push_str(&writer.helper_of_step());
     }
     text.push_str("\n// rows, columns; then 1 if all elements are there, else starts of the columns and the rows\n");
@@ -260,7 +250,10 @@ impl Writer<'_> {
             reverse: self.reverse(&arrays, &derivatives),
         };
         let [value, jacobian, forward, reverse] = self.family(&program.name, &given, &[returned], &blocks, bodies);
-        let second = self.second(&reverse, &arrays, &derivatives);
+        let second = match derivatives.gradient {
+            Some(_) => self.second(&reverse, &arrays, &derivatives),
+            None => self.second_of_motion(&reverse),
+        };
         [value, jacobian, forward, reverse].into_iter().chain(second).collect()
     }
 
@@ -271,7 +264,6 @@ impl Writer<'_> {
         arrays: &[ArgumentArray],
         derivatives: &Derivatives,
     ) -> Option<Interface> {
-        derivatives.gradient?;
         let (prefix, dof, count) = (self.file.prefix, self.file.robot.dof(), arrays.len());
         let program = self.find(Function::TorqueHessian)?;
         let Layout::Record(record, _) = program.layout() else { return None };
@@ -410,7 +402,7 @@ impl Writer<'_> {
         statement: impl Fn(usize, &str) -> String,
     ) -> String {
         let mut text = String::new();
-        for source in derivatives.sources {
+        for source in derivatives.sources.iter().filter(|source| !source.blocks.is_empty()) {
             let Some(program) = self.find(source.function) else { continue };
             let mut conditions: Vec<String> = source.blocks.iter().map(|&(_, input)| condition(input)).collect();
             conditions.dedup();

@@ -60,32 +60,14 @@ static void PREFIX_step_jacobians(
         }
     }
 // next function
-    // the numbers after the step are step² or step times the accelerations, and what is linear; with q, q̇, τ → q, q̇, q̈
-    // and m = M⁻¹ λ as multipliers, the second derivatives of λᵀ q̈ are less those of mᵀ τ
+    // the numbers after the step are step² or step times the accelerations, and what is linear
     const casadi_real *of_q = PREFIX_given(arg[6]), *of_qd = PREFIX_given(arg[7]);
-    casadi_real multipliers[DOF], slopes[DOF], of_torques[DOF], second[4][DOF][DOF];
-    PREFIX_hessian twice;
+    casadi_real multipliers[DOF], slopes[DOF], second[4][DOF][DOF];
     for (int row = 0; row < DOF; row++) {
         multipliers[row] = step * (step * of_q[row] + of_qd[row]);
         slopes[row] = 2 * step * of_q[row] + of_qd[row];
     }
-    PREFIX_multiply_row(multipliers, by.dtau, of_torques);
-    PREFIX_torque_hessian(q, qd, by_step[1], of_torques, &twice);
-    for (int row = 0; row < DOF; row++) {
-        for (int column = 0; column < DOF; column++) {
-            casadi_real sums[3] = {twice.dq_dq[row][column], twice.dq_dqd[row][column], 0};
-            for (int index = 0; index < DOF; index++) {
-                sums[0] += twice.dq_dqdd[row][index] * by.dq[index][column];
-                sums[0] += twice.dq_dqdd[column][index] * by.dq[index][row];
-                sums[1] += twice.dq_dqdd[row][index] * by.dqd[index][column];
-                sums[2] += twice.dq_dqdd[row][index] * by.dtau[index][column];
-            }
-            second[0][row][column] = -sums[0];
-            second[1][row][column] = -sums[1];
-            second[2][row][column] = -sums[2];
-            second[3][row][column] = -twice.dqd_dqd[row][column];
-        }
-    }
+    PREFIX_second_of_motion(q, qd, by_step[1], &by, multipliers, second);
     // by the duration, and the duration by q, qd and tau
     for (int by_adjoint = 0; by_adjoint < 2; by_adjoint++) {
         casadi_real *const *to = by_adjoint ? res + 24 : res;

@@ -2,6 +2,7 @@
 
 mod casadi;
 mod casadi_interface;
+mod casadi_motion;
 mod casadi_step;
 pub(crate) mod header;
 mod joint_functions;
