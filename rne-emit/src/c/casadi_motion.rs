@@ -45,7 +45,8 @@ impl Presence {
 pub(super) struct Motion {
     /// By q, by q̇ and by τ.
     pub(super) first: [Presence; 3],
-    /// Second derivatives of λᵀ q̈ by (q, q), (q, q̇), (q, τ) and (q̇, q̇). Accelerations are linear in τ, by M⁻¹, which q alone changes.
+    /// Second derivatives of λᵀ q̈ by (q, q), (q, q̇), (q, τ) and (q̇, q̇). Accelerations are linear in τ, by M⁻¹,
+    /// which q alone changes.
     second: [Presence; 4],
 }
 
