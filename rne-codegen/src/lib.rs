@@ -68,7 +68,7 @@ pub use program::{
 pub use reduced::algorithm::Algorithm;
 pub use reduced::inward::ExpressedIn;
 pub use refusal::{Attempt, LeftOut, Reason, Refusal};
-pub use registers::{Order, ordered_for_registers, statements_of_outputs};
+pub use registers::{Order, order_for_registers, ordered_for_registers, statements_of_outputs};
 pub use values::{Contraction, Negated, Value, ValueId, Values};
 
 use crate::formulation::Formulation;

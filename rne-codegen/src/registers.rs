@@ -41,9 +41,15 @@ const FAR: i64 = 500;
 /// ```
 #[must_use]
 pub fn ordered_for_registers(program: &Program) -> Program {
-    let order = Lives::of(program).order();
-    let statements = order.into_iter().map(|index| program.statements[index].clone()).collect();
+    let order = order_for_registers(program).into_iter();
+    let statements = order.map(|index| program.statements[index].clone()).collect();
     Program { statements, order: Order::Registers, ..program.clone() }.in_written_order()
+}
+
+/// The places of the statements of a program, in the order of [`ordered_for_registers`].
+#[must_use]
+pub fn order_for_registers(program: &Program) -> Vec<usize> {
+    Lives::of(program).order()
 }
 
 /// For each output, the statement after which it is known; `None` where no statement is needed.

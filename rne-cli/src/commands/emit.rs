@@ -370,7 +370,7 @@ fn is_named_once(run_time: &[String]) -> Result<(), Failure> {
 
 fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
     use Language::{C, Cuda, Ptx, Rust};
-    let options: [(&str, bool, &[Language], &str); 10] = [
+    let options: [(&str, bool, &[Language], &str); 11] = [
         (
             "--with-sin-cos",
             arguments.with_sin_cos,
@@ -383,6 +383,12 @@ fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
         ("--limits", arguments.limits, &[C], "in Rust, `f64::clamp` limits a torque"),
         ("--runge-kutta", arguments.runge_kutta, &[C], "in Rust, every type with `ForwardDynamics` has the step"),
         ("--rollout", arguments.rollout, &[Ptx], "`CompiledArm::rollout` rolls samples out on the processor"),
+        (
+            "--order registers",
+            arguments.order == Order::Registers,
+            &[Rust, C, Cuda],
+            "kernels of PTX always have an order in which few values are alive at once",
+        ),
         ("--names", arguments.names, &[Rust, C], "code for processors of graphics has functions alone"),
         ("--tests", arguments.tests, &[Rust, C], "code for processors of graphics has functions alone"),
         ("--casadi", arguments.casadi, &[C], "CasADi calls functions of C"),

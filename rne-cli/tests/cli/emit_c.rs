@@ -388,6 +388,8 @@ fn an_order_is_for_the_reduced_form() {
     for command in [&["emit", "planar2"][..], &["emit", "planar2", "--lang", "c", "--form", "seven_steps"]] {
         fails(2, &[command, &["--order", "registers"]].concat(), &["--order registers is for --form reduced"]);
     }
+    let kernels = ["emit", "planar2", "--lang", "ptx", "--order", "registers"];
+    fails(2, &kernels, &["--order registers is for", "kernels of PTX always have an order"]);
     fails(2, &["emit", "planar2", "--order", "stack"], &["--order <O>", "formulas, registers"]);
     let code = fine(&["emit", "planar2", "--form", "reduced", "--order", "registers"]);
     assert!(code.contains("Order: statements stand where few values are alive at once"), "{code}");

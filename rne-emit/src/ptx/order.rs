@@ -3,27 +3,37 @@
 //!
 //! The assembler orders instructions anew, but it does not leave the neighbourhood of where they stand. Programs go
 //! through the robot from the base to the tips and back, so that a tree has values of all its branches in registers at
-//! once; computed from the results, it goes through one branch after the other.
+//! once. Computed from the results, it goes through one branch after the other. The elements of a matrix share many
+//! values, which the order from the results has in registers for long: there the order for registers needs fewer.
 
-use rne_codegen::{Program, Value, ValueId};
+use rne_codegen::{Program, Value, ValueId, order_for_registers};
 
-/// The order from the results, or that of the program where the other has far more values in registers at once.
+/// The order from the results or the one for registers, whichever has fewer values in registers at once.
 pub(super) fn of(program: &Program) -> Vec<ValueId> {
-    let written: Vec<ValueId> = program.values.iter().map(|(id, _)| id).collect();
-    let mut order = Vec::with_capacity(written.len());
-    let mut is_known = vec![false; written.len()];
-    // a value, and whether its operands have been looked at
-    let mut open: Vec<(ValueId, bool)> = program.outputs.iter().rev().map(|output| (output.value, false)).collect();
-    while let Some((id, has_operands)) = open.pop() {
-        if has_operands {
-            order.push(id);
-        } else if !std::mem::replace(&mut is_known[id.index()], true) {
-            open.push((id, true));
-            open.extend(program.values.get(id).operands().rev().map(|operand| (operand, false)));
+    let results = || program.outputs.iter().map(|output| output.value);
+    let statements = order_for_registers(program).into_iter().map(|index| program.statements[index].value);
+    let (from_results, for_registers) = (computed(program, results()), computed(program, statements.chain(results())));
+    let is_less = most_at_once(program, &for_registers) < most_at_once(program, &from_results);
+    if is_less { for_registers } else { from_results }
+}
+
+/// Values in the order in which they are computed, each behind what it is computed from.
+fn computed(program: &Program, values: impl Iterator<Item = ValueId>) -> Vec<ValueId> {
+    let mut order = Vec::with_capacity(program.values.len());
+    let mut is_known = vec![false; program.values.len()];
+    for value in values {
+        // a value, and whether its operands have been looked at
+        let mut open = vec![(value, false)];
+        while let Some((id, has_operands)) = open.pop() {
+            if has_operands {
+                order.push(id);
+            } else if !std::mem::replace(&mut is_known[id.index()], true) {
+                open.push((id, true));
+                open.extend(program.values.get(id).operands().rev().map(|operand| (operand, false)));
+            }
         }
     }
-    // a little more is no loss: the assembler evens it out
-    if 5 * most_at_once(program, &order) < 6 * most_at_once(program, &written) { order } else { written }
+    order
 }
 
 /// How many values there are in registers at once: from where they are computed, or arguments first used, to their last
