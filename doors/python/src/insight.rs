@@ -156,6 +156,11 @@ impl Arm {
             Self::add_derivatives(&mut functions)?;
         }
         let order: Order = name(order)?;
+        if order == Order::Registers && form == Some(Form::SevenSteps.name()) {
+            return Err(PyValueError::new_err(
+                "`order=\"registers\"` is for `form=\"reduced\"`: code of the seven steps keeps their order",
+            ));
+        }
         let in_order = |program: Program| match (order, program.form) {
             (Order::Registers, Form::Reduced) => ordered_for_registers(&program),
             _ => program,
@@ -164,8 +169,8 @@ impl Arm {
         let programs = programs.collect::<PyResult<Vec<_>>>()?;
         if casadi && !programs.iter().any(rne_emit::is_for_casadi) {
             return Err(PyValueError::new_err(
-                "CasADi can call none of these functions: it calls functions that take vectors and return a number, a \
-                 vector or a matrix, such as inverse_dynamics. It gets derivatives from the function itself: \
+                "CasADi cannot call this: it calls functions that take vectors and return a number, a vector or a \
+                 matrix, such as inverse_dynamics. Derivatives come from these, such as \
                  `arm.casadi(\"euler_step\").jacobian()`",
             ));
         }

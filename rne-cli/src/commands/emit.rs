@@ -510,7 +510,7 @@ pub(super) fn in_order(order: Order, form: Form, programs: Vec<Program>) -> Resu
         (Order::Formulas, _) => Ok(programs),
         (Order::Registers, Form::SevenSteps) => Err(Failure::usage(format_args!(
             "{TYPED}--order registers{TYPED:#} is for {TYPED}--form reduced{TYPED:#}: code of the seven steps keeps \
-             their order"
+             their order, and code in Rust has this form unless you write {TYPED}--form reduced{TYPED:#}"
         ))),
         (Order::Registers, Form::Reduced) => {
             let is_reduced = |program: &Program| program.form == Form::Reduced;

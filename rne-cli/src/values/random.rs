@@ -38,8 +38,6 @@ pub(crate) fn state(random: &Random, robot: &Robot) -> State {
     }
     let (wrench, payload) = (Some(random.wrench()), Some(random.payload()));
     let base = random.base();
-    // no rotation, but the energy is linear in these numbers
-    let pose = Pose { rotation: [base.omega, base.omega_dot, base.acceleration], translation: base.velocity };
     // without named tips, the wrench at the tip
     let wrenches = match robot.tips.len() {
         0 => wrench.into_iter().collect(),
@@ -47,6 +45,7 @@ pub(crate) fn state(random: &Random, robot: &Robot) -> State {
     };
     // hundredths, which single precision rounds: the code and the runtime agree for a rotation
     let base_rotation = BASE_ROTATION.map(|row| row.map(|x| (f64::from(x) * 100.0).round() / 100.0));
+    let pose = Pose { rotation: base_rotation, translation: base.velocity };
     // last, so that the other numbers stay what they were
     let multipliers = (0..dof).map(|_| random.number(1.0)).collect();
     let step = random.number(0.1);

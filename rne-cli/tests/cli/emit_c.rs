@@ -335,7 +335,17 @@ fn the_order_for_registers_gives_the_same_bits() {
     let functions = "inverse_dynamics,forward_dynamics,inverse_dynamics_derivatives,euler_step";
     for (order, prefix) in [("formulas", "one"), ("registers", "other")] {
         let out = path(&folder, &format!("{prefix}.c"));
-        let written = ["emit", "robots/puma560.yaml", "--lang", "c", "--real", "double", "--function", functions];
+        let written = [
+            "emit",
+            "robots/puma560.yaml",
+            "--lang",
+            "c",
+            "--real",
+            "double",
+            "--runge-kutta",
+            "--function",
+            functions,
+        ];
         assert_eq!(rne(&[&written[..], &["--order", order, "--prefix", prefix, "-o", &out]].concat()).status, 0);
         let check = [&written[..], &["--order", order, "--prefix", prefix, "--check", &out]].concat();
         assert_eq!(rne(&check).status, 0);
@@ -371,6 +381,14 @@ int main(void)
         one_inverse_dynamics(q, qd, qdd, a);
         other_inverse_dynamics(q, qd, qdd, b);
         wrong += differs(a, b, sizeof a);
+        // the state after a step, from the place of the velocities on
+        double start[18];
+        one_next_state next;
+        memcpy(start, q, sizeof q);
+        memcpy(start + 6, qd, sizeof qd);
+        one_runge_kutta_step(start, start + 6, qdd, 0.001, &next);
+        other_runge_kutta_step(start, start + 6, qdd, 0.001, (other_next_state *)(void *)(start + 6));
+        wrong += differs(&next, start + 6, sizeof next);
         other_inverse_dynamics(q, qd, qdd, q);
         wrong += differs(a, q, sizeof a);
     }

@@ -106,6 +106,14 @@ fn c_passes_its_tests() {
         let Some(output) = tested_c(&folder, &code) else { return };
         assert!(output.status.success() && said(&output).contains(" tests, 0 wrong"), "{robot:?}: {}", said(&output));
     }
+    // the step of a floating base begins at a pose, whose rotation is one
+    for real in ["float", "double"] {
+        let steps = "floating_euler_step,floating_euler_step_derivatives,floating_potential_energy";
+        let code =
+            fine(&["emit", "docs/satellite.yaml", "--tests", "--lang", "c", "--function", steps, "--real", real]);
+        let Some(output) = tested_c(&folder, &code) else { return };
+        assert!(output.status.success() && said(&output).contains(" tests, 0 wrong"), "{real}: {}", said(&output));
+    }
     // friction and limits are tested, too, and a wrong number of theirs is noticed
     for real in ["float", "double"] {
         let joints = ["emit", "docs/desk_arm_identified.yaml", "--lang", "c", "--tests", "--friction", "--limits"];

@@ -319,6 +319,9 @@ fn contract(file: &File) -> String {
         "A result may be written over an argument: all arguments are read before the first number is written. No \
          loop, no branch, no memory but the stack, no library.",
     );
+    if file.additions.runge_kutta {
+        paragraph("The steps of Runge-Kutta have loops over the joints.");
+    }
     if file.chooses_by_sign() {
         paragraph("Friction chooses between numbers by a sign, which a compiler may make a branch.");
     }

@@ -32,9 +32,9 @@ HEAD_OF_STEP
     PREFIX_forward_dynamics(states[3].q, states[3].qd, tauGIVEN, qdd[3]);
     for (int i = 0; i < DOF; i++) {
         const REAL middle = qdd[1][i] + qdd[2][i];
-        const REAL mean = qd[i] + ((qdd[0][i] + middle) * sixth);
-        next->q[i] = q[i] + (step * mean);
-        next->qd[i] = qd[i] + (((qdd[0][i] + (middle + middle)) + qdd[3][i]) * sixth);
+        const REAL mean = states[0].qd[i] + ((qdd[0][i] + middle) * sixth);
+        next->q[i] = states[0].q[i] + (step * mean);
+        next->qd[i] = states[0].qd[i] + (((qdd[0][i] + (middle + middle)) + qdd[3][i]) * sixth);
     }
 }
 // the derivatives
