@@ -6,7 +6,9 @@ use crate::arm::Arm;
 
 /// Methods that a module of the package computes: the arguments that are always there, and those of some.
 macro_rules! computed_by {
-    ($module:literal: $($(#[$doc:meta])* $name:ident ($($given:ident),*; $($wrenches:ident)?; $($payload:ident)?))*) => {$(
+    ($module:literal: $(
+        $(#[$doc:meta])* $name:ident ($($given:ident),*; $($wrenches:ident)?; $($payload:ident)?)
+    )*) => {$(
         #[pymethods]
         impl Arm {
             $(#[$doc])*
