@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use rne_model::did_you_mean;
+
 /// An enum with all its variants in order, their names, and the variant of a name.
 macro_rules! named {
     ($(#[$doc:meta])* $type:ident, $what:literal {
@@ -51,8 +53,18 @@ pub struct UnknownName {
 
 impl fmt::Display for UnknownName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let allowed: Vec<String> = self.allowed.iter().map(|name| format!("`{name}`")).collect();
-        write!(f, "`{}` is not a valid {}; the valid words are {}", self.found, self.what, allowed.join(", "))
+        /// Words that a reader takes in at a glance.
+        const FEW: usize = 20;
+        let Self { found, what, allowed } = self;
+        write!(f, "`{found}` is not a valid {what}; ")?;
+        if allowed.len() > FEW {
+            return match did_you_mean(found, allowed.iter().copied()) {
+                Some(near) => write!(f, "did you mean `{near}`?"),
+                None => write!(f, "there are {}, such as `{}` and `{}`", allowed.len(), allowed[0], allowed[1]),
+            };
+        }
+        let allowed: Vec<String> = allowed.iter().map(|name| format!("`{name}`")).collect();
+        write!(f, "the valid words are {}", allowed.join(", "))
     }
 }
 

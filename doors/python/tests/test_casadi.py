@@ -161,7 +161,7 @@ def test_a_matrix_and_functions_without_derivatives():
         function.jacobian()
     with pytest.raises(ValueError, match="CasADi cannot call this"):
         arm.casadi("forward_kinematics")
-    with pytest.raises(ValueError, match="inverse_dynamic"):
+    with pytest.raises(ValueError, match="did you mean `inverse_dynamics`"):
         arm.casadi("inverse_dynamic")
     free = rne.load(Path(ROBOTS.parent, "docs/desk_arm.yaml"), run_time=["upper"])
     with pytest.raises(ValueError, match="run-time parameters, such as `upper`.* load the robot file without `run_time`"):
