@@ -63,12 +63,12 @@ pub use ir::{
 pub use named::UnknownName;
 pub use pipeline::Target;
 pub use program::{
-    Constant, Operations, Output, Program, Proof, Resolution, ResolvedAs, Scales, SineCosine, Statement,
+    Constant, Operations, Order, Output, Program, Proof, Resolution, ResolvedAs, Scales, SineCosine, Statement,
 };
 pub use reduced::algorithm::Algorithm;
 pub use reduced::inward::ExpressedIn;
 pub use refusal::{Attempt, LeftOut, Reason, Refusal};
-pub use registers::{Order, order_for_registers, ordered_for_registers, statements_of_outputs};
+pub use registers::{order_for_registers, ordered_for_registers, statements_of_outputs};
 pub use values::{Contraction, Negated, Value, ValueId, Values};
 
 use crate::formulation::Formulation;

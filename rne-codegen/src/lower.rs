@@ -15,9 +15,8 @@ use crate::CompileError;
 use crate::function::{Form, Function};
 use crate::ir::derivation;
 use crate::ir::{ExactAngle, Exactly, Indices, Name, Number, Op, Operation, Place, Quantity, Ref, Sign, Step, Traced};
-use crate::program::{Constant, Program, Resolution, ResolvedAs};
+use crate::program::{Constant, Order, Program, Resolution, ResolvedAs};
 use crate::reduced::Algorithm;
-use crate::registers::Order;
 use crate::values::{Value, Values};
 
 /// Where a statement stands: the index of its node, and an order among those that stand behind one node.

@@ -9,10 +9,20 @@ use crate::equation::Equation;
 use crate::expression::Expression;
 use crate::function::{Form, Function, Layout, Sizes};
 use crate::ir::{Causes, FoldReport, Name, Operator, Place, Sign};
+use crate::named::named;
 use crate::reduced::{Algorithm, JointFrame, Parameters};
 use crate::refusal::Refusal;
-use crate::registers::Order;
 use crate::values::{Value, ValueId, Values};
+
+named! {
+    /// The order of the statements of a program.
+    Order, "order" {
+        /// The order of its formulas, joint by joint.
+        Formulas = "formulas",
+        /// One in which few values are alive at once.
+        Registers = "registers",
+    }
+}
 
 /// A function of one robot as straight-line code.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,19 +10,8 @@
 
 use std::collections::BinaryHeap;
 
-use crate::named::named;
-use crate::program::Program;
+use crate::program::{Order, Program};
 use crate::values::ValueId;
-
-named! {
-    /// The order of the statements of a program.
-    Order, "order" {
-        /// The order of its formulas, joint by joint.
-        Formulas = "formulas",
-        /// One in which few values are alive at once.
-        Registers = "registers",
-    }
-}
 
 /// A statement that comes this far before another one in the given order comes first, even if it ends one life less.
 const FAR: i64 = 500;
