@@ -184,11 +184,11 @@ fn errors() {
             "give `payload` a value in the file for which this number is not zero, or remove it from the run-time \
              parameters",
         ),
-        ("h", ("h - 0.1", "h - 0.3"), (11, 31, "h - 0.3"), "`h - 0.3` = 0 varies with", "give `h` a value"),
+        ("h", ("h - 0.1", "h - 0.3"), (11, 31, "h - 0.3"), "`h - 0.3` = 0 depends on", "give `h` a value"),
         ("h", ("0.1]}", "h-0.3]}"), (7, 21, "h-0.3"), "`h-0.3` = 0 depends on the run-time parameter `h`", ""),
-        ("unit", ("mass: unit", "mass: unit - 1"), (21, 18, "unit - 1"), "`unit - 1` = 0 varies with", ""),
-        ("unit", ("-60*unit", "unit - 1"), (18, 39, "unit - 1"), "`unit - 1` = 0 varies with", ""),
-        ("payload", ("zz: 0.02", "yz: payload"), (15, 73, "payload"), "`payload` = 0 varies with", ""),
+        ("unit", ("mass: unit", "mass: unit - 1"), (21, 18, "unit - 1"), "`unit - 1` = 0 depends on", ""),
+        ("unit", ("-60*unit", "unit - 1"), (18, 39, "unit - 1"), "`unit - 1` = 0 depends on", ""),
+        ("payload", ("zz: 0.02", "yz: payload"), (15, 73, "payload"), "`payload` = 0 depends on", ""),
         (
             "unit",
             (
