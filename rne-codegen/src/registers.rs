@@ -10,6 +10,7 @@
 
 use std::collections::BinaryHeap;
 
+use crate::function::Form;
 use crate::program::{Order, Program};
 use crate::values::ValueId;
 
@@ -17,6 +18,7 @@ use crate::values::ValueId;
 const FAR: i64 = 500;
 
 /// The program with its statements in an order in which few values are alive at once. It follows no recursion any more.
+/// Code of the seven steps keeps their order.
 ///
 /// ```
 /// use rne_codegen::ordered_for_registers;
@@ -30,6 +32,9 @@ const FAR: i64 = 500;
 /// ```
 #[must_use]
 pub fn ordered_for_registers(program: &Program) -> Program {
+    if program.form == Form::SevenSteps {
+        return program.clone();
+    }
     let order = order_for_registers(program).into_iter();
     let statements = order.map(|index| program.statements[index].clone()).collect();
     Program { statements, order: Order::Registers, ..program.clone() }.in_written_order()

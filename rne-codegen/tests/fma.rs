@@ -101,7 +101,6 @@ fn the_order_for_registers_has_the_same_statements_and_fewer_lives() {
             };
             assert!(statements(&ordered) == statements(&program), "{} of {}", program.function, program.robot);
             assert_eq!(ordered.operations(), program.operations(), "{} of {}", program.function, program.robot);
-            assert!(ordered_for_registers(&ordered).statements.len() == program.statements.len());
             let [given, new] = [&program, &ordered].map(|program| alive(program).into_iter().max().unwrap_or(0));
             // the greedy choice is not always the best one, but never far from it
             assert!(new <= given + 4, "{} of {}: {given}, {new}", program.function, program.robot);

@@ -161,9 +161,9 @@ impl Arm {
                 "`order=\"registers\"` is for `form=\"reduced\"`: code of the seven steps keeps their order",
             ));
         }
-        let in_order = |program: Program| match (order, program.form) {
-            (Order::Registers, Form::Reduced) => ordered_for_registers(&program),
-            _ => program,
+        let in_order = |program: Program| match order {
+            Order::Registers => ordered_for_registers(&program),
+            Order::Formulas => program,
         };
         let programs = functions.iter().map(|name| self.program(name, form).map(in_order));
         let programs = programs.collect::<PyResult<Vec<_>>>()?;

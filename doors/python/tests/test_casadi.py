@@ -179,12 +179,12 @@ def test_a_matrix_and_functions_without_derivatives():
 def test_the_order_of_statements_changes_no_bit():
     arm = rne.robots.puma560
     formulas, registers = (arm.code(form="reduced", order=order) for order in ("formulas", "registers"))
-    assert formulas != registers and sorted(formulas.split()) != formulas.split()
+    assert formulas != registers
     lines = [{line.strip() for line in code.splitlines() if " = " in line} for code in (formulas, registers)]
     assert lines[0] == lines[1]
     with pytest.raises(ValueError, match="`stack` is not a valid order"):
         arm.code(order="stack")
-    with pytest.raises(ValueError, match="keeps their order|keep their order"):
+    with pytest.raises(ValueError, match="code of the seven steps keeps their order"):
         arm.code(order="registers", form="seven_steps")
 
 

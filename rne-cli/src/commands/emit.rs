@@ -504,7 +504,7 @@ fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failur
     in_order(arguments.order, arguments.form(), programs)
 }
 
-/// Programs with their statements in an order. One that fell back to the seven steps keeps their order.
+/// Programs with their statements in an order.
 pub(super) fn in_order(order: Order, form: Form, programs: Vec<Program>) -> Result<Vec<Program>, Failure> {
     match (order, form) {
         (Order::Formulas, _) => Ok(programs),
@@ -512,12 +512,7 @@ pub(super) fn in_order(order: Order, form: Form, programs: Vec<Program>) -> Resu
             "{TYPED}--order registers{TYPED:#} is for {TYPED}--form reduced{TYPED:#}: code of the seven steps keeps \
              their order, and code in Rust has this form unless you write {TYPED}--form reduced{TYPED:#}"
         ))),
-        (Order::Registers, Form::Reduced) => {
-            let is_reduced = |program: &Program| program.form == Form::Reduced;
-            let ordered =
-                |program: Program| if is_reduced(&program) { ordered_for_registers(&program) } else { program };
-            Ok(programs.into_iter().map(ordered).collect())
-        }
+        (Order::Registers, Form::Reduced) => Ok(programs.iter().map(ordered_for_registers).collect()),
     }
 }
 
