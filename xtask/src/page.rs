@@ -17,7 +17,7 @@ const PACKAGES: [&str; 3] = ["selenium==4.51.0", "axe-core-python==0.1.0", "pill
 ///
 /// Torques and vectors in all axes beside those of `rne eval`, every statement of the PUMA 560 to its equation, value,
 /// unit and arrow and back, sliders, keyboard, fingers, exercises, axe's rules of accessibility, widths of a desk and a
-/// phone, sizes and times. `xtask/page.py` has all of it. Of most arms only torques and axes are looked at, unless
+/// phone, sizes and times. `tests/page/page.py` has all of it. Of most arms only torques and axes are looked at, unless
 /// CI_FULL is set.
 #[derive(Args)]
 #[command(after_help = "\
@@ -45,7 +45,7 @@ impl Page {
         let rne = rne(&shell)?;
         let folder = machine::target_folder("target")?.join("page");
         let pictures: &[&str] = if self.pictures { &["docs/pictures"] } else { &[] };
-        Ok(Verdict::from(cmd!(shell, "{python} xtask/page.py {rne} {folder} {pictures...}").quiet().run().is_ok()))
+        Ok(Verdict::from(cmd!(shell, "{python} tests/page/page.py {rne} {folder} {pictures...}").quiet().run().is_ok()))
     }
 }
 

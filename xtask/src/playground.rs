@@ -54,7 +54,7 @@ pub(crate) struct Playground {
     /// Serve it at this port of localhost; 0 for any that is free
     #[arg(long, default_value_t = 8000)]
     port: u16,
-    /// Use it in headless Chromium: xtask/playground.py
+    /// Use it in headless Chromium: tests/page/playground.py
     #[arg(long)]
     test: bool,
 }
@@ -81,7 +81,7 @@ impl Playground {
             let shell = machine::shell()?;
             let python = page::python(&shell, self.install)?;
             let rne = page::rne(&shell)?;
-            if cmd!(shell, "{python} xtask/playground.py {rne} {path}").quiet().run().is_err() {
+            if cmd!(shell, "{python} tests/page/playground.py {rne} {path}").quiet().run().is_err() {
                 return Ok(Verdict::Fails);
             }
         }

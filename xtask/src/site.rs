@@ -32,7 +32,7 @@ pub(crate) struct Site {
     /// Get what is missing: the target for WebAssembly, and with --test the browser
     #[arg(long)]
     pub(crate) install: bool,
-    /// Open the site in headless Chromium: xtask/site.py
+    /// Open the site in headless Chromium: tests/page/site.py
     #[arg(long)]
     test: bool,
 }
@@ -100,7 +100,7 @@ impl Site {
         println!("{}: {pages} pages besides the reference, {} links lead nowhere", site.display(), wrong.len());
         if self.test {
             let python = page::python(&shell, self.install)?;
-            if cmd!(shell, "{python} xtask/site.py {site}").quiet().run().is_err() {
+            if cmd!(shell, "{python} tests/page/site.py {site}").quiet().run().is_err() {
                 return Ok(Verdict::Fails);
             }
         }

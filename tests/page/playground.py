@@ -251,7 +251,7 @@ def apart(driver):
 def every_robot(driver):
     """All of the menu compile, and how long those with seven joints take."""
     names = driver.execute_script("return playground.robots.map(of => of.name)")
-    folder = pathlib.Path(__file__).parent.parent / "robots"
+    folder = pathlib.Path(__file__).parents[2] / "robots"
     there = sorted(of.stem for of in folder.glob("*.yaml") if "." not in of.stem)
     check(names == there, f"the menu has {names}")
     of_seven = []
