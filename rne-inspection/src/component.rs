@@ -20,6 +20,8 @@ pub(crate) struct Equations<'p> {
     plain: HashMap<String, Tree>,
     used_by: BTreeMap<String, Vec<String>>,
     statements: HashMap<String, Vec<String>>,
+    /// Whether each statement has an equation.
+    is_whole: bool,
     reasons: Vec<String>,
 }
 
@@ -53,6 +55,8 @@ impl<'p> Equations<'p> {
         for statement in program.angles.iter().chain(&program.statements) {
             statements.entry(owner(statement).to_string()).or_default().push(statement.name.to_string());
         }
+        let has_equation = |name| program.equations.iter().any(|equation| equation.name == name);
+        let is_whole = program.statements.iter().map(owner).all(has_equation);
         let mut all = Self {
             robot,
             program,
@@ -60,6 +64,7 @@ impl<'p> Equations<'p> {
             plain: HashMap::new(),
             used_by,
             statements,
+            is_whole,
             reasons: Vec::new(),
         };
         all.find_plain();
@@ -97,6 +102,19 @@ impl<'p> Equations<'p> {
         self.reasons
     }
 
+    /// Whether a value reaches a statement, by itself or as a part of others that have none. A statement without an
+    /// equation, as the sums of a floating base are, does not tell what it reads.
+    fn is_stated(&self, name: &str) -> bool {
+        self.statements.contains_key(name)
+            || !self.is_whole
+            || self.used_by.get(name).is_some_and(|users| {
+                users.iter().any(|user| match self.became.get(user) {
+                    Some(Became::Constant { .. } | Became::Unused) => false,
+                    _ => self.is_stated(user),
+                })
+            })
+    }
+
     fn component(&mut self, equation: &Equation) -> Component {
         let name = equation.name.to_string();
         let (robot, reasons) = (self.robot, &mut self.reasons);
@@ -122,6 +140,8 @@ impl<'p> Equations<'p> {
         let became = match self.became.get(&name) {
             // a torque that is another name is returned under its own
             Some(Became::Same { .. }) if statements.contains(&name) => Became::Computed,
+            // the code has the same product for something else
+            None | Some(Became::Inside) if !self.is_stated(&name) => Became::Unused,
             found => found.cloned().unwrap_or(Became::Inside),
         };
         Component {

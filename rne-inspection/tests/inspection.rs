@@ -226,6 +226,23 @@ fn zeros(tree: &Tree) -> bool {
 }
 
 #[test]
+fn what_has_no_statement_of_its_own_is_part_of_one_or_not_needed() {
+    fn reaches(name: &str, all: &HashMap<&str, &rne_inspection::Component>) -> bool {
+        let component = all[name];
+        !component.statements.is_empty() || component.used_by.iter().any(|user| reaches(user, all))
+    }
+    for robot in shipped() {
+        let inspection = inspected(&robot);
+        let components = inspection.cells.iter().flat_map(|cell| &cell.components).chain(&inspection.table);
+        let all = components.map(|component| (component.name.as_str(), component)).collect();
+        for component in inspection.cells.iter().flat_map(|cell| &cell.components) {
+            let is_inside = component.became == Became::Inside;
+            assert!(!is_inside || reaches(&component.name, &all), "{} {}", robot.name, component.name);
+        }
+    }
+}
+
+#[test]
 fn what_is_gone_has_a_reason_and_what_is_left_has_none() {
     for robot in shipped() {
         let inspection = inspected(&robot);

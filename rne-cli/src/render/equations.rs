@@ -150,6 +150,7 @@ fn code(view: View<'_>, component: &Component) -> Vec<String> {
         Became::Constant { value, why } => lines.push(format!("none: it is {value}, {why}")),
         Became::Inside => {
             let users = component.used_by.join(", ");
+            let users = if users.is_empty() { "another statement" } else { &users };
             lines.push(format!("no statement of its own; it is part of {users}"));
         }
         Became::Unused => lines.push(format!("none: {} does not need it", view.inspection.function)),
