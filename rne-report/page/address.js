@@ -4,7 +4,7 @@
 const WORDS = ["exercise", "lecture", "unfolded", "reduced", "c", "equations", "joint", "base", "light", "dark", "frames"];
 
 /** The keys of an address that have a value; those of a floating base come on top. */
-const KEYS = ["q", "qd", "qdd", "f", "n", "cell", "look"];
+const KEYS = ["q", "qd", "qdd", "f", "n", "cell", "look", "arrows"];
 const keysOf = (page) => (page.state.base ? [...KEYS, ...Object.keys(OF_BASE)] : KEYS);
 
 /** What an address asks for: lists by their names, and words. */
@@ -22,6 +22,7 @@ function readAddress(fragment, keys = KEYS) {
     const texts = decodeURIComponent(value).split(",");
     const numbers = texts.map(numberOf);
     if (key === "look" && VIEWS.includes(value)) asked.look = value;
+    else if (key === "arrows") asked.arrows = texts.filter(Boolean);
     else if (key === "cell" && /^\d+\.\d$/.test(value)) asked.cell = value.split(".").map(Number);
     else if (!keys.includes(key)) asked.unknown.push(key);
     else if (key === "cell") asked.wrong.push(`cell=${value} is no cell: write cell=JOINT.STEP`);
@@ -36,7 +37,7 @@ function readAddress(fragment, keys = KEYS) {
 
 /** Shows what an address asks for; returns what it cannot show, in words. */
 function showAddress(page, fragment) {
-  const { lists, words, cell, look, wrong } = readAddress(fragment, keysOf(page));
+  const { lists, words, cell, look, arrows, wrong } = readAddress(fragment, keysOf(page));
   const { coordinates } = page.inspection;
   const fits = (key, count) => {
     if (!lists[key]) return false;
@@ -72,6 +73,9 @@ function showAddress(page, fragment) {
   } else if (cell) {
     wrong.push(`there is no cell ${cell.join(".")}`);
   }
+  const none = arrows?.filter((quantity) => !page.layerButtons.has(quantity)) || [];
+  if (none.length) wrong.push(`there are no arrows ${none.join(", ")}: there are ${[...page.layerButtons.keys()].join(", ")}`);
+  else if (arrows) view.layers = arrows;
   if (look) view.look = page.arm.lookOf(look);
   else if (fits("look", 3)) [view.look] = [{ yaw: lists.look[0], pitch: lists.look[1], zoom: lists.look[2] }];
   else view.look = page.arm.home;
@@ -91,6 +95,8 @@ function addressOf(page) {
   for (const [of, vector] of Object.entries(view.state.base || {})) if (!isFirst(vector, page.initial.base[of])) parts.push(`${of}=${vector.join(",")}`);
   for (const of of ["f", "n"]) if (view.wrench[of].some((value) => value !== 0)) parts.push(`${of}=${view.wrench[of].join(",")}`);
   if (!isFirst(view.cell, page.firstCell)) parts.push(`cell=${view.cell.join(".")}`);
+  const ofCell = page.layersOf(view.cell[1]);
+  if (view.layers.length !== ofCell.length || !isFirst(view.layers, ofCell)) parts.push(`arrows=${view.layers.join(",")}`);
   const name = page.arm.viewName();
   if (name ? page.arm.lookOf(name) !== page.arm.home : true)
     parts.push(`look=${name || [view.look.yaw, view.look.pitch, view.look.zoom].join(",")}`);

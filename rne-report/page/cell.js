@@ -29,7 +29,9 @@ class Cards {
     const sections = order.flatMap((quantity) => {
       const of = this.page.inspection.quantities[quantity];
       const formula = formulas.get(quantity);
-      const cards = groups.get(quantity).map((component) => this.card(component));
+      // what is a number in every state comes last
+      const isNumber = ({ became }) => Number(became.kind === "constant");
+      const cards = groups.get(quantity).sort((a, b) => isNumber(a) - isNumber(b)).map((component) => this.card(component));
       const isAxisNamed = / e($| )/.test(formula || "");
       const heading = element(
         "h4",
@@ -38,7 +40,9 @@ class Cards {
         element(
           "span",
           { class: "group-meaning" },
-          [this.meaning(of, cell, formula), isAxisNamed ? "e = (0, 0, 1), the joint axis" : ""].filter(Boolean).join("; "),
+          [this.meaning(of, cell, formula), isAxisNamed ? "e = (0, 0, 1), the joint axis" : "", formula ? this.point(groups.get(quantity)) : ""]
+            .filter(Boolean)
+            .join("; "),
         ),
       );
       const before = !formula && !isOnTheWay ? [element("p", { class: "on-the-way" }, "On the way")] : [];
@@ -57,6 +61,14 @@ class Cards {
     if (formula) return words === title || words.includes(" = ") ? "" : words;
     const bare = (text) => text.replace(/[ ()]/g, "");
     return bare(words) === bare(of.letter) ? "" : words.replace(`${of.letter} `, "");
+  }
+
+  /** The joint's point, whose letter is none of the lecture, where equations have it in the place of a bracket. */
+  point(components) {
+    const { inspection } = this.page;
+    const all = components.flatMap(({ general }) => namesIn(general)).map((name) => inspection.meaning(name));
+    const found = all.find((meaning) => meaning?.quantity.startsWith("joint_point"));
+    return found ? `${inspection.inLetters(found.name).slice(0, -1)} is the bracket: ${inspection.words(found)}` : "";
   }
 
   /** In whose axes the values of a cell stand, where these are not those of its equations. */
@@ -223,17 +235,24 @@ class Cards {
         ": no statement",
       ],
       constant: () => [`it is ${exact(became.value)} in every state: no statement`],
-      inside: () => ["inside the statement that uses it: ", ...this.users(name)],
-      unused: () => ["no torque needs it: no statement"],
+      inside: () => {
+        const users = this.users(name);
+        return users.length ? ["inside the statement that uses it: ", ...users] : ["inside another statement"];
+      },
+      unused: () => ["not computed: no torque needs it"],
     }[became.kind];
     return element("p", { class: "no-code" }, ...(said ? said() : []));
   }
 
+  /** The components of the code that a value without a statement is part of. */
   users(name) {
-    const computed = (this.page.inspection.usedBy.get(name) || []).filter(
-      (user) => this.page.inspection.components.get(user).statements,
-    );
-    return this.named(computed.slice(0, 4));
+    const { usedBy, components } = this.page.inspection;
+    const above = (of) =>
+      (usedBy.get(of) || []).flatMap((user) => {
+        const { statements, became } = components.get(user);
+        return statements ? [user] : ["inside", "same"].includes(became.kind) ? above(user) : [];
+      });
+    return this.named([...new Set(above(name))].slice(0, 4));
   }
 
   /** Names of the code in a line, each of which can be pointed at. */

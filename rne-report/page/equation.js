@@ -116,8 +116,16 @@ class Typesetter {
         .filter(Boolean);
     // a sum vanishes because each of its terms does, each for its own reason
     if (isSum(tree) && this.isGone(tree)) return [...new Set(ofParts().flatMap((why) => why.split("; ")))].join("; ");
-    if (mark.why !== undefined) return this.inspection.reasons[mark.why];
+    const why = this.inspection.reasons[mark.why];
+    if (why) return why === "constants" ? this.constants(tree) : why;
     return ofParts()[0] || "";
+  }
+
+  /** The numbers in the place of names that fold a tree. */
+  constants(tree) {
+    const { inspection } = this;
+    const told = namesIn(tree).filter((name) => !Number.isNaN(inspection.constant(name)));
+    return [...new Set(told)].map((name) => `${inspection.inLetters(name)} = ${exact(inspection.constant(name))}`).join(", ");
   }
 
   /** What folded away in a tree: each largest term, what is left of it, and why. */
@@ -132,7 +140,7 @@ class Typesetter {
     const mark = markOf(tree);
     const parts = operands(tree);
     if (mark.fold === "shared") return [{ tree, left: mark.name || "the same", why: "computed before" }];
-    if (mark.fold === "constant") return [{ tree, left: null, why: "constants" }];
+    if (mark.fold === "constant") return [{ tree, left: null, why: this.constants(tree) }];
     const own = [];
     const unit = this.unitFactor(tree);
     if (unit !== null)

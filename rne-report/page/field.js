@@ -12,8 +12,8 @@ function numberOf(text) {
 
 /** A number for a field, as short as its digits allow: a typed number comes back as it was typed. */
 function typedText(value) {
-  const rounded = String(Number(value.toPrecision(6)));
-  return minus(String(value).length <= 9 ? String(value) : rounded);
+  const rounded = String(Number(value.toPrecision(4)));
+  return minus(String(value).length <= 7 ? String(value) : rounded);
 }
 
 /** A field for a number; `taken(value, text)` is called with each finite number that is typed; refused ones are marked. */

@@ -27,9 +27,10 @@ class Inspection {
     this.dof = data.robot.joints.length;
     /** The joints that follow no other, from 0, in the order of arrays of `rne`. */
     this.coordinates = data.robot.joints.flatMap((joint, index) => (joint.follows ? [] : [index]));
-    // the angle is its constant part and q: two letters
+    // the angle is its constant part and q: two letters; of a robot whose axes are turned by quarters only it has no name
     const { theta, angle } = data.quantities;
-    if (theta) [theta.letter, angle.meaning] = ["θ\u0304", "constant part θ\u0304 of the table + q"];
+    if (theta) theta.letter = "θ\u0304";
+    if (angle) angle.meaning = "constant part θ\u0304 of the table + q";
     /** Where wrenches act: the tips of the list of the file, or the one tip. */
     this.tips = this.floating?.tips || [null];
     if (this.floating) this.nameBase();
@@ -42,9 +43,10 @@ class Inspection {
       }
     }
     const folded = data.programs.folded;
+    this.reasons = data.reasons.map((why) => this.inLetters(why).replace(/ = (?=[-\dπ])/g, "\u00a0=\u00a0"));
     for (const component of this.components.values()) {
       const became = (component.became ||= { kind: "computed" });
-      if (became.why !== undefined) became.why = data.reasons[became.why];
+      if (became.why !== undefined) became.why = this.reasons[became.why];
     }
     this.statements = new Map();
     for (const statement of [...folded.angles, ...folded.statements]) {
@@ -198,13 +200,19 @@ class Inspection {
 
   /** A tree in the letters of the lecture: ω₂z · (ω × d)₂y. */
   lettersOf(tree) {
+    return minus(this.inLetters(codeOf(tree)).replaceAll("*", "·"));
+  }
+
+  /** Words with the names of the code in them, in the letters of the lecture. */
+  inLetters(text) {
+    const low = (index) => index.replace(/\d/g, (digit) => "₀₁₂₃₄₅₆₇₈₉"[digit]);
     const letters = (name) => {
       const meaning = this.meaning(name);
-      if (!meaning) return name;
-      const low = this.indexText(meaning).replace(/\d/g, (digit) => "₀₁₂₃₄₅₆₇₈₉"[digit]);
-      return `${meaning.of.letter}${low}${meaning.component || ""}`;
+      // the angles of the table
+      if (!meaning) return name.replace(/^(alpha|theta)(\d+)$/, (_, word, index) => (word === "alpha" ? "α" : "θ") + low(index));
+      return `${meaning.of.letter}${low(this.indexText(meaning))}${meaning.component || ""}`;
     };
-    return minus(codeOf(tree).replace(/\b[A-Za-z_]\w*/g, letters).replaceAll("*", "·"));
+    return text.replace(/\b[A-Za-z_]\w*/g, letters);
   }
 
   /** What a name means: its quantity, joint and component, and what there is to know of the quantity. */

@@ -39,7 +39,11 @@ class Page {
     this.live = [];
     this.cards = new Cards(this);
     this.reading = new Reading(this);
-    this.cell = inspection.cell(Math.min(2, inspection.dof), 1);
+    // the first step that begins with something that moves
+    const first = Math.min(2, inspection.dof);
+    const moves = ({ name, became }, [formula]) => inspection.meaning(name).quantity === formula?.quantity && became.kind !== "constant";
+    const isFirst = ({ joint, formulas, components }) => joint === first && components.some((of) => moves(of, formulas));
+    this.cell = inspection.cells.find(isFirst) || inspection.cell(first, 1);
     this.firstCell = [this.cell.joint, this.cell.step];
     this.handIn = new HandIn(this);
 
@@ -81,9 +85,8 @@ class Page {
     this.paintView();
     this.foldSettings();
     this.address = new Address(this);
-    // paper opens nothing by itself
     window.addEventListener("beforeprint", () => {
-      for (const of of document.querySelectorAll("#cell details")) of.open = true;
+      byId("vectors").replaceChildren(element("h2", {}, "All vectors"), ...vectorsOf(this));
     });
   }
 
@@ -116,7 +119,8 @@ class Page {
     const { robot, generator, dof } = this.inspection;
     const { floating } = this.inspection;
     const mass = robot.joints.reduce((sum, joint) => sum + joint.mass, floating ? floating.mass : 0);
-    const joints = this.inspection.isTree() ? `a tree of ${dof} joints` : `${dof} joints`;
+    const count = dof === 1 ? "1 joint" : `${dof} joints`;
+    const joints = this.inspection.isTree() ? `a tree of ${count}` : count;
     const what = floating ? `${joints} on a floating base` : joints;
     byId("described").textContent = `${what}, ${robot.convention} Denavit-Hartenberg, ${short(mass)} kg moved`;
     if (this.inspection.tips.length > 1) {
@@ -129,6 +133,7 @@ class Page {
     byId("generator").textContent =
       `Written by ${generator}. The code has the vectors of link i in axes fixed to link i, z along joint i; ` +
       "“Axes of vectors” tells them in others. The code is evaluated in your browser: + − × ÷ give the bits of Rust.";
+    fillTable(byId("table"), this.inspection);
     byId("key").append(
       ...PARTS.map(([part, meaning, formula]) =>
         element("span", { title: floating ? PARTS_WITH_BASE[part] : formula }, element("i", { class: `swatch ${part}` }), meaning),
@@ -288,6 +293,7 @@ class Page {
       button.addEventListener("click", () => {
         this.arm.layers.has(quantity) ? this.arm.layers.delete(quantity) : this.arm.layers.add(quantity);
         this.paintLayers();
+        this.address?.later();
       });
       this.layerButtons.set(quantity, button);
       byId("layers").append(button);
@@ -320,7 +326,7 @@ class Page {
       button.addEventListener("click", () => this.arm.lookFrom(name));
       byId("views").append(button);
     }
-    byId("lecture").addEventListener("click", () => {
+    byId("lecture-mode").addEventListener("click", () => {
       this.setLecture(!this.isLecture);
       this.address.later();
     });
@@ -356,7 +362,7 @@ class Page {
   setLecture(isOn) {
     this.isLecture = isOn;
     document.documentElement.dataset.lecture = isOn ? "on" : "off";
-    byId("lecture").setAttribute("aria-pressed", String(isOn));
+    byId("lecture-mode").setAttribute("aria-pressed", String(isOn));
     this.foldSettings();
     this.reachCell();
   }
@@ -602,6 +608,8 @@ class Page {
       button.firstChild.classList.toggle("not-needed", isNeedless && !this.isWide);
       button.style.setProperty("--share", (button.counts[which] / this.most[which]).toFixed(3));
     }
+    const first = this.inspection.floating ? 0 : 1;
+    [...byId("table").tBodies[0].rows].forEach((row, at) => row.classList.toggle("open", at + first === cell.joint));
     this.reachCell();
     const content = this.form === "reduced" ? this.cards.reducedCode() : this.cards.cellContent(cell);
     byId("cell").replaceChildren(...content);

@@ -29,7 +29,7 @@ const HTML: &str = include_str!("../page/index.html");
 const STYLE: &str = include_str!("../page/style.css");
 
 /// The scripts of the page, in the order in which they stand in it: each uses only those before it.
-pub const SCRIPTS: [(&str, &str); 23] = [
+pub const SCRIPTS: [(&str, &str); 24] = [
     ("pose.js", include_str!("../page/pose.js")),
     ("inspection.js", include_str!("../page/inspection.js")),
     ("program.js", include_str!("../page/program.js")),
@@ -52,6 +52,7 @@ pub const SCRIPTS: [(&str, &str); 23] = [
     ("view.js", include_str!("../page/view.js")),
     ("address.js", include_str!("../page/address.js")),
     ("handin.js", include_str!("../page/handin.js")),
+    ("table.js", include_str!("../page/table.js")),
     ("page.js", include_str!("../page/page.js")),
 ];
 

@@ -44,7 +44,7 @@ fn a_page_loads_nothing() {
 
 #[test]
 fn pages_of_arms_with_seven_joints_are_small() {
-    const LARGEST: usize = 410_000;
+    const LARGEST: usize = 425_000;
     let mut sizes = Vec::new();
     for file in shipped::tried() {
         let robot = robot(file.yaml);
