@@ -180,13 +180,6 @@ const STEPS: &[Step] = &[
         needs: Needs::Time,
     },
     Step {
-        name: "page",
-        about: "the page of `rne report` in headless Chromium, which is fetched",
-        variables: &[],
-        command: &["cargo", "xtask", "page", "--install"],
-        needs: Needs::Time,
-    },
-    Step {
         name: "playground",
         about: "the compiler as WebAssembly in a page, in headless Chromium",
         variables: &[],

@@ -71,6 +71,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("python examples/mpc/casadi_mpc.py", "doors/python/tests/test_casadi.py", "import casadi_mpc"),
     ("cc -std=c99 -O2 -ffp-contract=off -fPIC", "doors/python/tests/test_casadi.py", "shlex.split(command)"),
     ("cc doors/capi/examples/torque.c", "xtask/src/capi.rs", "(\"doors/capi/examples/torque.c\", \"cc\""),
+    ("cargo xtask page", ".ci/run", "step cargo xtask page --install\n"),
     ("cargo xtask playground", "xtask/src/verify.rs", "\"xtask\", \"playground\", \"--install\""),
     ("cargo xtask features", "xtask/src/verify.rs", "\"xtask\", \"features\""),
     ("cargo xtask certificate", ".ci/run", "step cargo xtask certificate --install\n"),
