@@ -146,6 +146,9 @@ def mistakes(driver, rne, puma):
     check(driver.find_element(By.ID, "shown").get_attribute("data-state") == "stale", "the last good page is not dimmed")
     check("shown is the last text without" in status(driver), f"the status is {status(driver)!r}")
     check(inner(driver, "return rne.torques().length") == 6, "the last good page does not compute any more")
+    line = driver.execute_script("const box = (of) => of.getBoundingClientRect(), at = box(document.querySelector('#ink .mark.error'));"
+                                 "const of = box(document.getElementById('scroller')); return at.top >= of.top && at.bottom <= of.bottom")
+    check(line, "the messages hide the line of the mistake")
     driver.find_element(By.CSS_SELECTOR, "#messages button").click()
     selected = driver.execute_script("const of = document.getElementById('text'); return [document.activeElement === of,"
                                      " of.value.slice(of.selectionStart, of.selectionEnd)]")

@@ -22,8 +22,8 @@ use crate::page;
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// Largest size of the page, bytes.
-const LARGEST: usize = 900_000;
+/// Largest size of the page, bytes: a test of the repository judges it, so that nobody is kept from a page that works.
+const LARGEST: usize = 1_300_000;
 
 /// The scripts of the page, in their order; what stands around them uses each once.
 const SCRIPTS: [&str; 4] = ["compiler.js", "editor.js", "share.js", "playground.js"];
@@ -37,7 +37,8 @@ const SCRIPTS: [&str; 4] = ["compiler.js", "editor.js", "share.js", "playground.
 Needs the target wasm32-unknown-unknown of rustup's compiler. --test needs what
 `cargo xtask page` needs.
 
-Exit status: 1 when the page is larger than it may be, or fails in the browser.
+Exit status: with --test, 1 when the page is larger than it may be, or fails in
+the browser.
 
 Examples:
   cargo xtask playground                     build it, and serve it
@@ -72,12 +73,12 @@ impl Playground {
         let html = page(&module)?;
         let path = folder.join("index.html");
         fs::write(&path, &html).with_context(|| path.display().to_string())?;
-        println!("{}: {} bytes of {LARGEST}", path.display(), html.len());
-        if html.len() > LARGEST {
-            println!("playground: the page is too large");
-            return Ok(Verdict::Fails);
-        }
+        println!("{}: {} bytes", path.display(), html.len());
         if self.test {
+            if html.len() > LARGEST {
+                println!("playground: the page has more than {LARGEST} bytes");
+                return Ok(Verdict::Fails);
+            }
             let shell = machine::shell()?;
             let python = page::python(&shell, self.install)?;
             let rne = page::rne(&shell)?;

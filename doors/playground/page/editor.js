@@ -67,6 +67,17 @@ class Editor {
     this.paint();
   }
 
+  /** Keeps in sight what messages would hide: the line that is being typed, or else the first mistake. */
+  reveal() {
+    const box = byId("scroller");
+    const isTyped = document.activeElement === this.area;
+    const at = isTyped ? this.area.selectionStart : this.marks.find(({ severity }) => severity === "error")?.from;
+    if (at === undefined) return;
+    const line = byId("gutter").children[this.text.slice(0, at).split("\n").length - 1];
+    const [outer, inner] = [box.getBoundingClientRect(), line.getBoundingClientRect()];
+    box.scrollTop += Math.min(0, inner.top - outer.top) || Math.max(0, inner.bottom - outer.bottom + inner.height);
+  }
+
   /** Selects what the diagnostic of an index names and shows it. */
   goTo(index) {
     const mark = this.marks[index];

@@ -154,6 +154,7 @@ class Playground {
       item.append(button);
       return item;
     }));
+    this.editor.reveal();
   }
 
   /** Puts the page of an arm in the place of the one before, as that was looked at. */
