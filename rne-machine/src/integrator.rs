@@ -19,7 +19,7 @@ impl CompiledArm {
         step: T,
     ) -> Result<NextState<T>, EvaluationError> {
         let accelerations = |q: &[T], qd: &[T]| self.forward_dynamics(q, qd, tau);
-        let [q, qd] = integrator_of_lists::runge_kutta_step(accelerations, q, qd, step)?;
+        let [q, qd] = integrator_of_lists::runge_kutta_step(accelerations, q, qd, |_| step)?;
         Ok(NextState { q, qd })
     }
 

@@ -3,7 +3,7 @@
 use core::array::from_fn;
 
 use crate::pose_log::{cross, dot, times, transposed};
-use crate::{BaseTwist, FloatingAccelerations, FloatingBase, Quaternion, Scalar, Wrench};
+use crate::{BaseAcceleration, BaseTwist, FloatingBase, Quaternion, Scalar, Wrench};
 
 /// The state of a robot whose base nothing holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,80 +81,79 @@ pub trait FloatingIntegratorStep<const DOF: usize, const NV: usize, const TIPS: 
         gravity: &[T; 3],
         step: T,
     ) -> FloatingState<DOF, T> {
-        let (next, mean) = runge_kutta(&Stage::of(state), step, |_, stage| {
+        let FloatingState { orientation, position, twist, q, qd } = state;
+        let (next, mean) = runge_kutta(&Stage::of(orientation, twist, *q, *qd), step, |_, stage| {
             let found = self.floating_forward_dynamics(&stage.q, &stage.qd, tau, &stage.omega, wrenches);
-            stage.rates(&found, &state.orientation, gravity)
+            stage.rates(&found.base, found.qdd, orientation, gravity)
         });
-        let orientation = unit(&state.orientation.then(&turned(&next.u)));
-        FloatingState {
-            orientation,
-            position: moved(&state.position, &mean, step),
-            twist: BaseTwist { linear: times(&transposed(&orientation.rotation()), &next.linear), angular: next.omega },
-            q: next.q,
-            qd: next.qd,
-        }
+        let (orientation, twist) = next.base(orientation);
+        FloatingState { orientation, position: moved(position, &mean, step), twist, q: next.q, qd: next.qd }
     }
 }
 
 /// The numbers that a step integrates, their rates, or changes of either: the turn of the base, the velocity of its
-/// origin in world axes, its angular velocity in its axes, and the joints.
-#[derive(Clone, Copy)]
-pub(crate) struct Stage<const DOF: usize, T> {
-    pub(crate) u: [T; 3],
-    pub(crate) linear: [T; 3],
-    pub(crate) omega: [T; 3],
-    pub(crate) q: [T; DOF],
-    pub(crate) qd: [T; DOF],
+/// origin in world axes, its angular velocity in its axes, and the joints, an array or a list.
+#[doc(hidden)]
+#[derive(Clone, Debug)]
+pub struct Stage<J, T> {
+    pub u: [T; 3],
+    pub linear: [T; 3],
+    pub omega: [T; 3],
+    pub q: J,
+    pub qd: J,
 }
 
-impl<const DOF: usize, T: Scalar> Stage<DOF, T> {
+impl<J: AsRef<[T]> + AsMut<[T]> + Clone, T: Scalar> Stage<J, T> {
     /// The numbers of a state, from which the base turns.
-    pub(crate) fn of(state: &FloatingState<DOF, T>) -> Self {
-        Self {
-            u: [T::zero(); 3],
-            linear: times(&state.orientation.rotation(), &state.twist.linear),
-            omega: state.twist.angular,
-            q: state.q,
-            qd: state.qd,
-        }
+    pub fn of(orientation: &Quaternion<T>, twist: &BaseTwist<T>, q: J, qd: J) -> Self {
+        let linear = times(&orientation.rotation(), &twist.linear);
+        Self { u: [T::zero(); 3], linear, omega: twist.angular, q, qd }
     }
 
     /// Their rates by the accelerations, where the base turns from this orientation.
-    pub(crate) fn rates(
-        &self,
-        found: &FloatingAccelerations<DOF, T>,
-        orientation: &Quaternion<T>,
-        gravity: &[T; 3],
-    ) -> Self {
-        let linear = times(&orientation.then(&turned(&self.u)).rotation(), &found.base.linear);
+    pub fn rates(&self, base: &BaseAcceleration<T>, qdd: J, orientation: &Quaternion<T>, gravity: &[T; 3]) -> Self {
+        let linear = times(&orientation.then(&turned(&self.u)).rotation(), &base.linear);
         Self {
             u: rate_of_turn(&self.u, &self.omega),
             linear: from_fn(|axis| linear[axis] + gravity[axis]),
-            omega: found.base.angular,
-            q: self.qd,
-            qd: found.qdd,
+            omega: base.angular,
+            q: self.qd.clone(),
+            qd: qdd,
         }
+    }
+
+    /// The orientation of the base that turned from this one, and its velocity in its axes.
+    pub fn base(&self, orientation: &Quaternion<T>) -> (Quaternion<T>, BaseTwist<T>) {
+        let orientation = unit(&orientation.then(&turned(&self.u)));
+        let linear = times(&transposed(&orientation.rotation()), &self.linear);
+        (orientation, BaseTwist { linear, angular: self.omega })
     }
 
     /// These and h times other ones.
     fn moved(&self, by: &Self, step: T) -> Self {
+        let joints = |x: &J, by: &J| {
+            let mut next = x.clone();
+            next.as_mut().iter_mut().zip(by.as_ref()).for_each(|(x, &change)| *x += step * change);
+            next
+        };
         Self {
             u: moved(&self.u, &by.u, step),
             linear: moved(&self.linear, &by.linear, step),
             omega: moved(&self.omega, &by.omega, step),
-            q: moved(&self.q, &by.q, step),
-            qd: moved(&self.qd, &by.qd, step),
+            q: joints(&self.q, &by.q),
+            qd: joints(&self.qd, &by.qd),
         }
     }
 }
 
 /// The numbers after a step of the classical Runge-Kutta method, by their rates at its four states, which have the
 /// numbers 0 to 3, and the mean of the velocities at these states, with which the position moves.
-pub(crate) fn runge_kutta<const DOF: usize, T: Scalar>(
-    start: &Stage<DOF, T>,
+#[doc(hidden)]
+pub fn runge_kutta<J: AsRef<[T]> + AsMut<[T]> + Clone, T: Scalar>(
+    start: &Stage<J, T>,
     step: T,
-    mut rates: impl FnMut(usize, &Stage<DOF, T>) -> Stage<DOF, T>,
-) -> (Stage<DOF, T>, [T; 3]) {
+    mut rates: impl FnMut(usize, &Stage<J, T>) -> Stage<J, T>,
+) -> (Stage<J, T>, [T; 3]) {
     let half = step * T::from_f64(0.5);
     let first = rates(0, start);
     let second = rates(1, &start.moved(&first, half));
@@ -190,7 +189,8 @@ impl<const DOF: usize, const NV: usize, const TIPS: usize, R: FloatingBase<DOF, 
 }
 
 /// x + h times what changes it.
-pub(crate) fn moved<const N: usize, T: Scalar>(x: &[T; N], change: &[T; N], step: T) -> [T; N] {
+#[doc(hidden)]
+pub fn moved<const N: usize, T: Scalar>(x: &[T; N], change: &[T; N], step: T) -> [T; N] {
     from_fn(|i| x[i] + step * change[i])
 }
 

@@ -11,9 +11,9 @@ type Matrix<T> = Vec<Vec<T>>;
 /// The derivatives by q, by q̇ and by τ.
 type Blocks<T> = [Matrix<T>; 3];
 
-/// x + h times what changes it.
-fn moved<T: Scalar>(x: &[T], change: &[T], step: T) -> Vec<T> {
-    x.iter().zip(change).map(|(&x, &change)| x + step * change).collect()
+/// x + h times what changes it, with an h of each place: lists may have the states of many robots.
+fn moved<T: Scalar>(x: &[T], change: &[T], step: impl Fn(usize) -> T) -> Vec<T> {
+    x.iter().zip(change).enumerate().map(|(at, (&x, &change))| x + step(at) * change).collect()
 }
 
 /// The derivatives of x + h times what changes it, where x is the argument of this place.
@@ -35,26 +35,25 @@ type Stage<T> = [Vec<T>; 3];
 fn stages<T: Scalar, E>(
     accelerations: impl Fn(&[T], &[T]) -> Result<Vec<T>, E>,
     [q, qd]: [&[T]; 2],
-    step: T,
+    step: impl Fn(usize) -> T,
 ) -> Result<[Stage<T>; 4], E> {
-    let half = step * T::from_f64(0.5);
-    let next = |[position, rate, _]: &Stage<T>, duration: T| {
+    let next = |[position, rate, _]: &Stage<T>, part: f64| {
         let acceleration = accelerations(position, rate)?;
+        let duration = |at| step(at) * T::from_f64(part);
         Ok([moved(q, rate, duration), moved(qd, &acceleration, duration), acceleration])
     };
     let first = [q.to_vec(), qd.to_vec(), Vec::new()];
-    let second = next(&first, half)?;
-    let third = next(&second, half)?;
-    let fourth = next(&third, step)?;
+    let second = next(&first, 0.5)?;
+    let third = next(&second, 0.5)?;
+    let fourth = next(&third, 1.0)?;
     Ok([first, second, third, fourth])
 }
 
 /// The changes of the mean velocity of a step, and of the velocity, by four accelerations.
-fn weighted<T: Scalar>([first, second, third, fourth]: [&[T]; 4], step: T) -> [Vec<T>; 2] {
-    let sixth = step / T::from_f64(6.0);
-    let rows = first.iter().zip(second).zip(third.iter().zip(fourth));
-    let both = rows.map(|((&first, &second), (&third, &fourth))| {
-        let middle = second + third;
+fn weighted<T: Scalar>([first, second, third, fourth]: [&[T]; 4], step: impl Fn(usize) -> T) -> [Vec<T>; 2] {
+    let rows = first.iter().zip(second).zip(third.iter().zip(fourth)).enumerate();
+    let both = rows.map(|(at, ((&first, &second), (&third, &fourth)))| {
+        let (middle, sixth) = (second + third, step(at) / T::from_f64(6.0));
         ((first + middle) * sixth, ((first + (middle + middle)) + fourth) * sixth)
     });
     let (mean, rates) = both.unzip();
@@ -62,7 +61,7 @@ fn weighted<T: Scalar>([first, second, third, fourth]: [&[T]; 4], step: T) -> [V
 }
 
 /// As [`RungeKuttaStep::runge_kutta_step`](crate::RungeKuttaStep::runge_kutta_step), by the accelerations of positions
-/// and velocities: the next positions and the next velocities.
+/// and velocities: the next positions and the next velocities. `step` is the duration for each place of the lists.
 ///
 /// # Errors
 /// The first of the accelerations.
@@ -71,12 +70,12 @@ pub fn runge_kutta_step<T: Scalar, E>(
     accelerations: impl Fn(&[T], &[T]) -> Result<Vec<T>, E>,
     q: &[T],
     qd: &[T],
-    step: T,
+    step: impl Fn(usize) -> T,
 ) -> Result<[Vec<T>; 2], E> {
-    let [_, second, third, fourth] = stages(&accelerations, [q, qd], step)?;
+    let [_, second, third, fourth] = stages(&accelerations, [q, qd], &step)?;
     let last = accelerations(&fourth[0], &fourth[1])?;
-    let [mean, rates] = weighted([&second[2], &third[2], &fourth[2], &last], step);
-    Ok([moved(q, &moved(qd, &mean, T::one()), step), moved(qd, &rates, T::one())])
+    let [mean, rates] = weighted([&second[2], &third[2], &fourth[2], &last], &step);
+    Ok([moved(q, &moved(qd, &mean, |_| T::one()), step), moved(qd, &rates, |_| T::one())])
 }
 
 /// As [`RungeKuttaStepDerivatives::runge_kutta_step_derivatives`](
@@ -93,7 +92,7 @@ pub fn runge_kutta_step_derivatives<T: Scalar, E>(
     qd: &[T],
     step: T,
 ) -> Result<[Blocks<T>; 2], E> {
-    let states = stages(accelerations, [q, qd], step)?;
+    let states = stages(accelerations, [q, qd], |_| step)?;
     let at = |stage: usize| derivatives(&states[stage][0], &states[stage][1]);
     let half = step * T::from_f64(0.5);
     let first = at(0)?;
@@ -102,7 +101,7 @@ pub fn runge_kutta_step_derivatives<T: Scalar, E>(
     let fourth = chained(&at(3)?, step, &third, Some((half, &second)));
     let found = [0, 1, 2].map(|kind: usize| {
         let row = |row: usize| {
-            weighted([&first, &second, &third, &fourth].map(|of_stage| of_stage[kind][row].as_slice()), step)
+            weighted([&first, &second, &third, &fourth].map(|of_stage| of_stage[kind][row].as_slice()), |_| step)
         };
         let rows = (0..q.len()).map(row).map(|[mean, rates]| (mean, rates));
         rows.unzip::<_, _, Matrix<T>, Matrix<T>>()
@@ -119,13 +118,11 @@ fn chained<T: Scalar>(own: &Blocks<T>, duration: T, before: &Blocks<T>, earlier:
     for (kind, block) in found.iter_mut().enumerate() {
         for (i, row) in block.iter_mut().enumerate() {
             let mut change = if kind == 1 { own[0][i].clone() } else { vec![T::zero(); dof] };
+            let mut add = |factor: T, by: &[T]| change.iter_mut().zip(by).for_each(|(sum, &by)| *sum += factor * by);
             for k in 0..dof {
-                let by_position = earlier.map(|(duration, earlier)| (own[0][i][k] * duration, &earlier[kind][k]));
-                for (j, change) in change.iter_mut().enumerate() {
-                    *change += own[1][i][k] * before[kind][k][j];
-                    if let Some((factor, earlier)) = by_position {
-                        *change += factor * earlier[j];
-                    }
+                add(own[1][i][k], &before[kind][k]);
+                if let Some((duration, earlier)) = earlier {
+                    add(own[0][i][k] * duration, &earlier[kind][k]);
                 }
             }
             for (element, change) in row.iter_mut().zip(change) {
@@ -183,8 +180,8 @@ impl<S: Constant> DynArm<S> {
     /// # Errors
     /// When an argument does not have one element per joint.
     pub fn euler_step<T: Scalar>(&self, q: &[T], qd: &[T], tau: &[T], step: T) -> Result<DynNextState<T>, WrongLength> {
-        let next = moved(qd, &self.forward_dynamics(q, qd, tau)?, step);
-        Ok(DynNextState { q: moved(q, &next, step), qd: next })
+        let next = moved(qd, &self.forward_dynamics(q, qd, tau)?, |_| step);
+        Ok(DynNextState { q: moved(q, &next, |_| step), qd: next })
     }
 
     /// As [`EulerStepDerivatives::euler_step_derivatives`](crate::EulerStepDerivatives::euler_step_derivatives).
@@ -213,7 +210,7 @@ impl<S: Constant> DynArm<S> {
         tau: &[T],
         step: T,
     ) -> Result<DynNextState<T>, WrongLength> {
-        let [q, qd] = runge_kutta_step(|q, qd| self.forward_dynamics(q, qd, tau), q, qd, step)?;
+        let [q, qd] = runge_kutta_step(|q, qd| self.forward_dynamics(q, qd, tau), q, qd, |_| step)?;
         Ok(DynNextState { q, qd })
     }
 

@@ -5,7 +5,8 @@ use crate::Scalar;
 
 /// Makes L and D of M, which keeps L below its diagonal and c above: c_ij stands at (j, i). `inverse` is a place for
 /// the reciprocals of D.
-pub(crate) fn factor<T: Scalar, R: AsRef<[T]> + AsMut<[T]>>(m: &mut [R], inverse: &mut [T]) {
+#[doc(hidden)]
+pub fn factor<T: Scalar, R: AsRef<[T]> + AsMut<[T]>>(m: &mut [R], inverse: &mut [T]) {
     let n = m.len();
     for j in 0..n {
         // What is left of column j, M being symmetric: c_ij for i ≥ j, of which the first is D_j.

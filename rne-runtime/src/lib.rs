@@ -55,6 +55,14 @@ mod integrator;
 #[cfg(feature = "std")]
 #[doc(hidden)]
 pub mod integrator_of_lists;
+/// Steps and their derivatives of a robot whose base nothing holds, with lists of joints: the Python package has robots of
+/// any number of joints.
+#[doc(hidden)]
+pub mod floating_integrator_of_lists {
+    pub use crate::floating_integrator::{Stage, moved, runge_kutta};
+    pub use crate::floating_runge_kutta::{Linear, Turning, derivatives};
+    pub use crate::ldlt::factor;
+}
 mod jacobian_derivatives;
 #[cfg(feature = "arm")]
 mod joint;

@@ -51,6 +51,8 @@ enum Block {
     RunTime,
     /// Torques from Python beside Pinocchio and the Robotics Toolbox, which are fetched
     FromPython,
+    /// Microseconds of every function of one state from Python, beside Pinocchio, which is fetched
+    PythonCalls,
     /// A plain build beside one for x86-64-v3
     PlainBuild,
 }
@@ -82,6 +84,7 @@ impl Block {
             Self::Growth => "growth",
             Self::RunTime => "run_time",
             Self::FromPython => "from_python",
+            Self::PythonCalls => "python_calls",
             Self::PlainBuild => "plain_build",
         }
     }
@@ -115,9 +118,10 @@ impl Block {
                 let bench = cmd!(shell, "cargo run --manifest-path benches/Cargo.toml {options...} --bin run_time");
                 here(&shell)? + &listing(bench)?
             }
-            Self::FromPython => {
+            Self::FromPython | Self::PythonCalls => {
                 let head = here(&shell)?;
-                format!("{head}```text\n{}\n```\n", python::beside_peers()?)
+                let script = if self == Self::FromPython { "from_python.py" } else { "one_state.py" };
+                format!("{head}```text\n{}\n```\n", python::beside_peers(script)?)
             }
             Self::PlainBuild => here(&shell)? + &plain_build::table()?,
             Self::Growth => without_load(&here(&shell)?) + &without_empty_lines(&growth::measured(&[])?),

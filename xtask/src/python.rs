@@ -113,15 +113,14 @@ impl Python {
     }
 }
 
-/// Torques from Python beside those of other packages, timed: the table that `benches/peers/python/from_python.py`
-/// prints.
-pub(crate) fn beside_peers() -> Result<String> {
+/// Functions from Python beside those of other packages, timed: the table that a script of `benches/peers/python` prints.
+pub(crate) fn beside_peers(script: &str) -> Result<String> {
     let place = Place::new()?;
     let packages = [&TESTS[..], &PEERS, &[TOOLBOX]].concat();
     let wheel = place.wheel(true)?;
     let python = place.user(&wheel, &packages, true)?;
     let shell = &place.shell;
-    Ok(cmd!(shell, "{python} benches/peers/python/from_python.py").quiet().read()?)
+    Ok(cmd!(shell, "{python} benches/peers/python/{script}").quiet().read()?)
 }
 
 /// Where wheels and environments are.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -10,7 +11,7 @@ use rne::compiled::{CompiledArm, Form, Function, PlanFile};
 use rne_codegen::{Argument, Compiler, Sizes};
 use rne_model::{Convention, Joint, Robot};
 
-use crate::arrays::Given;
+use crate::arrays::{Axes, Given, Value};
 use crate::errors::{of_arm, of_evaluation, of_report};
 use crate::functions::evaluate;
 
@@ -61,7 +62,7 @@ impl std::str::FromStr for FormOr {
 #[derive(Clone)]
 pub(crate) struct Arm {
     pub(crate) arm: CompiledArm,
-    pub(crate) origin: Origin,
+    pub(crate) origin: Arc<Origin>,
 }
 
 impl Arm {
@@ -100,7 +101,7 @@ impl Arm {
         };
         let arm = arm.in_form(origin.form.0);
         let arm = if origin.rotors { arm.with_rotors() } else { arm };
-        Ok(Self { arm, origin })
+        Ok(Self { arm, origin: Arc::new(origin) })
     }
 
     pub(crate) fn robot(&self) -> &Robot {
@@ -117,25 +118,14 @@ impl Arm {
 
     /// An argument with a number per joint: an array in the order of the joints, or a dict by their names.
     pub(crate) fn of_joints<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
-        let value = if value.is_instance_of::<PyDict>() {
-            in_order(value, self.joints(), name, "joint")?
-        } else {
-            value.clone()
-        };
-        Ok(Given { name, parts: &[], elements: self.arm.dof(), value })
+        let value = by_name(value, || self.joints(), name, "joint")?;
+        Ok(Given::vector(name, self.arm.dof(), value))
     }
 
     /// Positions of the dependent joints of closed loops: an array, or a dict by their names.
     pub(crate) fn of_passive<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
-        let robot = self.robot();
-        let names = robot.closed.passive.iter().map(|&joint| robot.joints[joint].name.as_str()).collect::<Vec<_>>();
-        let elements = names.len();
-        let value = if value.is_instance_of::<PyDict>() {
-            in_order(value, names, name, "dependent joint")?
-        } else {
-            value.clone()
-        };
-        Ok(Given { name, parts: &[], elements, value })
+        let value = by_name(value, || self.passive_joints(), name, "dependent joint")?;
+        Ok(Given::vector(name, self.robot().closed.passive.len(), value))
     }
 
     /// The name that the keyword `frame` has; a TypeError lists the names where it is not a text.
@@ -147,33 +137,47 @@ impl Arm {
         })
     }
 
-    /// A wrench at each tip: a dict by the names of the tips, or an array of shape (tips, 6) or (N, tips, 6).
-    pub(crate) fn of_tips<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
-        let tips = self.robot().tip_names();
-        let elements = Argument::Wrenches.elements(Sizes::of(self.robot()));
-        let value = value.py().import("rne.names")?.call_method1("of_tips", (value, tips, name))?;
-        Ok(Given { name, parts: &[], elements, value })
+    /// How many numbers an argument has for a state.
+    pub(crate) fn elements(&self, argument: Argument) -> usize {
+        argument.elements(Sizes::of(self.robot()))
     }
 
-    /// The pose of a base: homogeneous matrices as the twelve numbers of the functions.
+    /// A wrench at each tip: a dict by the names of the tips, or an array of shape (tips, 6) or (N, tips, 6). Without
+    /// it no tip exerts anything.
+    pub(crate) fn of_tips<'py>(&self, name: &'static str, value: Option<&Bound<'py, PyAny>>) -> PyResult<Given<'py>> {
+        let (axes, elements) = (Axes::Rows(6), self.elements(Argument::Wrenches));
+        let Some(value) = value else {
+            let value = Value::Own(vec![0.0; elements]);
+            return Ok(Given { name, parts: &[], elements, axes, value });
+        };
+        let tips = || self.robot().tip_names();
+        let value = if value.is_instance_of::<PyDict>() {
+            value.py().import("rne.names")?.call_method1("of_tips", (value, tips(), name))?
+        } else {
+            value.clone()
+        };
+        let known = || format!("; the tips of this arm are {}", tips().join(", "));
+        Given::matrix(name, axes, elements, value, known)
+    }
+
+    /// What the tip carries.
+    pub(crate) fn payload<'py>(&self, value: &Bound<'py, PyAny>) -> Given<'py> {
+        Given::vector("payload", self.elements(Argument::Payload), value.clone())
+    }
+
+    /// The pose of a base: homogeneous matrices, of which functions take twelve numbers.
     pub(crate) fn of_pose<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
-        let elements = Argument::BasePose.elements(Sizes::of(self.robot()));
-        let value = value.py().import("rne.names")?.call_method1("of_pose", (value, name))?;
-        Ok(Given { name, parts: &[], elements, value })
+        Given::matrix(name, Axes::Pose, self.elements(Argument::BasePose), value.clone(), String::new)
     }
 
     /// The duration of a step: a number, or an array of shape (N,).
     pub(crate) fn of_step<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
-        let elements = Argument::Step.elements(Sizes::of(self.robot()));
-        let value = value.py().import("rne.names")?.call_method1("of_number", (value, name))?;
-        Ok(Given { name, parts: &[], elements, value })
+        Given::number(name, value)
     }
 
     /// A rotation matrix: an array of shape (3, 3) or (N, 3, 3).
     pub(crate) fn of_rotation<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
-        let elements = Argument::BaseRotation.elements(Sizes::of(self.robot()));
-        let value = value.py().import("rne.names")?.call_method1("of_rotation", (value, name))?;
-        Ok(Given { name, parts: &[], elements, value })
+        Given::matrix(name, Axes::Rows(3), self.elements(Argument::BaseRotation), value.clone(), String::new)
     }
 
     /// A function of joint arrays and whatever else it takes; of a pair of results a tuple.
@@ -181,18 +185,31 @@ impl Arm {
         &self,
         py: Python<'py>,
         function: Function,
+        given: Vec<Given<'py>>,
+        parameters: Option<&Bound<'py, PyAny>>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.compute_at(py, None, function, given, parameters, out)
+    }
+
+    /// As `compute`, with a frame in the place of the tip.
+    pub(crate) fn compute_at<'py>(
+        &self,
+        py: Python<'py>,
+        frame: Option<&Bound<'py, PyAny>>,
+        function: Function,
         mut given: Vec<Given<'py>>,
         parameters: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.moves_its_base(function)?;
-        given.extend(self.given_parameters(py, parameters)?);
-        evaluate(py, &self.arm, function, &given, out)
+        given.extend(self.given_parameters(parameters)?);
+        evaluate(py, &self.at(frame)?, function, &given, out)
     }
 
     /// Refuses accelerations of a base without mass that carries one joint: the base and this joint can turn against
     /// each other and move nothing, so the mass matrix is singular at every position.
-    fn moves_its_base(&self, function: Function) -> PyResult<()> {
+    pub(crate) fn moves_its_base(&self, function: Function) -> PyResult<()> {
         let robot = self.robot();
         let is_alone = (0..robot.joints.len()).filter(|&joint| robot.parent(joint).is_none()).count() == 1;
         let is_massless = robot.floating_base.is_none() && robot.closed.is_empty() && is_alone;
@@ -209,22 +226,16 @@ impl Arm {
     }
 
     /// The argument of the run-time parameters, if the arm has any.
-    pub(crate) fn given_parameters<'py>(
-        &self,
-        py: Python<'py>,
-        parameters: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Option<Given<'py>>> {
+    pub(crate) fn given_parameters<'py>(&self, parameters: Option<&Bound<'py, PyAny>>) -> PyResult<Option<Given<'py>>> {
         let run_time = &self.robot().run_time;
         if !run_time.is_empty() {
-            let value = match parameters {
-                Some(value) if value.is_instance_of::<PyDict>() => {
-                    in_order(value, self.parameters(), "parameters", "run-time parameter")?
+            let (name, elements) = ("parameters", run_time.names.len());
+            return Ok(Some(match parameters {
+                Some(value) => {
+                    Given::vector(name, elements, by_name(value, || self.parameters(), name, "run-time parameter")?)
                 }
-                Some(value) => value.clone(),
-                // those of the file
-                None => pyo3::types::PyList::new(py, run_time.values(self.robot()))?.into_any(),
-            };
-            return Ok(Some(Given { name: "parameters", parts: &[], elements: run_time.names.len(), value }));
+                None => Given::own(name, run_time.values(self.robot())), // those of the file
+            }));
         }
         if parameters.is_some() {
             return Err(PyValueError::new_err(
@@ -255,14 +266,17 @@ pub(crate) fn name<T: std::str::FromStr<Err = rne_codegen::UnknownName>>(text: &
     text.parse().map_err(|error: rne_codegen::UnknownName| PyValueError::new_err(error.to_string()))
 }
 
-/// The values of a dict in the order of names.
-fn in_order<'py>(
-    values: &Bound<'py, PyAny>,
-    names: Vec<&str>,
+/// The values of a dict in the order of names; what is no dict is an array already.
+fn by_name<'a, 'py>(
+    value: &Bound<'py, PyAny>,
+    names: impl Fn() -> Vec<&'a str>,
     argument: &str,
     kind: &str,
 ) -> PyResult<Bound<'py, PyAny>> {
-    values.py().import("rne.names")?.call_method1("in_order", (values, names, argument, kind))
+    if !value.is_instance_of::<PyDict>() {
+        return Ok(value.clone());
+    }
+    value.py().import("rne.names")?.call_method1("in_order", (value, names(), argument, kind))
 }
 
 #[pymethods]
@@ -316,15 +330,15 @@ impl Arm {
         guess: &Bound<'py, PyAny>,
         parameters: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let step = |passive: &Bound<'py, PyAny>| -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let step = |passive: &Bound<'py, PyAny>| {
             let given = vec![self.of_joints("q", q)?, self.of_passive("passive", passive)?];
-            self.compute(py, Function::ClosureStep, given, parameters, None)?.extract()
+            self.compute(py, Function::ClosureStep, given, parameters, None)
         };
         let mut passive = guess.clone();
         for _ in 0..5 {
-            passive = step(&passive)?.0;
+            passive = step(&passive)?.get_item(0)?;
         }
-        let (_, residual) = step(&passive)?;
+        let residual = step(&passive)?.get_item(1)?;
         Ok(PyTuple::new(py, [passive, residual])?.into_any())
     }
 
@@ -449,7 +463,7 @@ impl Arm {
 
     /// From its texts, in whatever process.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let Origin { robot, plan, form, rotors, run_time, settings, held, notes, .. } = self.origin.clone();
+        let Origin { robot, plan, form, rotors, run_time, settings, held, notes, .. } = (*self.origin).clone();
         let arguments = (robot, plan, form.0.name(), rotors, run_time, settings, held, notes).into_pyobject(py)?;
         Ok((py.import("rne._rne")?.getattr("Arm")?.getattr("_of_texts")?, arguments))
     }

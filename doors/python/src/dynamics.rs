@@ -1,9 +1,7 @@
 //! The functions of the class `Arm`: arrays in, arrays out. They are those of the compiler's list.
 
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
-use rne_codegen::{Argument, Function, Sizes};
+use rne_codegen::{Argument, Function};
 
 use crate::arm::Arm;
 use crate::arrays::Given;
@@ -340,22 +338,19 @@ macro_rules! on_moving_base {
                 parameters: Option<&Bound<'py, PyAny>>,
                 out: Option<&Bound<'py, PyAny>>,
             ) -> PyResult<Bound<'py, PyAny>> {
-                let zero = PyTuple::new(py, [0.0; 3])?.into_any();
-                let gravity = PyTuple::new(py, self.robot().gravity)?.into_any();
-                let joints = [$(given!(self, $argument: $kind)),*];
                 let base = [
-                    ("base_omega", base_omega.unwrap_or(&zero)),
-                    ("base_omega_dot", base_omega_dot.unwrap_or(&zero)),
-                    ("base_acceleration", base_acceleration.unwrap_or(&zero)),
-                    ("base_gravity", base_gravity.unwrap_or(&gravity)),
+                    ("base_omega", base_omega, [0.0; 3]),
+                    ("base_omega_dot", base_omega_dot, [0.0; 3]),
+                    ("base_acceleration", base_acceleration, [0.0; 3]),
+                    ("base_gravity", base_gravity, self.robot().gravity),
                 ];
-                let base = base.map(|(name, value)| Given { name, parts: &[], elements: 3, value: value.clone() });
+                let base = base.map(|(name, value, left_out)| match value {
+                    Some(value) => Given::vector(name, 3, value.clone()),
+                    None => Given::own(name, left_out.to_vec()),
+                });
                 #[allow(unused_mut)] // a function without tips
-                let mut given: Vec<_> = joints.into_iter().chain(base).collect();
-                $(
-                    let nothing = PyDict::new(py).into_any();
-                    given.push(self.of_tips(stringify!($wrenches), $wrenches.unwrap_or(&nothing))?);
-                )?
+                let mut given: Vec<_> = [$(given!(self, $argument: $kind)),*].into_iter().chain(base).collect();
+                $(given.push(self.of_tips(stringify!($wrenches), $wrenches)?);)?
                 self.compute(py, Function::$variant, given, parameters, out)
             }
         }
@@ -384,11 +379,7 @@ macro_rules! of_floating_base {
                 parameters: Option<&Bound<'py, PyAny>>,
                 out: Option<&Bound<'py, PyAny>>,
             ) -> PyResult<Bound<'py, PyAny>> {
-                let nothing = PyDict::new(py).into_any();
-                let given = vec![
-                    $(given!(self, $argument: $kind),)*
-                    self.of_tips("wrenches", wrenches.unwrap_or(&nothing))?,
-                ];
+                let given = vec![$(given!(self, $argument: $kind),)* self.of_tips("wrenches", wrenches)?];
                 self.compute(py, Function::$variant, given, parameters, out)
             }
         }
@@ -423,13 +414,7 @@ macro_rules! at_frame {
                 out: Option<&Bound<'py, PyAny>>,
             ) -> PyResult<Bound<'py, PyAny>> {
                 let given = vec![$(given!(self, $argument: $kind)),*];
-                let Some(frame) = frame else {
-                    return self.compute(py, Function::$variant, given, parameters, out);
-                };
-                let frame = self.frame_name(frame)?;
-                let arm = self.arm.at_frame(&frame).map_err(|unknown| PyValueError::new_err(unknown.to_string()))?;
-                let at = Self { arm, origin: self.origin.clone() };
-                at.compute(py, Function::$variant, given, parameters, out)
+                self.compute_at(py, frame, Function::$variant, given, parameters, out)
             }
         }
     };
@@ -487,10 +472,10 @@ macro_rules! given {
         $arm.of_pose(stringify!($argument), $argument)?
     };
     ($arm:ident, $argument:ident: Payload) => {
-        given!($arm, $argument: Payload, &[])
+        $arm.payload($argument)
     };
     ($arm:ident, $argument:ident: Wrenches) => {
-        $arm.of_tips(stringify!($argument), $argument)?
+        $arm.of_tips(stringify!($argument), Some($argument))?
     };
     ($arm:ident, $argument:ident: Passive) => {
         $arm.of_passive(stringify!($argument), $argument)?
@@ -503,10 +488,8 @@ macro_rules! given {
     };
     ($arm:ident, $argument:ident: $kind:ident, $parts:expr) => {
         Given {
-            name: stringify!($argument),
             parts: $parts,
-            elements: Argument::$kind.elements(Sizes::of($arm.robot())),
-            value: $argument.clone(),
+            ..Given::vector(stringify!($argument), $arm.elements(Argument::$kind), $argument.clone())
         }
     };
 }

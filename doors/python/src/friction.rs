@@ -1,11 +1,14 @@
-//! Friction of the joints: the numbers of the robot file for the module of the package that computes it.
+//! Friction of the joints at their velocities.
 
+use numpy::Element;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
+use rne::compiled::Number;
 use rne_emit::{JointFriction, NoFriction};
 
 use crate::arm::Arm;
+use crate::arrays::{Given, Held, are_single, array_of};
 
 impl Arm {
     /// The numbers viscous, odd, even and width of each joint.
@@ -33,6 +36,35 @@ impl Arm {
         })?;
         Ok(frictions.iter().map(JointFriction::numbers).collect())
     }
+
+    /// A law of each joint at its velocity.
+    fn at_velocities<'py>(
+        &self,
+        qd: &Bound<'py, PyAny>,
+        width: Option<&Bound<'py, PyAny>>,
+        law: impl Fn(f64, [f64; 4]) -> f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (numbers, given) = (self.friction(width)?, [self.of_joints("qd", qd)?]);
+        let law = |(at, qd): (usize, f64)| law(qd, numbers[at % numbers.len()]);
+        if are_single(&given) {
+            of_each::<f32>(qd.py(), &given[0], "float32", law)
+        } else {
+            of_each::<f64>(qd.py(), &given[0], "float64", law)
+        }
+    }
+}
+
+/// What becomes of each number of an argument, with its place.
+fn of_each<'py, T: Element + Number>(
+    py: Python<'py>,
+    given: &Given<'py>,
+    dtype: &str,
+    law: impl Fn((usize, f64)) -> f64,
+) -> PyResult<Bound<'py, PyAny>> {
+    let held = Held::<T>::of(given, dtype, &(0..0))?;
+    let rows = held.rows(held.states.unwrap_or(1))?;
+    let results: Vec<T> = rows.into_iter().map(Into::into).enumerate().map(|each| T::from_f64(law(each))).collect();
+    array_of(py, held.states.as_slice(), &[held.elements()], results)
 }
 
 #[pymethods]
@@ -51,12 +83,14 @@ impl Arm {
     /// Returns N m, or N for a sliding joint: shape (n,) or (N, n).
     #[pyo3(signature = (qd, *, width=None))]
     fn friction_torques<'py>(
-        slf: &Bound<'py, Self>,
+        &self,
         qd: &Bound<'py, PyAny>,
         width: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let numbers = slf.borrow().friction(width)?;
-        slf.py().import("rne.friction")?.call_method1("torques", (slf, qd, numbers))
+        self.at_velocities(qd, width, |qd, [viscous, odd, even, width]| {
+            let s = qd / qd.hypot(width); // whose squares may be too large
+            viscous * qd + odd * s + even * s * s
+        })
     }
 
     /// Derivatives of `friction_torques`: of the friction of each joint by its velocity.
@@ -67,11 +101,13 @@ impl Arm {
     /// Returns N m s/rad, or N s/m for a sliding joint: shape (n,) or (N, n).
     #[pyo3(signature = (qd, *, width=None))]
     fn friction_derivatives<'py>(
-        slf: &Bound<'py, Self>,
+        &self,
         qd: &Bound<'py, PyAny>,
         width: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let numbers = slf.borrow().friction(width)?;
-        slf.py().import("rne.friction")?.call_method1("derivatives", (slf, qd, numbers))
+        self.at_velocities(qd, width, |qd, [viscous, odd, even, width]| {
+            let inverse = 1.0 / qd.hypot(width);
+            viscous + (odd + 2.0 * even * qd * inverse) * (width * inverse).powi(2) * inverse
+        })
     }
 }

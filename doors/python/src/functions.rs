@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use numpy::{Element, PyArrayDyn};
+use numpy::{Element, PyArrayDyn, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyEllipsis, PySlice, PyTuple};
-use rne::compiled::{Arguments, CompiledArm, Destination, Function, Number};
+use pyo3::types::{PySlice, PyTuple};
+use rne::compiled::{Arguments, CompiledArm, Destination, EvaluationError, Function, Number};
 use rne_codegen::{Layout, Record};
 
 use crate::arrays::{Given, Held, are_single, memory, room, states, writable};
@@ -91,6 +91,20 @@ pub(crate) fn evaluate<'py>(
     }
 }
 
+/// Computes a function of some states.
+pub(crate) fn run<T: Number>(
+    arm: &CompiledArm,
+    function: Function,
+    count: usize,
+    arguments: &Arguments<'_, T>,
+    numbers: &mut [T],
+) -> Result<(), EvaluationError> {
+    if count == 1 {
+        return arm.run_one(function, arguments, numbers);
+    }
+    arm.run(function, count, arguments, Destination::Rows(numbers))
+}
+
 fn evaluate_in<'py, T: Element + Number>(
     py: Python<'py>,
     arm: &CompiledArm,
@@ -116,61 +130,106 @@ fn evaluate_in<'py, T: Element + Number>(
             Function::ForwardKinematics | Function::LinkPoses => {
                 let compiled = arm.function(function)?.outputs();
                 let mut rows = vec![T::zero(); compiled * count];
-                if count == 1 {
-                    arm.run_one(function, &arguments, &mut rows)?;
-                } else {
-                    arm.run(function, count, &arguments, Destination::Rows(&mut rows))?;
-                }
-                for (matrix, pose) in numbers.chunks_exact_mut(16).zip(rows.chunks_exact(12)) {
-                    for row in 0..3 {
-                        matrix[4 * row..][..3].copy_from_slice(&pose[3 * row..][..3]);
-                        matrix[4 * row + 3] = pose[9 + row];
-                    }
-                    matrix[12..].copy_from_slice(&[T::zero(), T::zero(), T::zero(), T::one()]);
-                }
+                run(arm, function, count, &arguments, &mut rows)?;
+                let matrices = numbers.chunks_exact_mut(16).zip(rows.chunks_exact(12));
+                matrices.for_each(|(matrix, pose)| homogeneous(pose, matrix));
                 Ok(())
             }
-            _ if count == 1 => arm.run_one(function, &arguments, numbers),
-            _ => arm.run(function, count, &arguments, Destination::Rows(numbers)),
+            _ => run(arm, function, count, &arguments, numbers),
         });
-        computed.map_err(|error: rne::compiled::EvaluationError| of_evaluation(&error))?;
+        computed.map_err(|error: EvaluationError| of_evaluation(&error))?;
     }
-    as_python(arm, function, result, many)
+    as_python(arm, function, result, many, &of_state)
 }
 
-/// Elements of the last axis of an array.
-fn of_last_axis<'py>(array: &Bound<'py, PyAny>, elements: Range<usize>) -> PyResult<Bound<'py, PyAny>> {
-    let py = array.py();
-    let slice = PySlice::new(py, isize::try_from(elements.start)?, isize::try_from(elements.end)?, 1).into_any();
-    array.get_item(PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), slice])?)
-}
-
-/// The homogeneous matrix of a pose whose twelve numbers stand first in each result.
-fn homogeneous<'py, T: Element>(
+/// Elements of the last axis of the results, of each state in this shape.
+fn part<'py, T: Element>(
     result: &Bound<'py, PyArrayDyn<T>>,
     many: Option<usize>,
+    elements: Range<usize>,
+    shape: &[usize],
 ) -> PyResult<Bound<'py, PyAny>> {
-    let (py, states) = (result.py(), Vec::from_iter(many));
-    let part = |elements, columns: usize| {
-        let rows = [&states[..], &[3, columns]].concat();
-        of_last_axis(result.as_any(), elements)?.call_method1("reshape", (rows,))
+    let py = result.py();
+    let slice = PySlice::new(py, isize::try_from(elements.start)?, isize::try_from(elements.end)?, 1);
+    let part = match many {
+        None => result.get_item(slice)?,
+        Some(_) => result.get_item((PySlice::full(py), slice))?,
     };
-    let above = py.import("numpy")?.call_method1("concatenate", ((part(0..9, 3)?, part(9..12, 1)?), -1))?;
-    let widths: Vec<[usize; 2]> = states.iter().map(|_| [0, 0]).chain([[0, 1], [0, 0]]).collect();
-    let matrix = py.import("numpy")?.call_method1("pad", (above, widths))?;
-    matrix.set_item((PyEllipsis::get(py), 3, 3), 1.0)?;
-    Ok(matrix)
+    if shape.len() == 1 {
+        return Ok(part);
+    }
+    let whole: Vec<usize> = many.into_iter().chain(shape.iter().copied()).collect();
+    Ok(part.cast::<PyArrayDyn<T>>()?.reshape(whole)?.into_any())
+}
+
+/// The homogeneous matrix of a pose: three rows of the rotation, then the origin.
+pub(crate) fn homogeneous<T: Number>(pose: &[T], matrix: &mut [T]) {
+    for row in 0..3 {
+        matrix[4 * row..][..3].copy_from_slice(&pose[3 * row..][..3]);
+        matrix[4 * row + 3] = pose[9 + row];
+    }
+    matrix[12..].copy_from_slice(&[T::zero(), T::zero(), T::zero(), T::one()]);
+}
+
+/// A new array that has so many numbers for each result, of this shape, which `write` makes of the result's numbers.
+pub(crate) fn rewritten<'py, T: Element + Number>(
+    result: &Bound<'py, PyArrayDyn<T>>,
+    many: Option<usize>,
+    shape: &[usize],
+    write: impl Fn(&[T], &mut [T]),
+) -> PyResult<Bound<'py, PyAny>> {
+    let whole: Vec<usize> = many.into_iter().chain(shape.iter().copied()).collect();
+    let (size, count) = (shape.iter().product::<usize>().max(1), many.unwrap_or(1).max(1));
+    let made = PyArrayDyn::zeros(result.py(), whole, false);
+    let read = result.readonly();
+    let numbers = read.as_slice()?;
+    let mut written = made.readwrite();
+    let of_each = written.as_slice_mut()?.chunks_exact_mut(size);
+    of_each.zip(numbers.chunks_exact((numbers.len() / count).max(1))).for_each(|(made, numbers)| write(numbers, made));
+    drop(written);
+    Ok(made.into_any())
+}
+
+/// A and B of the rows of q_dq, q_dv, q_dtau, v_dq, v_dv and v_dtau, one behind the other.
+fn linear_model<'py, T: Element + Number>(
+    result: &Bound<'py, PyArrayDyn<T>>,
+    many: Option<usize>,
+    [size, inputs]: [usize; 2],
+) -> PyResult<Bound<'py, PyAny>> {
+    let half = 2 * size * size + size * inputs;
+    let a = rewritten(result, many, &[2 * size, 2 * size], |numbers, a| {
+        for (row, a) in a.chunks_exact_mut(2 * size).enumerate() {
+            let numbers = &numbers[half * (row / size)..];
+            for (block, a) in a.chunks_exact_mut(size).enumerate() {
+                a.copy_from_slice(&numbers[size * (size * block + row % size)..][..size]);
+            }
+        }
+    });
+    let b = rewritten(result, many, &[2 * size, inputs], |numbers, b| {
+        let of_half = b.chunks_exact_mut(size * inputs).zip(numbers.chunks_exact(half));
+        of_half.for_each(|(b, numbers)| b.copy_from_slice(&numbers[2 * size * size..]));
+    });
+    Ok(PyTuple::new(result.py(), [a?, b?])?.into_any())
 }
 
 /// The array of all results as the user has them: records are tuples of arrays.
-fn as_python<'py, T: Element>(
+fn as_python<'py, T: Element + Number>(
     arm: &CompiledArm,
     function: Function,
     result: Bound<'py, PyArrayDyn<T>>,
     many: Option<usize>,
+    of_state: &[usize],
 ) -> PyResult<Bound<'py, PyAny>> {
-    let py = result.py();
-    let of_state = shape(function, arm);
+    let (py, dof) = (result.py(), arm.dof());
+    let parts = |parts: &[(usize, &[usize])]| {
+        let mut from = 0;
+        let parts = parts.iter().map(|(skipped, shape)| {
+            let start = from + skipped;
+            from = start + shape.iter().product::<usize>();
+            part(&result, many, start..from, shape)
+        });
+        Ok(PyTuple::new(py, parts.collect::<PyResult<Vec<_>>>()?)?.into_any())
+    };
     match arm.layout(function) {
         Layout::Record(
             Record::TorqueDerivatives
@@ -181,72 +240,29 @@ fn as_python<'py, T: Element>(
             | Record::NextState,
             parts,
         ) => {
-            let all = vec![PySlice::full(py).into_any(); of_state.len() - 1];
-            let of = |index: usize| {
-                let index = index.into_pyobject(py)?.into_any();
-                let places = [PyEllipsis::get(py).to_owned().into_any(), index].into_iter().chain(all.clone());
-                result.get_item(PyTuple::new(py, places.collect::<Vec<_>>())?)
+            let of = |index: usize| match many {
+                None => result.get_item(index),
+                Some(_) => result.get_item((PySlice::full(py), index)),
             };
             let parts = (0..parts.len()).map(of).collect::<PyResult<Vec<_>>>()?;
             Ok(PyTuple::new(py, parts)?.into_any())
         }
         Layout::Record(record @ (Record::FloatingTorques | Record::FloatingAccelerations | Record::ClosureStep), _) => {
             let first = if record == Record::ClosureStep { arm.robot().closed.passive.len() } else { 6 };
-            let parts = [0..first, first..of_state.iter().product()];
-            let parts =
-                parts.into_iter().map(|part| of_last_axis(result.as_any(), part)).collect::<PyResult<Vec<_>>>()?;
-            Ok(PyTuple::new(py, parts)?.into_any())
+            parts(&[(0, &[first]), (0, &[of_state.iter().product::<usize>() - first])])
         }
         Layout::Record(Record::AccelerationsAndWrenches, _) => {
-            let (joints, tips) = (6 + arm.dof(), arm.robot().tip_count());
-            let rows: Vec<usize> = many.into_iter().chain([tips, 6]).collect();
-            let wrenches =
-                of_last_axis(result.as_any(), joints..joints + 6 * tips)?.call_method1("reshape", (rows,))?;
-            let [base, accelerations] = [0..6, 6..joints].map(|part| of_last_axis(result.as_any(), part));
-            Ok(PyTuple::new(py, [base?, accelerations?, wrenches])?.into_any())
+            parts(&[(0, &[6]), (0, &[dof]), (0, &[arm.robot().tip_count(), 6])])
         }
         Layout::Record(Record::FloatingNextState, _) => {
-            let dof = arm.dof();
-            let parts = [12..18, 18..18 + dof, 18 + dof..18 + 2 * dof].map(|part| of_last_axis(result.as_any(), part));
-            let [twist, positions, velocities] = parts;
-            let pose = homogeneous(&result, many)?;
-            Ok(PyTuple::new(py, [pose, twist?, positions?, velocities?])?.into_any())
+            let pose = rewritten(&result, many, &[4, 4], |numbers, matrix| homogeneous(numbers, matrix))?;
+            let others = parts(&[(12, &[6]), (0, &[dof]), (0, &[dof])])?;
+            PyTuple::new(py, [pose])?.into_any().add(others)
         }
-        // A and B, of the blocks by q, by q̇ and by τ of the positions, then of the velocities
-        Layout::Record(Record::NextStateDerivatives, _) => {
-            let (dof, lead) = (arm.dof(), usize::from(many.is_some()));
-            let axes: Vec<usize> = (0..lead).chain([0, 2, 1, 3].map(|axis| lead + axis)).collect();
-            let rows: Vec<usize> = many.into_iter().chain([2 * dof, 3 * dof]).collect();
-            let matrix = result.call_method1("transpose", (axes,))?.call_method1("reshape", (rows,))?;
-            let [a, b] = [0..2 * dof, 2 * dof..3 * dof].map(|part| of_last_axis(&matrix, part));
-            Ok(PyTuple::new(py, [a?, b?])?.into_any())
-        }
-        // the same, with the rows of the base
-        Layout::Record(Record::FloatingStepDerivatives, _) => {
-            let (dof, lead) = (arm.dof(), usize::from(many.is_some()));
-            let size = 6 + dof;
-            let shaped = |array: &Bound<'py, PyAny>, shape: &[usize]| {
-                array.call_method1("reshape", (many.into_iter().chain(shape.iter().copied()).collect::<Vec<_>>(),))
-            };
-            let halves = shaped(result.as_any(), &[2, 2 * size * size + size * dof])?;
-            let a = shaped(&of_last_axis(&halves, 0..2 * size * size)?, &[2, 2, size, size])?;
-            let axes: Vec<usize> = (0..lead).chain([0, 2, 1, 3].map(|axis| lead + axis)).collect();
-            let a = shaped(&a.call_method1("transpose", (axes,))?, &[2 * size, 2 * size])?;
-            let b = of_last_axis(&halves, 2 * size * size..2 * size * size + size * dof)?;
-            Ok(PyTuple::new(py, [a, shaped(&b, &[2 * size, dof])?])?.into_any())
-        }
-        Layout::Record(Record::FloatingTorqueDerivatives, parts) => {
-            let mut from = 0;
-            let mut part = |layout: &Layout, columns: usize| {
-                let to = from + layout.len();
-                let numbers = of_last_axis(result.as_any(), from..to)?;
-                from = to;
-                let rows: Vec<usize> = many.into_iter().chain([layout.len() / columns, columns]).collect();
-                numbers.call_method1("reshape", (rows,))
-            };
-            let columns = [arm.dof(), arm.dof(), 3];
-            let parts = parts.iter().zip(columns).map(|(layout, columns)| part(layout, columns));
-            Ok(PyTuple::new(py, parts.collect::<PyResult<Vec<_>>>()?)?.into_any())
+        Layout::Record(Record::NextStateDerivatives, _) => linear_model(&result, many, [dof, dof]),
+        Layout::Record(Record::FloatingStepDerivatives, _) => linear_model(&result, many, [6 + dof, dof]),
+        Layout::Record(Record::FloatingTorqueDerivatives, _) => {
+            parts(&[(0, &[6 + dof, dof]), (0, &[6 + dof, dof]), (0, &[6 + dof, 3])])
         }
         _ => finished(result, many.is_none() && of_state.is_empty()),
     }

@@ -303,7 +303,7 @@ impl Arm {
         }
         let found = found.map_err(|error| of_evaluation(&error))?;
         let plan = found.plan().map(rne::compiled::PlanFile::to_yaml);
-        Self::of(py, Origin { plan, ..self.origin.clone() })
+        Self::of(py, Origin { plan, ..(*self.origin).clone() })
     }
 
     /// The page of `rne report`: one file of HTML that needs no network.

@@ -1,52 +1,72 @@
-//! Steps of the classical Runge-Kutta method: arguments for the modules of the package that compute them.
+//! Steps of the classical Runge-Kutta method, by functions of the machine.
 
+use std::cell::RefCell;
+
+use numpy::Element;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+use rne::compiled::{Arguments, Array, CompiledArm, EvaluationError, Function, Number};
+use rne::{BaseAcceleration, BaseTwist, Quaternion};
+use rne_runtime::floating_integrator_of_lists::{Linear, Stage, Turning, derivatives, factor, moved, runge_kutta};
+use rne_runtime::integrator_of_lists;
 
 use crate::arm::Arm;
+use crate::arrays::{Given, Held, are_single, array_of, pose_of_twelve, states};
+use crate::errors::of_evaluation;
+use crate::functions::{homogeneous, run};
 
-/// Methods that a module of the package computes: the arguments that are always there, and those of some.
-macro_rules! computed_by {
-    ($module:literal: $(
-        $(#[$doc:meta])* $name:ident ($($given:ident),*; $($wrenches:ident)?; $($payload:ident)?)
-    )*) => {$(
-        #[pymethods]
-        impl Arm {
-            $(#[$doc])*
-            #[pyo3(signature = ($($given,)* $($wrenches=None,)? *, steps=1, $($payload=None,)? parameters=None))]
-            #[allow(clippy::too_many_arguments)] // those of Python
-            fn $name<'py>(
-                slf: &Bound<'py, Self>,
-                $($given: &Bound<'py, PyAny>,)*
-                $($wrenches: Option<&Bound<'py, PyAny>>,)?
-                steps: i64,
-                $($payload: Option<&Bound<'py, PyAny>>,)?
-                parameters: Option<&Bound<'py, PyAny>>,
-            ) -> PyResult<Bound<'py, PyAny>> {
-                let arguments = (slf, $($given,)* $($wrenches,)? steps, $($payload,)? parameters);
-                slf.py().import($module)?.call_method1(stringify!($name), arguments)
-            }
-        }
-    )*};
-}
+/// A matrix by rows.
+type Matrix<T> = Vec<Vec<T>>;
 
-computed_by! { "rne.integrator":
+/// A and B.
+type Model<T> = [Matrix<T>; 2];
+
+#[pymethods]
+impl Arm {
     /// The state after steps of the classical Runge-Kutta method of duration `step` (s) under torques `tau`.
     ///
     /// `steps` steps follow each other under the same torques. Each of them computes `forward_dynamics` four times; the
     /// error of a motion is of order h⁴. `step` is a number, or an array of shape (N,).
     ///
     /// Returns the positions and the velocities after the steps, two arrays of shape (n,) or (N, n).
-    runge_kutta_step (q, qd, tau, step; ; payload)
+    #[pyo3(signature = (q, qd, tau, step, *, steps=1, payload=None, parameters=None))]
+    fn runge_kutta_step<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        qd: &Bound<'py, PyAny>,
+        tau: &Bound<'py, PyAny>,
+        step: &Bound<'py, PyAny>,
+        steps: i64,
+        payload: Option<&Bound<'py, PyAny>>,
+        parameters: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let more = payload.map(|payload| self.payload(payload)).into_iter().collect();
+        self.stepped([q, qd, tau], step, steps, more, parameters)?.of_arm(py, payload.is_some(), false)
+    }
 
     /// Derivatives of `runge_kutta_step` by q, by q̇ and by τ: the linear model δx' = A δx + B δτ with x = (q, q̇).
     ///
     /// They are exact up to rounding, by the chain rule over all `steps`.
     ///
     /// Returns A and B, of shape (2 n, 2 n) and (2 n, n), or (N, 2 n, 2 n) and (N, 2 n, n).
-    runge_kutta_step_derivatives (q, qd, tau, step; ; payload)
-}
+    #[pyo3(signature = (q, qd, tau, step, *, steps=1, payload=None, parameters=None))]
+    fn runge_kutta_step_derivatives<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        qd: &Bound<'py, PyAny>,
+        tau: &Bound<'py, PyAny>,
+        step: &Bound<'py, PyAny>,
+        steps: i64,
+        payload: Option<&Bound<'py, PyAny>>,
+        parameters: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let more = payload.map(|payload| self.payload(payload)).into_iter().collect();
+        self.stepped([q, qd, tau], step, steps, more, parameters)?.of_arm(py, payload.is_some(), true)
+    }
 
-computed_by! { "rne.floating_integrator":
     /// The state after steps of the classical Runge-Kutta method where nothing holds the base.
     ///
     /// Arguments and results are those of `floating_euler_step`. `steps` steps follow each other under the same torques
@@ -57,7 +77,23 @@ computed_by! { "rne.floating_integrator":
     /// Returns the pose after the steps, a homogeneous matrix of shape (4, 4) or (N, 4, 4), the velocity of the base,
     /// linear then angular, in its axes, of shape (6,) or (N, 6), and the positions and the velocities of the joints,
     /// of shape (n,) or (N, n).
-    floating_runge_kutta_step (q, qd, tau, pose, twist, step; wrenches; )
+    #[pyo3(signature = (q, qd, tau, pose, twist, step, wrenches=None, *, steps=1, parameters=None))]
+    fn floating_runge_kutta_step<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        qd: &Bound<'py, PyAny>,
+        tau: &Bound<'py, PyAny>,
+        pose: &Bound<'py, PyAny>,
+        twist: &Bound<'py, PyAny>,
+        step: &Bound<'py, PyAny>,
+        wrenches: Option<&Bound<'py, PyAny>>,
+        steps: i64,
+        parameters: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let more = self.of_base(pose, twist, wrenches)?;
+        self.stepped([q, qd, tau], step, steps, more, parameters)?.of_floating_base(py, false)
+    }
 
     /// Derivatives of `floating_runge_kutta_step` by positions, velocities and τ: the linear model of its steps.
     ///
@@ -67,5 +103,343 @@ computed_by! { "rne.floating_integrator":
     ///
     /// Returns A and B, of shape (12 + 2 n, 12 + 2 n) and (12 + 2 n, n), or (N, 12 + 2 n, 12 + 2 n) and
     /// (N, 12 + 2 n, n); rows and columns are the positions, then the velocities, each of the base before the joints.
-    floating_runge_kutta_step_derivatives (q, qd, tau, pose, twist, step; wrenches; )
+    #[pyo3(signature = (q, qd, tau, pose, twist, step, wrenches=None, *, steps=1, parameters=None))]
+    fn floating_runge_kutta_step_derivatives<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        qd: &Bound<'py, PyAny>,
+        tau: &Bound<'py, PyAny>,
+        pose: &Bound<'py, PyAny>,
+        twist: &Bound<'py, PyAny>,
+        step: &Bound<'py, PyAny>,
+        wrenches: Option<&Bound<'py, PyAny>>,
+        steps: i64,
+        parameters: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let more = self.of_base(pose, twist, wrenches)?;
+        self.stepped([q, qd, tau], step, steps, more, parameters)?.of_floating_base(py, true)
+    }
+}
+
+/// The steps that are asked for.
+struct Steps<'a, 'py> {
+    arm: &'a CompiledArm,
+    given: Vec<Given<'py>>,
+    steps: i64,
+}
+
+impl Arm {
+    fn of_base<'py>(
+        &self,
+        pose: &Bound<'py, PyAny>,
+        twist: &Bound<'py, PyAny>,
+        wrenches: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Vec<Given<'py>>> {
+        let twist = Given::vector("twist", 6, twist.clone());
+        self.moves_its_base(Function::FloatingForwardDynamics)?;
+        Ok(vec![self.of_pose("pose", pose)?, twist, self.of_tips("wrenches", wrenches)?])
+    }
+
+    fn stepped<'py>(
+        &self,
+        [q, qd, tau]: [&Bound<'py, PyAny>; 3],
+        step: &Bound<'py, PyAny>,
+        steps: i64,
+        more: Vec<Given<'py>>,
+        parameters: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Steps<'_, 'py>> {
+        if steps < 1 {
+            let message = format!("`steps` is {steps}; it is the number of steps, 1 or more");
+            return Err(PyValueError::new_err(message));
+        }
+        let mut given = vec![self.of_joints("q", q)?, self.of_joints("qd", qd)?, self.of_joints("tau", tau)?];
+        given.extend(more);
+        given.push(self.of_step("step", step)?);
+        given.extend(self.given_parameters(parameters)?);
+        Ok(Steps { arm: &self.arm, given, steps })
+    }
+}
+
+impl<'py> Steps<'_, 'py> {
+    fn of_arm(&self, py: Python<'py>, is_loaded: bool, is_derived: bool) -> PyResult<Bound<'py, PyTuple>> {
+        if are_single(&self.given) {
+            Rows::<f32>::of(&self.given, "float32")?.of_arm(py, self, is_loaded, is_derived)
+        } else {
+            Rows::<f64>::of(&self.given, "float64")?.of_arm(py, self, is_loaded, is_derived)
+        }
+    }
+
+    fn of_floating_base(&self, py: Python<'py>, is_derived: bool) -> PyResult<Bound<'py, PyTuple>> {
+        if are_single(&self.given) {
+            Rows::<f32>::of(&self.given, "float32")?.of_floating_base(py, self, is_derived)
+        } else {
+            Rows::<f64>::of(&self.given, "float64")?.of_floating_base(py, self, is_derived)
+        }
+    }
+}
+
+/// The numbers of all arguments, state by state.
+struct Rows<T> {
+    many: Option<usize>,
+    /// The name, how many numbers a state has, and the numbers.
+    rows: Vec<(&'static str, usize, Vec<T>)>,
+}
+
+impl<T: Element + Number> Rows<T> {
+    fn of(given: &[Given<'_>], dtype: &str) -> PyResult<Self> {
+        let held: Vec<Held<'_, T>> =
+            given.iter().map(|given| Held::of(given, dtype, &(0..0))).collect::<PyResult<_>>()?;
+        let many = states(&held)?;
+        let of_each = |held: &Held<'_, T>| Ok((held.name(), held.elements(), held.rows(many.unwrap_or(1))?));
+        Ok(Self { many, rows: held.iter().map(of_each).collect::<PyResult<_>>()? })
+    }
+
+    /// The numbers of an argument at some states.
+    fn at(&self, name: &str, state: usize) -> &[T] {
+        let found = self.rows.iter().find(|(own, ..)| *own == name);
+        found.map_or(&[], |(_, elements, numbers)| &numbers[state * elements..][..*elements])
+    }
+
+    fn all(&self, name: &str) -> &[T] {
+        self.rows.iter().find(|(own, ..)| *own == name).map_or(&[], |(.., numbers)| numbers)
+    }
+
+    /// The arguments of the states of a range, without those of the state itself.
+    fn arguments(&self, from: usize, count: usize) -> Arguments<'_, T> {
+        let named = self.rows.iter().filter(|(name, ..)| ["tau", "wrenches", "payload", "parameters"].contains(name));
+        named.fold(Arguments::new(), |arguments, (name, elements, numbers)| {
+            let numbers = Array::Rows(&numbers[from * elements..][..count * elements]);
+            arguments.with(name, numbers).unwrap_or(arguments)
+        })
+    }
+
+    /// A function of states.
+    fn computed(
+        &self,
+        arm: &CompiledArm,
+        function: Function,
+        arguments: &Arguments<'_, T>,
+        count: usize,
+    ) -> Result<Vec<T>, EvaluationError> {
+        let mut found = vec![T::zero(); arm.layout(function).len() * count];
+        run(arm, function, count, arguments, &mut found)?;
+        Ok(found)
+    }
+
+    fn of_arm<'py>(
+        &self,
+        py: Python<'py>,
+        Steps { arm, steps, .. }: &Steps<'_, '_>,
+        is_loaded: bool,
+        is_derived: bool,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let (dof, count) = (arm.dof(), self.many.unwrap_or(1));
+        let [dynamics, by_state] = if is_loaded {
+            [Function::ForwardDynamicsWithPayload, Function::ForwardDynamicsDerivativesWithPayload]
+        } else {
+            [Function::ForwardDynamics, Function::ForwardDynamicsDerivatives]
+        };
+        let step = self.all("step");
+        let of_states = |from: usize, count: usize, function: Function, q: &[T], qd: &[T]| {
+            let arguments = self.arguments(from, count).q(Array::Rows(q)).qd(Array::Rows(qd));
+            self.computed(arm, function, &arguments, count)
+        };
+        // states from one on
+        let next = |from: usize, count: usize, q: &[T], qd: &[T]| {
+            let accelerations = |q: &[T], qd: &[T]| of_states(from, count, dynamics, q, qd);
+            integrator_of_lists::runge_kutta_step(accelerations, q, qd, |at| step[from + at / dof])
+        };
+        let after = || {
+            let mut state = [self.all("q").to_vec(), self.all("qd").to_vec()];
+            for _ in 0..*steps {
+                state = next(0, count, &state[0], &state[1])?;
+            }
+            Ok(state)
+        };
+        let model = |state: usize| {
+            let (mut model, mut now) = (None, [self.at("q", state).to_vec(), self.at("qd", state).to_vec()]);
+            for index in 0..*steps {
+                if index > 0 {
+                    now = next(state, 1, &now[0], &now[1])?;
+                }
+                let accelerations = |q: &[T], qd: &[T]| of_states(state, 1, dynamics, q, qd);
+                let by = |q: &[T], qd: &[T]| {
+                    let found = of_states(state, 1, by_state, q, qd)?;
+                    let matrix =
+                        |of: usize| found[of * dof * dof..][..dof * dof].chunks_exact(dof).map(<[T]>::to_vec).collect();
+                    Ok([matrix(0), matrix(1), matrix(2)])
+                };
+                let [q, qd] = &now;
+                let found = integrator_of_lists::runge_kutta_step_derivatives(accelerations, by, q, qd, step[state])?;
+                let (mut a, mut b) = (Matrix::new(), Matrix::new());
+                for [dq, dqd, dtau] in found {
+                    a.extend(dq.into_iter().zip(dqd).map(|(dq, dqd)| [dq, dqd].concat()));
+                    b.extend(dtau);
+                }
+                model = Some(chained(model, [a, b]));
+            }
+            Ok(model)
+        };
+        if is_derived {
+            let models = py.detach(|| (0..count).map(model).collect::<Result<Vec<_>, EvaluationError>>());
+            return self.models(py, [2 * dof, dof], models.map_err(|error| of_evaluation(&error))?);
+        }
+        let state = py.detach(after).map_err(|error: EvaluationError| of_evaluation(&error))?;
+        let [q, qd] = state.map(|numbers| array_of(py, self.many.as_slice(), &[dof], numbers));
+        PyTuple::new(py, [q?, qd?])
+    }
+
+    fn of_floating_base<'py>(
+        &self,
+        py: Python<'py>,
+        Steps { arm, steps, .. }: &Steps<'_, '_>,
+        is_derived: bool,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let (dof, count) = (arm.dof(), self.many.unwrap_or(1));
+        let of_state = |state| self.moved(arm, state, *steps, is_derived);
+        let computed = py.detach(|| (0..count).map(of_state).collect::<Result<Vec<_>, _>>());
+        let computed = computed.map_err(|error| of_evaluation(&error))?;
+        let (parts, models): (Vec<_>, Vec<_>) = computed.into_iter().unzip();
+        if is_derived {
+            let is_finite = |numbers: &[T]| numbers.iter().all(|&number| Into::<f64>::into(number).is_finite());
+            let is_singular = models.iter().flatten().any(|[a, _]| !a.iter().all(|row| is_finite(row)));
+            if is_singular && self.rows.iter().all(|(.., numbers)| is_finite(numbers)) {
+                return Err(PyValueError::new_err(
+                    "the mass matrix is singular in one of the states: the base or a joint moves no mass, so the step \
+                     has no derivatives",
+                ));
+            }
+            return self.models(py, [12 + 2 * dof, dof], models);
+        }
+        let shapes: [&[usize]; 4] = [&[4, 4], &[6], &[dof], &[dof]];
+        let of_all = |part: usize| parts.iter().flat_map(|parts| parts[part].iter().copied()).collect();
+        let arrays =
+            shapes.iter().enumerate().map(|(part, shape)| array_of(py, self.many.as_slice(), shape, of_all(part)));
+        PyTuple::new(py, arrays.collect::<PyResult<Vec<_>>>()?)
+    }
+
+    /// The state after steps: a homogeneous matrix, the twist, q and qd; and A and B over all steps, if asked for.
+    fn moved(
+        &self,
+        arm: &CompiledArm,
+        state: usize,
+        steps: i64,
+        is_derived: bool,
+    ) -> Result<(Vec<Vec<T>>, Option<Model<T>>), EvaluationError> {
+        let (dof, size, gravity) = (arm.dof(), 6 + arm.dof(), arm.robot().gravity.map(T::from_f64));
+        let (step, three) = (self.at("step", state)[0], |numbers: &[T]| [numbers[0], numbers[1], numbers[2]]);
+        let pose = pose_of_twelve(self.at("pose", state));
+        let orientation = Quaternion::of_rotation(&pose.rotation.map(|row| row.map(Into::<f64>::into)));
+        let mut orientation = Quaternion::from_wxyz(orientation.to_wxyz().map(T::from_f64));
+        let mut position = pose.translation;
+        let twist = self.at("twist", state);
+        let mut twist = BaseTwist { linear: three(twist), angular: three(&twist[3..]) };
+        let (mut q, mut qd) = (self.at("q", state).to_vec(), self.at("qd", state).to_vec());
+        let (zero, failed) = ([T::zero(); 3], RefCell::new(None));
+        let of = |function: Function, arguments: &Arguments<'_, T>| {
+            self.computed(arm, function, arguments, 1).unwrap_or_else(|error| {
+                *failed.borrow_mut() = Some(error);
+                vec![T::zero(); arm.layout(function).len()]
+            })
+        };
+        let mut model = None;
+        for _ in 0..steps {
+            let mut linear = Vec::new();
+            let start = Stage::of(&orientation, &twist, q, qd);
+            let (next, mean) = runge_kutta(&start, step, |_, stage| {
+                let arguments = self.arguments(state, 1).q(Array::Rows(&stage.q)).qd(Array::Rows(&stage.qd));
+                let found = of(Function::FloatingForwardDynamics, &arguments.omega(Array::Rows(&stage.omega)));
+                let base = BaseAcceleration { linear: three(&found), angular: three(&found[3..]) };
+                if is_derived {
+                    // the acceleration of the base is less gravity
+                    let arguments = arguments
+                        .qdd(Array::Rows(&found[6..]))
+                        .base_omega(Array::Rows(&stage.omega))
+                        .base_omega_dot(Array::Rows(&base.angular))
+                        .base_acceleration(Array::Rows(&base.linear))
+                        .base_gravity(Array::Rows(&zero));
+                    let forces = of(Function::FloatingInverseDynamicsDerivatives, &arguments);
+                    let rows = |numbers: &[T], columns| -> Matrix<T> {
+                        numbers.chunks_exact(columns).map(<[T]>::to_vec).collect()
+                    };
+                    let (dq, others) = forces.split_at(size * dof);
+                    let (dqd, domega) = others.split_at(size * dof);
+                    let mut mass = rows(&of(Function::FloatingMassMatrix, &arguments), size);
+                    let mut inverse = vec![T::zero(); size];
+                    factor(&mut mass, &mut inverse);
+                    let domega: Vec<_> = domega.chunks_exact(3).map(three).collect();
+                    let turning = Turning::of(stage, &base, &orientation);
+                    linear.push((turning, rows(dq, dof), rows(dqd, dof), domega, mass, inverse));
+                }
+                stage.rates(&base, found[6..].to_vec(), &orientation, &gravity)
+            });
+            if let Some(error) = failed.take() {
+                return Err(error);
+            }
+            let (next_orientation, next_twist) = next.base(&orientation);
+            if is_derived {
+                let mut a = vec![vec![T::zero(); 2 * size]; 2 * size];
+                let mut b = vec![vec![T::zero(); dof]; 2 * size];
+                let of_stage = |number: usize| {
+                    linear.get(number).map(|(turning, dq, dqd, domega, mass, inverse)| Linear {
+                        turning: *turning,
+                        dq,
+                        dqd,
+                        domega,
+                        mass,
+                        inverse,
+                    })
+                };
+                derivatives(
+                    [&orientation, &next_orientation],
+                    &twist,
+                    &next,
+                    step,
+                    of_stage,
+                    &mut vec![T::zero(); size],
+                    &mut |[half, kind], row, at, element| match kind {
+                        2 => b[half * size + row][at] = element,
+                        _ => a[half * size + row][kind * size + at] = element,
+                    },
+                );
+                model = Some(chained(model, [a, b]));
+            }
+            position = moved(&position, &mean, step);
+            (orientation, twist, q, qd) = (next_orientation, next_twist, next.q, next.qd);
+        }
+        let mut matrix = vec![T::zero(); 16];
+        homogeneous(&[orientation.rotation().as_flattened(), &position].concat(), &mut matrix);
+        let twist = [twist.linear, twist.angular].concat();
+        Ok((vec![matrix, twist, q, qd], model))
+    }
+
+    /// The arrays of A and of B.
+    fn models<'py>(
+        &self,
+        py: Python<'py>,
+        [size, inputs]: [usize; 2],
+        models: Vec<Option<Model<T>>>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let of = |part: usize| models.iter().flatten().flat_map(|model| model[part].concat()).collect();
+        let [a, b] = [(0, size), (1, inputs)]
+            .map(|(part, columns)| array_of(py, self.many.as_slice(), &[size, columns], of(part)));
+        PyTuple::new(py, [a?, b?])
+    }
+}
+
+/// The model of a step after those before it.
+fn chained<T: Number>(before: Option<Model<T>>, [a, b]: Model<T>) -> Model<T> {
+    let Some([by_x, by_u]) = before else { return [a, b] };
+    let product = |with: &Matrix<T>, added: Option<&Matrix<T>>| {
+        let row = |(at, row): (usize, &Vec<T>)| {
+            let mut sum = added.map_or_else(|| vec![T::zero(); with[0].len()], |added| added[at].clone());
+            for (factor, with) in row.iter().zip(with) {
+                sum.iter_mut().zip(with).for_each(|(sum, &with)| *sum += *factor * with);
+            }
+            sum
+        };
+        a.iter().enumerate().map(row).collect()
+    };
+    [product(&by_x, None), product(&by_u, Some(&b))]
 }

@@ -8,6 +8,7 @@
 
 mod arm;
 mod arrays;
+mod bases;
 mod dynamics;
 mod errors;
 mod excitation;
@@ -39,6 +40,8 @@ mod _rne {
     #[pymodule_export]
     use super::arm::Arm;
     #[pymodule_export]
+    use super::bases::{base_from_imu, base_from_mujoco, base_from_pinocchio, derivatives_to_pinocchio};
+    #[pymodule_export]
     use super::errors::{EvaluationError, RobotFileError, RobotFileWarning};
     #[pymodule_export]
     use super::excitation::exciting;
@@ -52,7 +55,7 @@ mod _rne {
     #[pymodule_export]
     use super::logs::{log_content, log_motion};
     #[pymodule_export]
-    use super::payload::payload_identified;
+    use super::payload::{payload, payload_identified};
     #[pymodule_export]
     use super::pose::pose_log;
     #[pymodule_export]

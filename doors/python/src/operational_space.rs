@@ -3,9 +3,8 @@
 use numpy::{Element, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use rne::Scalar;
-use rne::compiled::Number;
+use rne::compiled::{Function, Number};
 
 use crate::arm::Arm;
 use crate::arrays::{room, writable};
@@ -89,19 +88,19 @@ impl Arm {
         payload: Option<&Bound<'py, PyAny>>,
         parameters: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<[Bound<'py, PyAny>; 2]> {
-        let arm = Bound::new(py, self.clone())?;
-        let called = |name: &str, given: &[(&str, Option<Bound<'py, PyAny>>)]| {
-            let keywords = PyDict::new(py);
-            for (name, value) in given {
-                keywords.set_item(name, value)?;
-            }
-            keywords.set_item("parameters", parameters)?;
-            arm.call_method(name, (q,), Some(&keywords))
+        let of_mass = match payload {
+            None => Function::MassMatrix,
+            Some(_) => Function::MassMatrixWithPayload,
         };
-        let mass = called("mass_matrix", &[("payload", payload.cloned())])?;
-        let jacobian = called("jacobian", &[("frame", frame.cloned())])?;
+        let payload = payload.map(|payload| self.payload(payload));
+        let given = [self.of_joints("q", q)?].into_iter().chain(payload).collect();
+        let mass = self.compute(py, of_mass, given, parameters, None)?;
+        let given = vec![self.of_joints("q", q)?];
+        let jacobian = self.compute_at(py, frame, Function::Jacobian, given, parameters, None)?;
         // a payload in double precision beside positions in single precision
-        let jacobian = jacobian.call_method1("astype", (mass.getattr("dtype")?,))?;
+        if mass.cast::<PyArrayDyn<f64>>().is_ok() && jacobian.cast::<PyArrayDyn<f64>>().is_err() {
+            return Ok([mass, jacobian.call_method1("astype", ("float64",))?]);
+        }
         Ok([mass, jacobian])
     }
 

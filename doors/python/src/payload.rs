@@ -1,18 +1,81 @@
-//! A payload from logs, with the keys of `rne identify --payload --json`.
+//! A payload as an argument, and one from logs, with the keys of `rne identify --payload --json`.
 
 use std::path::PathBuf;
 
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyFloat};
+use rne::NegativeMass;
 use rne_identify::{ArmLog, JointError, MotionError, Part, PassError, Payload, PayloadReply, Purpose};
 
 use crate::arm::Arm;
+use crate::arrays::{array_of, in_order, readable, refuse_masked, shape_in_words, shape_of, taken};
 use crate::identification::Judged;
 use crate::interruption::interruptible;
 use crate::log_errors::{of_arm_log, of_pass};
 use crate::logs::{Reading, Said, robot_of, said};
 use crate::reply::dict_of;
+
+/// The argument `payload` of the functions of an `Arm`, shape (10,).
+///
+/// mass: kg. com: centre of mass (m) from the origin of the tip frame, in its axes. inertia: about the centre of mass
+/// (kg m²), the symmetric tensor of shape (3, 3), or None for a point mass.
+#[pyfunction]
+#[pyo3(signature = (mass, com=None, inertia=None), text_signature = "(mass, com=(0.0, 0.0, 0.0), inertia=None)")]
+pub(crate) fn payload<'py>(
+    py: Python<'py>,
+    mass: &Bound<'py, PyAny>,
+    com: Option<&Bound<'py, PyAny>>,
+    inertia: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let [mass] = numbers("mass", Some(mass), &[], "a number, in kg")?;
+    let [x, y, z] = numbers("com", com, &[3], "three numbers x, y, z, in m")?;
+    let allowed = "a symmetric tensor of shape (3, 3), in kg m²";
+    let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = numbers("inertia", inertia, &[3, 3], allowed)?;
+    NegativeMass::check(mass).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    // as far as digits of a file say
+    let is_other = |(one, other): (f64, f64)| (one - other).abs() > 1e-8 + 1e-5 * one.abs().min(other.abs());
+    if [(xy, yx), (xz, zx), (yz, zy)].into_iter().any(is_other) {
+        return Err(PyValueError::new_err("`inertia` is a symmetric tensor of shape (3, 3)"));
+    }
+    array_of(py, &[], &[10], vec![mass, x, y, z, xx, yy, zz, xy, xz, yz])
+}
+
+/// Finite numbers of a shape, or an error that names the argument and what it may be. What is left out is zero.
+fn numbers<const N: usize>(
+    name: &'static str,
+    value: Option<&Bound<'_, PyAny>>,
+    shape: &[usize],
+    allowed: &str,
+) -> PyResult<[f64; N]> {
+    let Some(value) = value else { return Ok([0.0; N]) };
+    refuse_masked(name, value)?;
+    let found = match value.extract() {
+        Ok(number) if value.is_instance_of::<PyFloat>() => vec![number],
+        _ => {
+            let Some(found) = shape_of(value)? else {
+                let message = format!("`{name}` is {}, but it must be {allowed}", value.repr()?);
+                return Err(PyTypeError::new_err(message));
+            };
+            if found != shape {
+                let found = shape_in_words(&found);
+                let message = format!("`{name}` has the shape {found}, but it must be {allowed}");
+                return Err(PyValueError::new_err(message));
+            }
+            readable(name, &in_order(taken::<f64>(value.py(), name, value, "float64", &(0..0))?)?)?.as_slice()?.to_vec()
+        }
+    };
+    if let Some(at) = found.iter().position(|number| !number.is_finite()) {
+        let place = match N {
+            1 => String::new(),
+            3 => format!("[{at}]"),
+            _ => format!("[{}, {}]", at / 3, at % 3),
+        };
+        let number = PyFloat::new(value.py(), found[at]);
+        return Err(PyValueError::new_err(format!("`{name}{place}` is {number}, but it must be finite")));
+    }
+    found.try_into().map_err(|_| PyValueError::new_err(format!("`{name}` must be {allowed}")))
+}
 
 /// What was computed without the interpreter.
 struct Found {

@@ -3,11 +3,11 @@
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use rne::Pose;
+use rne_codegen::Function;
 
 use crate::arm::Arm;
-use crate::arrays::{refuse_masked, room, writable};
+use crate::arrays::{in_order, refuse_masked, room, writable};
 
 /// The logarithm of a pose: the constant twist that leads from the world to it in one unit of time.
 ///
@@ -45,10 +45,8 @@ impl Arm {
         frame: Option<&Bound<'py, PyAny>>,
         parameters: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let keywords = PyDict::new(py);
-        keywords.set_item("frame", frame)?;
-        keywords.set_item("parameters", parameters)?;
-        let poses = Bound::new(py, self.clone())?.call_method("forward_kinematics", (q,), Some(&keywords))?;
+        let given = vec![self.of_joints("q", q)?];
+        let poses = self.compute_at(py, frame, Function::ForwardKinematics, given, parameters, None)?;
         let (poses, targets) = (matrices("q", &poses)?, matrices("target", target)?);
         let (of_poses, of_targets) = (leading(&poses).to_vec(), leading(&targets).to_vec());
         let states = match (&of_poses[..], &of_targets[..]) {
@@ -75,8 +73,10 @@ impl Arm {
 /// Homogeneous matrices in double precision, state by state.
 fn matrices<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     refuse_masked(name, value)?;
-    let numpy = value.py().import("numpy")?;
-    let array = numpy.call_method1("ascontiguousarray", (value, "float64"))?.cast_into::<PyArrayDyn<f64>>()?;
+    let array = match value.cast::<PyArrayDyn<f64>>() {
+        Ok(array) => in_order(array.clone())?,
+        Err(_) => value.py().import("numpy")?.call_method1("ascontiguousarray", (value, "float64"))?.cast_into()?,
+    };
     match array.shape() {
         [.., 4, 4] => {
             let read = array.readonly();
@@ -102,7 +102,7 @@ fn leading<'a>(matrices: &'a Bound<'_, PyArrayDyn<f64>>) -> &'a [usize] {
 }
 
 /// The pose of a homogeneous matrix of 16 numbers, row by row.
-fn pose_of(numbers: &[f64]) -> Pose<f64> {
+pub(crate) fn pose_of<T: Copy>(numbers: &[T]) -> Pose<T> {
     let row = |index: usize| [numbers[4 * index], numbers[4 * index + 1], numbers[4 * index + 2]];
     Pose { rotation: [row(0), row(1), row(2)], translation: [numbers[3], numbers[7], numbers[11]] }
 }

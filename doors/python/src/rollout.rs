@@ -2,16 +2,15 @@
 
 use std::ffi::{CStr, CString};
 
-use numpy::{Element, PyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
+use numpy::{Element, PyArrayDyn};
 use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyTuple};
 use rne::compiled::{CompiledArm, FrictionWidth, Number, Rollout, RolloutLimits};
-use rne_codegen::{Argument, Sizes};
 use rne_model::Robot;
 
 use crate::arm::Arm;
-use crate::arrays::{Given, Held, are_single, memory, refuse_masked, room, shape_in_words, states, writable};
+use crate::arrays::{self, Axes, Given, Held, Value, are_single, memory, room, shape_in_words, states, writable};
 use crate::errors::of_evaluation;
 use crate::functions::arguments;
 
@@ -77,19 +76,14 @@ impl Arm {
     ) -> PyResult<Bound<'py, PyTuple>> {
         let dof = self.arm.dof();
         let mut given = vec![self.of_joints("q", q)?, self.of_joints("qd", qd)?, self.of_joints("tau", tau)?];
-        given.extend(payload.map(|payload| Given {
-            name: "payload",
-            parts: &[],
-            elements: Argument::Payload.elements(Sizes::of(self.robot())),
-            value: payload.clone(),
-        }));
-        given.extend(self.given_parameters(py, parameters)?);
+        given.extend(payload.map(|payload| self.payload(payload)));
+        given.extend(self.given_parameters(parameters)?);
         // lists follow the arrays among the arguments
         let is_single = are_single(&given);
         let shapes = [shape_of(&given[0])?, shape_of(&given[1])?];
-        let (steps, samples) = flat_torques(&mut given[2], dof)?;
+        let (steps, samples) = steps_of(&mut given[2], dof)?;
         for (name, shape) in ["q", "qd"].into_iter().zip(shapes) {
-            agree(name, &shape, samples, steps, dof)?;
+            agree(name, &shape.unwrap_or_default(), samples, steps, dof)?;
         }
         let friction = friction.map(width).transpose()?.flatten();
         let limits = limits.map(which).transpose()?.unwrap_or_default();
@@ -103,18 +97,14 @@ impl Arm {
     }
 }
 
-/// Puts the torques of all steps of a sample side by side, and returns the number of steps, and that of samples where
-/// the array has this axis.
-fn flat_torques(given: &mut Given<'_>, dof: usize) -> PyResult<(usize, Option<usize>)> {
-    refuse_masked("tau", &given.value)?;
-    let numpy = given.value.py().import("numpy")?;
-    let array = numpy
-        .call_method1("asarray", (&given.value,))
-        .map_err(|_| PyTypeError::new_err("`tau` is not an array of real numbers"))?;
-    let shape = array.cast::<PyUntypedArray>()?.shape().to_vec();
-    let (steps, samples, flat) = match shape[..] {
-        [steps, joints] if joints == dof => (steps, None, vec![steps * dof]),
-        [samples, steps, joints] if joints == dof => (steps, Some(samples), vec![samples, steps * dof]),
+/// The number of steps, and that of samples where the torques have this axis.
+fn steps_of(tau: &mut Given<'_>, dof: usize) -> PyResult<(usize, Option<usize>)> {
+    let Some(shape) = shape_of(tau)? else {
+        return Err(PyTypeError::new_err("`tau` is not an array of real numbers"));
+    };
+    let (steps, samples) = match shape[..] {
+        [steps, joints] if joints == dof => (steps, None),
+        [samples, steps, joints] if joints == dof => (steps, Some(samples)),
         _ => {
             return Err(PyValueError::new_err(format!(
                 "`tau` has the shape {}; it is (T, {dof}) for one sample or (N, T, {dof}) for many",
@@ -122,16 +112,16 @@ fn flat_torques(given: &mut Given<'_>, dof: usize) -> PyResult<(usize, Option<us
             )));
         }
     };
-    given.elements = steps * dof;
-    given.value = array.call_method1("reshape", (PyTuple::new(array.py(), flat)?,))?;
+    (tau.elements, tau.axes) = (steps * dof, Axes::Rows(dof));
     Ok((steps, samples))
 }
 
-/// The shape of an argument of numpy; none of what numpy does not take, which is refused later.
-fn shape_of(given: &Given<'_>) -> PyResult<Vec<usize>> {
-    let numpy = given.value.py().import("numpy")?;
-    let Ok(array) = numpy.call_method1("asarray", (&given.value,)) else { return Ok(Vec::new()) };
-    Ok(array.cast::<PyUntypedArray>()?.shape().to_vec())
+/// The shape of an argument; `None` of what is no array of real numbers, which is refused later.
+fn shape_of(given: &Given<'_>) -> PyResult<Option<Vec<usize>>> {
+    match &given.value {
+        Value::Of(value) => arrays::shape_of(value),
+        Value::Own(numbers) => Ok(Some(vec![numbers.len()])),
+    }
 }
 
 /// Refuses torques of another number of samples than a state has: their axes may be in another order.

@@ -99,7 +99,7 @@ type Told = (&'static str, &'static str, Vec<(&'static str, Vec<usize>)>, Vec<(V
 
 impl Arm {
     /// The arm, or the arm at a frame.
-    fn at(&self, frame: Option<&Bound<'_, PyAny>>) -> PyResult<CompiledArm> {
+    pub(crate) fn at(&self, frame: Option<&Bound<'_, PyAny>>) -> PyResult<CompiledArm> {
         let Some(frame) = frame else { return Ok(self.arm.clone()) };
         let frame = self.frame_name(frame)?;
         self.arm.at_frame(&frame).map_err(|unknown| PyValueError::new_err(unknown.to_string()))

@@ -187,7 +187,7 @@ def test_mistakes_are_told():
             function(*given[:3], np.eye(4)[:3], TWIST[0], 0.01)
         with pytest.raises(ValueError, match=r"`twist` has the shape \(3,\); it is \(6,\) for one state"):
             function(*given[:4], [0.0] * 3, 0.01)
-        with pytest.raises(ValueError, match=rf"`twist` has 4 states, but `q` has {N}"):
+        with pytest.raises(ValueError, match=rf"`twist` has 4 states, but other arguments have {N}"):
             function(*GIVEN[:4], TWIST[:4], 0.01)
         with pytest.raises(ValueError, match="`tau`: there are masked elements"):
             function(*given[:2], np.ma.masked_array(given[2], mask=[True, False]), *given[3:], 0.01)

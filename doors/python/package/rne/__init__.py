@@ -14,20 +14,22 @@ SI: rad, m, N m, N, kg. Torques are what the actuators must deliver.
 
 from typing import Iterator
 
-import numpy as _numpy
-
 from ._rne import (
     Arm,
     EvaluationError,
     RobotFileError,
     RobotFileWarning,
     __version__,
+    base_from_imu,
+    base_from_mujoco,
+    base_from_pinocchio,
     builtin as _builtin,
+    derivatives_to_pinocchio,
     load,
     names as _names,
+    payload,
     pose_log,
 )
-from .bases import base_from_imu, base_from_mujoco, base_from_pinocchio, derivatives_to_pinocchio
 from .excitation import Excitation, excite
 from .identification import Identification, identify
 from .logs import Log, log
@@ -96,41 +98,3 @@ class _Robots:
 
 
 robots = _Robots()
-
-
-def payload(mass, com=(0.0, 0.0, 0.0), inertia=None):
-    """The argument `payload` of the functions of an `Arm`, shape (10,).
-
-    mass: kg. com: centre of mass (m) from the origin of the tip frame, in its axes. inertia: about the centre of mass
-    (kg m²), the symmetric tensor of shape (3, 3), or None for a point mass.
-    """
-    mass = _numbers("mass", mass, (), "a number, in kg")
-    com = _numbers("com", com, (3,), "three numbers x, y, z, in m")
-    tensor = _numpy.zeros((3, 3)) if inertia is None else inertia
-    tensor = _numbers("inertia", tensor, (3, 3), "a symmetric tensor of shape (3, 3), in kg m²")
-    if mass < 0:
-        said = _numpy.format_float_positional(mass, trim="-")
-        raise ValueError(f"the payload's mass is {said} kg: no body has less than 0")
-    if not _numpy.allclose(tensor, tensor.T):
-        raise ValueError("`inertia` is a symmetric tensor of shape (3, 3)")
-    elements = [tensor[0, 0], tensor[1, 1], tensor[2, 2], tensor[0, 1], tensor[0, 2], tensor[1, 2]]
-    return _numpy.concatenate([[mass], com, elements])
-
-
-def _numbers(name, value, shape, allowed):
-    """Finite numbers of a shape, or an error that names the argument and what it may be."""
-    if _numpy.ma.is_masked(value):
-        raise ValueError(f"`{name}`: there are masked elements, which are not numbers: drop or fill them before")
-    try:
-        array = _numpy.asarray(value)
-    except ValueError:
-        array = None
-    if array is None or array.dtype.kind not in "fiub":
-        raise TypeError(f"`{name}` is {value!r}, but it must be {allowed}")
-    array = array.astype(float)
-    if array.shape != shape:
-        raise ValueError(f"`{name}` has the shape {array.shape}, but it must be {allowed}")
-    for place in _numpy.argwhere(~_numpy.isfinite(array)):
-        at = f"[{', '.join(map(str, place))}]" if len(place) else ""
-        raise ValueError(f"`{name}{at}` is {array[tuple(place)]}, but it must be finite")
-    return array

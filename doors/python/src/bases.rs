@@ -1,0 +1,250 @@
+//! The motion of a floating base in the vectors of other tools, as arguments of `Arm.inverse_dynamics_of_floating_base`,
+//! and its derivatives as their matrices: docs/conventions.md has the table of these conventions.
+
+use numpy::PyUntypedArrayMethods;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use rne::{BaseMotion, Pose};
+
+use crate::arrays::{array_of, in_order, readable, shape_in_words, taken};
+
+/// Gravity where z points up, m/s².
+const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
+
+/// An argument whose last axes are those of one state.
+struct Numbers {
+    name: &'static str,
+    shape: Vec<usize>,
+    numbers: Vec<f64>,
+    /// How many of the axes are those of one state.
+    axes: usize,
+}
+
+impl Numbers {
+    /// Vectors of at least `least` elements, or matrices with at least as many columns.
+    fn of(name: &'static str, value: &Bound<'_, PyAny>, axes: usize, least: usize) -> PyResult<Self> {
+        let array = in_order(taken::<f64>(value.py(), name, value, "float64", &(0..0))?)?;
+        let shape = array.shape().to_vec();
+        if shape.len() < axes || shape.last().is_none_or(|&columns| columns < least) {
+            let kind = if axes == 1 { "vectors of at least" } else { "matrices with at least" };
+            let columns = if axes == 1 { "numbers" } else { "columns" };
+            let shape = shape_in_words(&shape);
+            let message = format!("`{name}` has the shape {shape}, but it must have {kind} {least} {columns}");
+            return Err(PyValueError::new_err(message));
+        }
+        let numbers = readable(name, &array)?.as_slice()?.to_vec();
+        Ok(Self { name, shape, numbers, axes })
+    }
+
+    /// The axes of the states.
+    fn leading(&self) -> &[usize] {
+        &self.shape[..self.shape.len() - self.axes]
+    }
+
+    /// The numbers of a state; one state is that of all.
+    fn at(&self, state: usize) -> &[f64] {
+        let size = self.shape[self.leading().len()..].iter().product::<usize>();
+        let states = self.numbers.len() / size.max(1);
+        &self.numbers[size * (state % states.max(1))..][..size]
+    }
+
+    fn first<const N: usize>(&self, state: usize) -> [f64; N] {
+        std::array::from_fn(|index| self.at(state)[index])
+    }
+}
+
+/// The axes of the states that all arguments have, of which some may have one state alone.
+fn states_of<'a>(all: &[&'a Numbers]) -> PyResult<&'a [usize]> {
+    let is_one = |numbers: &&&Numbers| numbers.leading().iter().product::<usize>() == 1;
+    let many = all.iter().find(|numbers| !is_one(numbers));
+    let Some(first) = many.or_else(|| all.iter().max_by_key(|numbers| numbers.leading().len())) else {
+        return Ok(&[]);
+    };
+    if let Some(other) = all.iter().find(|other| !is_one(other) && other.leading() != first.leading()) {
+        return Err(PyValueError::new_err(format!(
+            "`{}` has the shape {}, which has other states than `{}` with the shape {}",
+            other.name,
+            shape_in_words(&other.shape),
+            first.name,
+            shape_in_words(&first.shape)
+        )));
+    }
+    Ok(first.leading())
+}
+
+/// The motions of the states as keywords of `Arm.inverse_dynamics_of_floating_base`.
+fn told<'py>(
+    py: Python<'py>,
+    given: &[&Numbers],
+    motion: impl Fn(usize) -> BaseMotion<f64>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let leading = states_of(given)?;
+    let motions: Vec<_> = (0..leading.iter().product()).map(motion).collect();
+    let told = PyDict::new(py);
+    let parts: [(&str, fn(&BaseMotion<f64>) -> [f64; 3]); 4] = [
+        ("base_omega", |motion| motion.omega),
+        ("base_omega_dot", |motion| motion.omega_dot),
+        ("base_acceleration", |motion| motion.acceleration),
+        ("base_gravity", |motion| motion.gravity),
+    ];
+    for (name, part) in parts {
+        told.set_item(name, array_of(py, leading, &[3], motions.iter().flat_map(part).collect())?)?;
+    }
+    Ok(told)
+}
+
+/// Gravity in the world; without an argument it points along -z.
+fn gravity_of(gravity: Option<&Bound<'_, PyAny>>) -> PyResult<Numbers> {
+    let own = || Numbers { name: "gravity", shape: vec![3], numbers: GRAVITY.to_vec(), axes: 1 };
+    gravity.map_or_else(|| Ok(own()), |gravity| Numbers::of("gravity", gravity, 1, 3))
+}
+
+/// The base whose inertial measurement unit reads these values.
+///
+/// gyroscope: ω, rad/s, of shape (3,) or (N, 3), in axes of the unit.
+/// gyroscope_rate: ω̇, rad/s²: a difference of readings, or zeros.
+/// accelerometer: the specific force a - g, m/s². At rest it points up.
+/// rotation: 3×3, from the axes of the unit to those of the base. Without it they are the same.
+/// position: where the unit is on the base, m, in axes of the base.
+///
+/// Returns a dict of `base_omega`, `base_omega_dot`, `base_acceleration` (here a - g) and `base_gravity` (here zero).
+#[pyfunction]
+#[pyo3(signature = (gyroscope, gyroscope_rate, accelerometer, *, rotation=None, position=None))]
+pub(crate) fn base_from_imu<'py>(
+    py: Python<'py>,
+    gyroscope: &Bound<'py, PyAny>,
+    gyroscope_rate: &Bound<'py, PyAny>,
+    accelerometer: &Bound<'py, PyAny>,
+    rotation: Option<&Bound<'py, PyAny>>,
+    position: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let omega = Numbers::of("gyroscope", gyroscope, 1, 3)?;
+    let omega_dot = Numbers::of("gyroscope_rate", gyroscope_rate, 1, 3)?;
+    let felt = Numbers::of("accelerometer", accelerometer, 1, 3)?;
+    let mut unit = Pose::identity();
+    if let Some(rotation) = rotation {
+        let rows = Numbers::of("rotation", rotation, 2, 3)?;
+        if rows.shape != [3, 3] {
+            let shape = shape_in_words(&rows.shape);
+            return Err(PyValueError::new_err(format!("`rotation` has the shape {shape}, but it must be (3, 3)")));
+        }
+        unit.rotation = std::array::from_fn(|row| std::array::from_fn(|column| rows.numbers[3 * row + column]));
+    }
+    if let Some(position) = position {
+        unit.translation = Numbers::of("position", position, 1, 3)?.first(0);
+    }
+    told(py, &[&omega, &omega_dot, &felt], |state| {
+        BaseMotion::from_imu_at(&unit, omega.first(state), omega_dot.first(state), felt.first(state))
+    })
+}
+
+/// The base of a Pinocchio model with a free flyer, which is its first joint.
+///
+/// q, v, a: the vectors of `pinocchio.rnea`, of shape (nq,), (nv,), (nv,) or (N, …). Only the first 7, 6 and 6 elements
+/// count. `a` is Pinocchio's spatial acceleration.
+/// gravity: in the world, m/s²; None is (0, 0, -9.81).
+///
+/// Returns a dict of `base_omega`, `base_omega_dot`, `base_acceleration` and `base_gravity`, in axes of the base.
+#[pyfunction]
+#[pyo3(signature = (q, v, a, *, gravity=None))]
+pub(crate) fn base_from_pinocchio<'py>(
+    py: Python<'py>,
+    q: &Bound<'py, PyAny>,
+    v: &Bound<'py, PyAny>,
+    a: &Bound<'py, PyAny>,
+    gravity: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (q, gravity) = (Numbers::of("q", q, 1, 7)?, gravity_of(gravity)?);
+    let (v, a) = (Numbers::of("v", v, 1, 6)?, Numbers::of("a", a, 1, 6)?);
+    told(py, &[&q, &v, &a, &gravity], |state| {
+        BaseMotion::from_pinocchio(&q.first(state), &v.first(state), &a.first(state), gravity.first(state))
+    })
+}
+
+/// The base of a MuJoCo model with a free joint, which is its first joint.
+///
+/// qpos, qvel, qacc: the vectors of `MjData`, of shape (nq,), (nv,), (nv,) or (N, …). Only the first 7, 6 and 6 elements
+/// count.
+/// gravity: in the world, m/s²: `model.opt.gravity`; None is (0, 0, -9.81).
+///
+/// Returns a dict of `base_omega`, `base_omega_dot`, `base_acceleration` and `base_gravity`, in axes of the base.
+#[pyfunction]
+#[pyo3(signature = (qpos, qvel, qacc, *, gravity=None))]
+pub(crate) fn base_from_mujoco<'py>(
+    py: Python<'py>,
+    qpos: &Bound<'py, PyAny>,
+    qvel: &Bound<'py, PyAny>,
+    qacc: &Bound<'py, PyAny>,
+    gravity: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (q, gravity) = (Numbers::of("qpos", qpos, 1, 7)?, gravity_of(gravity)?);
+    let (v, a) = (Numbers::of("qvel", qvel, 1, 6)?, Numbers::of("qacc", qacc, 1, 6)?);
+    told(py, &[&q, &v, &a, &gravity], |state| {
+        BaseMotion::from_mujoco(&q.first(state), &v.first(state), &a.first(state), gravity.first(state))
+    })
+}
+
+/// The matrices ∂τ/∂q and ∂τ/∂v of `pinocchio.computeRNEADerivatives` with a free flyer; its ∂τ/∂a is `mass`.
+///
+/// derivatives: what `Arm.floating_inverse_dynamics_derivatives` returns for the base of `base_from_pinocchio`.
+/// mass: `Arm.floating_mass_matrix` at the same positions, of shape (6 + n, 6 + n) or (N, 6 + n, 6 + n).
+/// q, v: the vectors of Pinocchio, of which the first 7 and 6 elements count.
+/// gravity: in the world, m/s²; None is (0, 0, -9.81).
+///
+/// Returns two matrices of this shape. Rows are force, moment and torques. Columns are those of Pinocchio's tangent
+/// space, in axes of the base: translation and rotation of the base, or its linear and angular velocity, then the
+/// joints in the order of the arm.
+#[pyfunction]
+#[pyo3(signature = (derivatives, mass, q, v, *, gravity=None))]
+pub(crate) fn derivatives_to_pinocchio<'py>(
+    py: Python<'py>,
+    derivatives: &Bound<'py, PyAny>,
+    mass: &Bound<'py, PyAny>,
+    q: &Bound<'py, PyAny>,
+    v: &Bound<'py, PyAny>,
+    gravity: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyTuple>> {
+    let mut parts = derivatives.try_iter()?;
+    let mut part = |name| {
+        let missing = || PyValueError::new_err("`derivatives` has three matrices: dq, dqd and domega");
+        Numbers::of(name, &parts.next().ok_or_else(missing)??, 2, if name == "domega" { 3 } else { 1 })
+    };
+    let (dq, dqd, domega) = (part("dq")?, part("dqd")?, part("domega")?);
+    let (mass, gravity) = (Numbers::of("mass", mass, 2, 6)?, gravity_of(gravity)?);
+    let (q, v) = (Numbers::of("q", q, 1, 7)?, Numbers::of("v", v, 1, 6)?);
+    let size = *mass.shape.last().unwrap_or(&6);
+    for (matrix, columns) in [(&dq, size - 6), (&dqd, size - 6), (&domega, 3), (&mass, size)] {
+        if matrix.shape[matrix.leading().len()..] != [size, columns] {
+            return Err(PyValueError::new_err(format!(
+                "`{}` has the shape {}, but beside `mass` with {size} columns it must be ({size}, {columns}) for one \
+                 state or (N, {size}, {columns}) for many",
+                matrix.name,
+                shape_in_words(&matrix.shape)
+            )));
+        }
+    }
+    let leading = states_of(&[&dq, &dqd, &domega, &mass, &q, &v, &gravity])?;
+    let mut by = [const { Vec::new() }; 2];
+    for state in 0..leading.iter().product() {
+        let (q, a): ([f64; 7], _) = (q.first(state), [0.0; 6]);
+        let v: [f64; 6] = v.first(state);
+        // Pinocchio holds gravity in world axes, and its spatial acceleration a - ω × v
+        let base = BaseMotion::from_pinocchio(&q, &v, &a, gravity.first(state));
+        let of_row = |matrix: &Numbers, row| {
+            let columns = *matrix.shape.last().unwrap_or(&0);
+            matrix.at(state)[columns * row..][..columns].to_vec()
+        };
+        for row in 0..size {
+            let linear = of_row(&mass, row);
+            let crossed = |[x, y, z]: [f64; 3]| {
+                [linear[1] * z - linear[2] * y, linear[2] * x - linear[0] * z, linear[0] * y - linear[1] * x]
+            };
+            by[0].extend([0.0; 3].into_iter().chain(crossed(base.gravity).map(|x| -x)).chain(of_row(&dq, row)));
+            let swung = of_row(&domega, row).into_iter().zip(crossed(base.velocity)).map(|(by, swung)| by - swung);
+            by[1].extend(crossed(base.omega).into_iter().chain(swung).chain(of_row(&dqd, row)));
+        }
+    }
+    let [by_q, by_v] = by.map(|numbers| array_of(py, leading, &[size, size], numbers));
+    PyTuple::new(py, [by_q?, by_v?])
+}
