@@ -170,11 +170,6 @@ impl Arm {
         Given::matrix(name, Axes::Pose, self.elements(Argument::BasePose), value.clone(), String::new)
     }
 
-    /// The duration of a step: a number, or an array of shape (N,).
-    pub(crate) fn of_step<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
-        Given::number(name, value)
-    }
-
     /// A rotation matrix: an array of shape (3, 3) or (N, 3, 3).
     pub(crate) fn of_rotation<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
         Given::matrix(name, Axes::Rows(3), self.elements(Argument::BaseRotation), value.clone(), String::new)

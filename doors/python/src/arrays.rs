@@ -455,7 +455,7 @@ fn is_masked(value: &Bound<'_, PyAny>) -> PyResult<bool> {
 }
 
 /// An array in C order and aligned: itself, or a copy.
-pub(crate) fn in_order<'py, T: Element>(array: Bound<'py, PyArrayDyn<T>>) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+pub(crate) fn in_order<T: Element>(array: Bound<'_, PyArrayDyn<T>>) -> PyResult<Bound<'_, PyArrayDyn<T>>> {
     if array.is_c_contiguous() && array.is_aligned() {
         return Ok(array);
     }

@@ -16,7 +16,7 @@ const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 struct Numbers {
     name: &'static str,
     shape: Vec<usize>,
-    numbers: Vec<f64>,
+    elements: Vec<f64>,
     /// How many of the axes are those of one state.
     axes: usize,
 }
@@ -33,8 +33,8 @@ impl Numbers {
             let message = format!("`{name}` has the shape {shape}, but it must have {kind} {least} {columns}");
             return Err(PyValueError::new_err(message));
         }
-        let numbers = readable(name, &array)?.as_slice()?.to_vec();
-        Ok(Self { name, shape, numbers, axes })
+        let elements = readable(name, &array)?.as_slice()?.to_vec();
+        Ok(Self { name, shape, elements, axes })
     }
 
     /// The axes of the states.
@@ -45,8 +45,8 @@ impl Numbers {
     /// The numbers of a state; one state is that of all.
     fn at(&self, state: usize) -> &[f64] {
         let size = self.shape[self.leading().len()..].iter().product::<usize>();
-        let states = self.numbers.len() / size.max(1);
-        &self.numbers[size * (state % states.max(1))..][..size]
+        let states = self.elements.len() / size.max(1);
+        &self.elements[size * (state % states.max(1))..][..size]
     }
 
     fn first<const N: usize>(&self, state: usize) -> [f64; N] {
@@ -82,21 +82,19 @@ fn told<'py>(
     let leading = states_of(given)?;
     let motions: Vec<_> = (0..leading.iter().product()).map(motion).collect();
     let told = PyDict::new(py);
-    let parts: [(&str, fn(&BaseMotion<f64>) -> [f64; 3]); 4] = [
-        ("base_omega", |motion| motion.omega),
-        ("base_omega_dot", |motion| motion.omega_dot),
-        ("base_acceleration", |motion| motion.acceleration),
-        ("base_gravity", |motion| motion.gravity),
-    ];
-    for (name, part) in parts {
-        told.set_item(name, array_of(py, leading, &[3], motions.iter().flat_map(part).collect())?)?;
-    }
+    let part = |name: &str, part: fn(&BaseMotion<f64>) -> [f64; 3]| {
+        told.set_item(name, array_of(py, leading, &[3], motions.iter().flat_map(part).collect())?)
+    };
+    part("base_omega", |motion| motion.omega)?;
+    part("base_omega_dot", |motion| motion.omega_dot)?;
+    part("base_acceleration", |motion| motion.acceleration)?;
+    part("base_gravity", |motion| motion.gravity)?;
     Ok(told)
 }
 
 /// Gravity in the world; without an argument it points along -z.
 fn gravity_of(gravity: Option<&Bound<'_, PyAny>>) -> PyResult<Numbers> {
-    let own = || Numbers { name: "gravity", shape: vec![3], numbers: GRAVITY.to_vec(), axes: 1 };
+    let own = || Numbers { name: "gravity", shape: vec![3], elements: GRAVITY.to_vec(), axes: 1 };
     gravity.map_or_else(|| Ok(own()), |gravity| Numbers::of("gravity", gravity, 1, 3))
 }
 
@@ -129,7 +127,7 @@ pub(crate) fn base_from_imu<'py>(
             let shape = shape_in_words(&rows.shape);
             return Err(PyValueError::new_err(format!("`rotation` has the shape {shape}, but it must be (3, 3)")));
         }
-        unit.rotation = std::array::from_fn(|row| std::array::from_fn(|column| rows.numbers[3 * row + column]));
+        unit.rotation = std::array::from_fn(|row| std::array::from_fn(|column| rows.elements[3 * row + column]));
     }
     if let Some(position) = position {
         unit.translation = Numbers::of("position", position, 1, 3)?.first(0);

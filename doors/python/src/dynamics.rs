@@ -460,7 +460,7 @@ macro_rules! given {
         given!($arm, $argument: Wrench, &["force", "moment"])
     };
     ($arm:ident, $argument:ident: Step) => {
-        $arm.of_step(stringify!($argument), $argument)?
+        Given::number(stringify!($argument), $argument)?
     };
     ($arm:ident, $argument:ident: BaseVelocity) => {
         given!($arm, $argument: BaseVelocity, &[])

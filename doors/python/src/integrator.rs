@@ -22,6 +22,9 @@ type Matrix<T> = Vec<Vec<T>>;
 /// A and B.
 type Model<T> = [Matrix<T>; 2];
 
+/// A homogeneous matrix, the twist, q and qd; and A and B, if they were asked for.
+type Moved<T> = (Vec<Vec<T>>, Option<Model<T>>);
+
 #[pymethods]
 impl Arm {
     /// The state after steps of the classical Runge-Kutta method of duration `step` (s) under torques `tau`.
@@ -126,7 +129,7 @@ impl Arm {
 struct Steps<'a, 'py> {
     arm: &'a CompiledArm,
     given: Vec<Given<'py>>,
-    steps: i64,
+    count: i64,
 }
 
 impl Arm {
@@ -155,9 +158,9 @@ impl Arm {
         }
         let mut given = vec![self.of_joints("q", q)?, self.of_joints("qd", qd)?, self.of_joints("tau", tau)?];
         given.extend(more);
-        given.push(self.of_step("step", step)?);
+        given.push(Given::number("step", step)?);
         given.extend(self.given_parameters(parameters)?);
-        Ok(Steps { arm: &self.arm, given, steps })
+        Ok(Steps { arm: &self.arm, given, count: steps })
     }
 }
 
@@ -214,23 +217,10 @@ impl<T: Element + Number> Rows<T> {
         })
     }
 
-    /// A function of states.
-    fn computed(
-        &self,
-        arm: &CompiledArm,
-        function: Function,
-        arguments: &Arguments<'_, T>,
-        count: usize,
-    ) -> Result<Vec<T>, EvaluationError> {
-        let mut found = vec![T::zero(); arm.layout(function).len() * count];
-        run(arm, function, count, arguments, &mut found)?;
-        Ok(found)
-    }
-
     fn of_arm<'py>(
         &self,
         py: Python<'py>,
-        Steps { arm, steps, .. }: &Steps<'_, '_>,
+        Steps { arm, count: steps, .. }: &Steps<'_, '_>,
         is_loaded: bool,
         is_derived: bool,
     ) -> PyResult<Bound<'py, PyTuple>> {
@@ -243,7 +233,7 @@ impl<T: Element + Number> Rows<T> {
         let step = self.all("step");
         let of_states = |from: usize, count: usize, function: Function, q: &[T], qd: &[T]| {
             let arguments = self.arguments(from, count).q(Array::Rows(q)).qd(Array::Rows(qd));
-            self.computed(arm, function, &arguments, count)
+            computed(arm, function, &arguments, count)
         };
         // states from one on
         let next = |from: usize, count: usize, q: &[T], qd: &[T]| {
@@ -293,7 +283,7 @@ impl<T: Element + Number> Rows<T> {
     fn of_floating_base<'py>(
         &self,
         py: Python<'py>,
-        Steps { arm, steps, .. }: &Steps<'_, '_>,
+        Steps { arm, count: steps, .. }: &Steps<'_, '_>,
         is_derived: bool,
     ) -> PyResult<Bound<'py, PyTuple>> {
         let (dof, count) = (arm.dof(), self.many.unwrap_or(1));
@@ -319,14 +309,14 @@ impl<T: Element + Number> Rows<T> {
         PyTuple::new(py, arrays.collect::<PyResult<Vec<_>>>()?)
     }
 
-    /// The state after steps: a homogeneous matrix, the twist, q and qd; and A and B over all steps, if asked for.
+    /// The state after steps, and the model of all steps.
     fn moved(
         &self,
         arm: &CompiledArm,
         state: usize,
         steps: i64,
         is_derived: bool,
-    ) -> Result<(Vec<Vec<T>>, Option<Model<T>>), EvaluationError> {
+    ) -> Result<Moved<T>, EvaluationError> {
         let (dof, size, gravity) = (arm.dof(), 6 + arm.dof(), arm.robot().gravity.map(T::from_f64));
         let (step, three) = (self.at("step", state)[0], |numbers: &[T]| [numbers[0], numbers[1], numbers[2]]);
         let pose = pose_of_twelve(self.at("pose", state));
@@ -338,7 +328,7 @@ impl<T: Element + Number> Rows<T> {
         let (mut q, mut qd) = (self.at("q", state).to_vec(), self.at("qd", state).to_vec());
         let (zero, failed) = ([T::zero(); 3], RefCell::new(None));
         let of = |function: Function, arguments: &Arguments<'_, T>| {
-            self.computed(arm, function, arguments, 1).unwrap_or_else(|error| {
+            computed(arm, function, arguments, 1).unwrap_or_else(|error| {
                 *failed.borrow_mut() = Some(error);
                 vec![T::zero(); arm.layout(function).len()]
             })
@@ -426,6 +416,18 @@ impl<T: Element + Number> Rows<T> {
             .map(|(part, columns)| array_of(py, self.many.as_slice(), &[size, columns], of(part)));
         PyTuple::new(py, [a?, b?])
     }
+}
+
+/// A function of some states.
+fn computed<T: Number>(
+    arm: &CompiledArm,
+    function: Function,
+    arguments: &Arguments<'_, T>,
+    count: usize,
+) -> Result<Vec<T>, EvaluationError> {
+    let mut found = vec![T::zero(); arm.layout(function).len() * count];
+    run(arm, function, count, arguments, &mut found)?;
+    Ok(found)
 }
 
 /// The model of a step after those before it.
