@@ -27,8 +27,15 @@ pub(crate) fn read(path: &str) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
+/// Each form in each number type. Of an arm of many joints a plain `cargo test` takes each form and each number type once,
+/// because its C code is long: `every_robot.rs` takes all four.
+fn units(dof: usize, is_sample: bool) -> impl Iterator<Item = (Form, Precision)> {
+    let all = [Form::SevenSteps, Form::Reduced].into_iter().flat_map(|form| Precision::ALL.map(|of| (form, of)));
+    all.filter(move |(form, of)| !is_sample || dof <= 4 || (*form == Form::SevenSteps) == (*of == Precision::Single))
+}
+
 /// Emits, compiles, runs and compares one robot; returns how many numbers were compared.
-fn compare(name: &str, derived: &[(Form, Box<dyn Derived>)], compiler: &Compiler) -> usize {
+fn compare(name: &str, derived: &[(Form, Box<dyn Derived>)], compiler: &Compiler, is_sample: bool) -> usize {
     let robot = Robot::from_yaml(&read(&format!("{ROOT}/robots/{name}.yaml"))).unwrap_or_else(|why| panic!("{why}"));
     let plan = read(&format!("{ROOT}/robots/{name}.plan.yaml"));
     let plan = PlanFile::read(name, &plan, &robot).unwrap_or_else(|report| panic!("{report}"));
@@ -36,36 +43,33 @@ fn compare(name: &str, derived: &[(Form, Box<dyn Derived>)], compiler: &Compiler
     let code: Vec<(Form, Vec<Program>)> =
         derived.iter().map(|(form, _)| (*form, programs(&robot, &plans, *form))).collect();
 
-    let units: Vec<Unit> = code
-        .iter()
-        .flat_map(|(form, programs)| {
-            Precision::ALL
-                .map(|precision| Unit::new(&robot, programs, precision, format!("{form}_{}", precision.c_type())))
-        })
+    let of = |form: Form| code.iter().zip(derived).find(|((of, _), _)| *of == form).expect("both forms are derived");
+    let units_of_robot = || units(robot.dof(), is_sample);
+    let units: Vec<Unit> = units_of_robot()
+        .map(|(form, precision)| Unit::new(&robot, &of(form).0.1, precision, format!("{form}_{}", precision.c_type())))
         .collect();
     let states = special::states(&robot);
     let mut found = Driver { name, units: &units, dof: robot.dof() }.run(compiler, &states).into_iter();
     let mut compared = 0;
     for state in &states {
-        for ((form, derived), (_, programs)) in derived.iter().zip(&code) {
-            for precision in Precision::ALL {
-                for function in programs.iter().map(|program| program.function) {
-                    let expected = match precision {
-                        Precision::Single => words(derived.single(function, &state.single()), |x| x.to_bits().into()),
-                        Precision::Double => words(derived.double(function, &state.double()), f64::to_bits),
-                    };
-                    let computed: Vec<u64> = found.by_ref().take(expected.len()).collect();
-                    assert_eq!(computed.len(), expected.len(), "{name}, {function}, {form}: too few numbers");
-                    for (index, (computed, expected)) in computed.iter().zip(&expected).enumerate() {
-                        assert!(
-                            is_same(precision, *computed, *expected),
-                            "{name}, {function}, {form}, {}, number {index}: {computed:x} in C, {expected:x} in Rust, \
-                             at {state:?}",
-                            precision.c_type()
-                        );
-                    }
-                    compared += expected.len();
+        for (form, precision) in units_of_robot() {
+            let ((_, programs), (_, derived)) = of(form);
+            for function in programs.iter().map(|program| program.function) {
+                let expected = match precision {
+                    Precision::Single => words(derived.single(function, &state.single()), |x| x.to_bits().into()),
+                    Precision::Double => words(derived.double(function, &state.double()), f64::to_bits),
+                };
+                let computed: Vec<u64> = found.by_ref().take(expected.len()).collect();
+                assert_eq!(computed.len(), expected.len(), "{name}, {function}, {form}: too few numbers");
+                for (index, (computed, expected)) in computed.iter().zip(&expected).enumerate() {
+                    assert!(
+                        is_same(precision, *computed, *expected),
+                        "{name}, {function}, {form}, {}, number {index}: {computed:x} in C, {expected:x} in Rust, \
+                         at {state:?}",
+                        precision.c_type()
+                    );
                 }
+                compared += expected.len();
             }
         }
     }
@@ -92,15 +96,15 @@ pub(crate) fn is_same(precision: Precision, a: u64, b: u64) -> bool {
     }
 }
 
-/// Compares robots on all cores.
-pub(crate) fn compare_all(robots: &[Forms]) {
+/// Compares robots on all cores: in all forms and number types, or in a sample of them.
+pub(crate) fn compare_all(robots: &[Forms], is_sample: bool) {
     let Some(compiler) = Compiler::found() else { return };
     let (next, compared) = (AtomicUsize::new(0), Mutex::new(0));
     std::thread::scope(|scope| {
         for _ in 0..std::thread::available_parallelism().map_or(1, usize::from).min(4) {
             scope.spawn(|| {
                 while let Some((name, derived)) = robots.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let count = compare(name, derived, &compiler);
+                    let count = compare(name, derived, &compiler, is_sample);
                     *compared.lock().expect("no panic") += count;
                 }
             });

@@ -5,7 +5,7 @@ use rne::Wrench;
 use serde_json::Value;
 
 /// The workspace.
-pub(crate) const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+pub(crate) const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
 pub(crate) fn json(file: &str) -> Value {
     let text = std::fs::read_to_string(format!("{ROOT}/{file}")).unwrap_or_else(|error| panic!("{file}: {error}"));

@@ -9,6 +9,8 @@ use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter};
 use rne_model::{Reader, Robot};
 use serde_json::Value;
 
+use crate::check::ROOT;
+
 /// A trunk with one leg of a four-bar.
 #[derive(rne::ClosedLoops, rne::FloatingClosedLoops)]
 #[robot(path = "../../benches/trees/loops/floating_four_bar_leg.yaml", form = "reduced")]
@@ -47,7 +49,7 @@ fn robot(yaml: &[u8]) -> Robot {
 }
 
 fn read(path: &str) -> Vec<u8> {
-    let path = format!("{}/{path}", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{ROOT}/{path}");
     std::fs::read(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
@@ -281,7 +283,7 @@ fn many_mechanisms_are_those_of_virtual_work() {
 #[test]
 fn the_machine_computes_closed_loops() {
     for name in ["g1_ankle", "cassie_like", "floating_two_ankles"] {
-        let path = format!("{}/benches/trees/loops/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+        let path = format!("{ROOT}/benches/trees/loops/{name}.yaml");
         let arm = CompiledArm::from_file(path).expect("a robot file").in_form(Form::Reduced);
         let golden: Vec<Value> =
             serde_json::from_slice(&read(&format!("tests/golden/loops/{name}.json"))).expect("JSON");

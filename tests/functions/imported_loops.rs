@@ -9,6 +9,8 @@ use rne_convert::{Imported, Options, Selection, Urdf};
 use rne_model::{Convention, Reader, Robot};
 use serde_json::Value;
 
+use crate::check::ROOT;
+
 const TOLERANCE: f64 = 1e-9;
 /// The file of the delta robot by hand has twelve digits, and one of them more or less in `b` of `free1_rod3` moves the
 /// rates of `free2_rod1` by 4e-9: the two parallel rods are nearly singular.
@@ -18,7 +20,7 @@ const TOLERANCE_OF_DELTA: f64 = 1e-8;
 type Named = BTreeMap<String, f64>;
 
 fn path(name: &str) -> String {
-    format!("{}/tests/functions/loops/{name}", env!("CARGO_MANIFEST_DIR"))
+    format!("{ROOT}/tests/functions/loops/{name}")
 }
 
 fn read(path: &str) -> String {
@@ -104,9 +106,9 @@ fn compare(imported: &Imported, golden: &str) {
 /// [`compare`] with other names for joints of the golden robot.
 fn compare_renamed(imported: &Imported, golden: &str, other_names: &[(&str, &str)]) {
     let tolerance = if golden == "delta" { TOLERANCE_OF_DELTA } else { TOLERANCE };
-    let yaml = read(&format!("{}/benches/trees/loops/{golden}.yaml", env!("CARGO_MANIFEST_DIR")));
+    let yaml = read(&format!("{ROOT}/benches/trees/loops/{golden}.yaml"));
     let by_hand = Reader::new(golden).trees().couplings().loops().read(&yaml).expect("a robot file").robot;
-    let states = read(&format!("{}/tests/golden/loops/{golden}.json", env!("CARGO_MANIFEST_DIR")));
+    let states = read(&format!("{ROOT}/tests/golden/loops/{golden}.json"));
     let states: Vec<Value> = serde_json::from_str(&states).expect("JSON");
     let robot = &imported.robot;
     let (arm, [independent, dependent], mut of_hand) = (DynArm::from_robot(robot), names(robot), names(&by_hand));

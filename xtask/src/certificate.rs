@@ -47,6 +47,10 @@ const PACKAGES: [&str; 9] = [
     "lld",
 ];
 
+/// Programs that `rne certify` and its checker start.
+pub(crate) const OF_COMMAND_LINE: [&str; 5] =
+    ["gcc-arm-none-eabi", "libnewlib-arm-none-eabi", "qemu-system-arm", "cppcheck", "python3"];
+
 impl Certificate {
     pub(crate) fn run(&self) -> Result<Verdict> {
         machine::packages(&PACKAGES, self.install)?;

@@ -9,8 +9,7 @@ use crate::machine;
 
 /// Compares the emitted Rust and C of all shipped robots with the committed list of SHA-256
 ///
-/// The list is `tests/frozen.txt`: a line per robot, form and function. `cargo test` looks at some of the robots, this
-/// command at all of them.
+/// The list is `tests/frozen.txt`: a line per robot, form and function.
 #[derive(Args)]
 #[command(after_help = "\
 Exit status: 1 when a text is not the one of the list.

@@ -3,6 +3,7 @@
 //! Each subcommand is a module of this crate, and its `--help` says what it needs and what it takes. Nothing of this is
 //! published; `.ci/run` is the list of those that must succeed before a change lands.
 
+mod bare;
 mod batch_profile;
 mod capi;
 mod certificate;
@@ -70,6 +71,7 @@ enum Task {
     Certificate(certificate::Certificate),
     Instructions(instructions::Instructions),
     Performance(performance::Performance),
+    Bare(bare::Bare),
     BatchProfile(batch_profile::BatchProfile),
     Growth(growth::Growth),
     Mutate(mutate::Mutate),
@@ -121,10 +123,11 @@ impl Task {
             Self::Certificate(task) => ("embedded certificate", task.install, task.run()),
             Self::Instructions(task) => ("instruction counts", task.install, task.run()),
             Self::Performance(task) => ("performance", false, task.run()),
+            Self::Bare(task) => ("bare", false, task.run()),
             Self::BatchProfile(task) => ("batch profile", false, task.run()),
             Self::Growth(task) => ("growth", false, task.run()),
             Self::Mutate(task) => ("mutate", false, task.run()),
-            Self::Verify(task) => ("verify", false, task.run()),
+            Self::Verify(task) => ("verify", task.install, task.run()),
             Self::Light(_) => ("light", false, light::Light::run()),
             Self::Lines(task) => ("lines", false, task.run()),
             Self::Loops(task) => ("loops", false, task.run()),

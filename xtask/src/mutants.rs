@@ -73,6 +73,8 @@ impl Check {
                 "rne-codegen",
                 "-p",
                 "rne-search",
+                "-p",
+                "function-tests",
                 "--lib",
                 "--test",
                 "functions",

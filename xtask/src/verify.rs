@@ -7,7 +7,7 @@ use clap::Args;
 use xshell::cmd;
 
 use crate::Verdict;
-use crate::machine;
+use crate::{certificate, machine};
 
 /// Verifies what `cargo test` only samples
 ///
@@ -19,6 +19,7 @@ Exit status: 1 when a step fails.
 
 Examples:
   cargo xtask verify             all steps
+  cargo xtask verify --install   all steps, with the tools that they need
   cargo xtask verify msrv        one of them
   cargo xtask verify --list      the steps and their commands")]
 pub(crate) struct Verify {
@@ -28,6 +29,9 @@ pub(crate) struct Verify {
     /// Print the steps instead
     #[arg(long)]
     list: bool,
+    /// First get what a step needs by apt-get (Debian)
+    #[arg(long)]
+    pub(crate) install: bool,
 }
 
 /// Something that is looked at.
@@ -46,6 +50,8 @@ enum Needs {
     Nothing,
     /// The oldest compiler that Cargo.toml allows; rustup gets it.
     OldestCompiler,
+    /// Packages of Debian.
+    Packages(&'static [&'static str]),
     /// A program, here or in `target/tools`.
     Program(&'static str),
     /// Time: it is run where `CI_FULL` is set.
@@ -93,6 +99,7 @@ const STEPS: &[Step] = &[
         command: &[
             "cargo",
             "test",
+            "--workspace",
             "--features",
             "rne-cli/full",
             "--lib",
@@ -132,16 +139,17 @@ const STEPS: &[Step] = &[
             "--",
             "--include-ignored",
             "certify",
+            "commands_of_documents",
             "examples_of_helps",
             "what_is_written_builds",
         ],
-        needs: Needs::Nothing,
+        needs: Needs::Packages(&certificate::OF_COMMAND_LINE),
     },
     Step {
         name: "exhaustive",
         about: "all shipped arms, thousands of random ones and of random trees, where `cargo test` tries some",
         variables: &[("RNE_EXHAUSTIVE", "1")],
-        command: &["cargo", "test", "--release"],
+        command: &["cargo", "test", "--workspace", "--release"],
         needs: Needs::Time,
     },
     Step {
@@ -288,7 +296,7 @@ impl Verify {
             let words = step.words(&oldest);
             if self.list {
                 println!("{:<12}{}\n            {words}", step.name, step.about);
-            } else if let Some(lack) = step.needs.lack(&oldest) {
+            } else if let Some(lack) = step.needs.lack(&oldest, self.install) {
                 println!("verify {}: skipped, {lack}", step.name);
             } else {
                 println!("verify {}: {words}", step.name);
@@ -328,9 +336,10 @@ impl Step {
 
 impl Needs {
     /// Why a step cannot be done.
-    fn lack(&self, oldest: &str) -> Option<String> {
+    fn lack(&self, oldest: &str, install: bool) -> Option<String> {
         match self {
             Self::Nothing => None,
+            Self::Packages(names) => machine::packages(names, install).err().map(|error| error.to_string()),
             Self::OldestCompiler => machine::toolchain(oldest),
             Self::Program(name) => {
                 let here = machine::root().join("target/tools/bin").join(name).is_file() || machine::has(name);

@@ -2,8 +2,9 @@
 
 use std::fs;
 use std::io::Write as _;
+use std::ops::{Deref, DerefMut};
 use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 
 /// The root of the project, where `robots/` is.
 pub(crate) const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
@@ -37,6 +38,37 @@ pub(crate) fn called(output: Output) -> Called {
     let Output { status, stdout, stderr } = output;
     let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
     Called { out: text(stdout), err: text(stderr), status: status.code().expect("no signal") }
+}
+
+/// A program that runs beside a test, and ends with it: where the test fails, nothing runs on.
+pub(crate) struct Running(Child);
+
+impl Running {
+    pub(crate) fn of(command: &mut Command) -> Self {
+        Self(command.spawn().expect("the program starts"))
+    }
+}
+
+impl Deref for Running {
+    type Target = Child;
+
+    fn deref(&self) -> &Child {
+        &self.0
+    }
+}
+
+impl DerefMut for Running {
+    fn deref_mut(&mut self) -> &mut Child {
+        &mut self.0
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // it has ended, unless the test fails
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
 }
 
 /// A call that reads this text from standard input.

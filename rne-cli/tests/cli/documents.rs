@@ -44,15 +44,17 @@ const DOCUMENTS: [&str; 27] = [
 /// Commands that take long, install something or change the repository: how they begin, and the file that has them run,
 /// by this text.
 const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
-    ("cargo test", ".ci/run", "\nstep cargo test\n"),
+    ("cargo test", ".ci/run", "\nstep cargo xtask bare"),
+    ("cargo test --workspace", ".ci/run", "\nstep cargo test --workspace"),
+    ("cargo xtask bare", ".ci/run", "\nstep cargo xtask bare"),
     ("RNE_EXHAUSTIVE=1 cargo test", "xtask/src/verify.rs", "\"RNE_EXHAUSTIVE\", \"1\""),
     ("RNE_EXHAUSTIVE=1 RNE_WRITE_DOCUMENTS=1 cargo test", "xtask/src/verify.rs", "\"RNE_EXHAUSTIVE\", \"1\""),
-    ("RNE_WRITE_DOCUMENTS=1 cargo test", ".ci/run", "\nstep cargo test\n"),
+    ("RNE_WRITE_DOCUMENTS=1 cargo test", ".ci/run", "\nstep cargo test --workspace"),
     ("cargo fmt", ".ci/run", "step cargo fmt --all"),
     ("cargo clippy", ".ci/run", "step cargo clippy --workspace --all-targets -- -D warnings\n"),
     ("cargo xtask lines", ".ci/run", "step cargo xtask lines\n"),
     ("cargo xtask prose", ".ci/run", "step cargo xtask prose\n"),
-    ("cargo xtask verify", ".ci/run", "step cargo xtask verify\n"),
+    ("cargo xtask verify", ".ci/run", "step cargo xtask verify --install\n"),
     ("cargo xtask urdf", "xtask/src/verify.rs", "\"xtask\", \"urdf\""),
     ("cargo xtask doors", ".ci/run", "step cargo xtask doors --install\n"),
     ("cargo xtask fuzz", ".ci/run", "step cargo xtask fuzz"),
@@ -143,10 +145,22 @@ pub(crate) fn typed(folder: &Path, command: &str) -> Output {
         .expect("a shell")
 }
 
-/// A command with formats that this build does not have: `cargo xtask verify formats` runs it.
+/// A command with formats that this build does not have, which `cargo xtask verify formats` runs, or with programs that
+/// this machine does not have, which `cargo xtask verify certify` installs.
 fn is_left_out(command: &str) -> bool {
     !cfg!(feature = "bags") && command.starts_with("cargo run --features bags -- ")
         || !cfg!(feature = "full") && command.starts_with("cargo run --features full -- ")
+        || of_rne(command).is_some_and(|command| lacks_program(&command))
+}
+
+/// Whether a command needs a program that is not on this machine; one line names it.
+pub(crate) fn lacks_program(command: &str) -> bool {
+    if command.starts_with("rne certify") && !crate::certify::has_tools() {
+        return true;
+    }
+    let programs = command.split(['|', ';']).skip(1).filter_map(|part| part.split_whitespace().next());
+    let lacking = programs.filter(|name| typed(Path::new(ROOT), &format!("command -v {name}")).stdout.is_empty());
+    lacking.inspect(|name| println!("`{command}` does not run: {name} is not installed")).count() > 0
 }
 
 /// A command of rne, as it is called where it is installed; `None` for any other.
@@ -172,7 +186,7 @@ fn tests_are_there(document: &str, command: &str) {
     let Some(name) = after("--test") else { return };
     let root = Path::new(ROOT).join(after("-p").unwrap_or(&"."));
     let manifest = fs::read_to_string(root.join("Cargo.toml")).expect("a manifest");
-    let files = [format!("tests/{name}.rs"), format!("tests/{name}/main.rs")];
+    let files = ["tests/NAME.rs", "tests/NAME/main.rs", "tests/NAME/all.rs"].map(|file| file.replace("NAME", name));
     assert!(
         files.iter().any(|file| root.join(file).exists()) || manifest.contains(&format!("name = \"{name}\"")),
         "{document}: `{command}`: there is no test {name}"

@@ -200,20 +200,29 @@ mod unix {
     use std::thread;
     use std::time::Duration;
 
-    use super::*;
+    use nix::sys::signal::{Signal, kill};
+    use nix::unistd::Pid;
 
-    fn signal(child: &Child, name: &str) {
-        let sent = Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).status();
-        assert!(sent.expect("a shell's command").success(), "{name} is sent");
+    use super::*;
+    use crate::call::Running;
+
+    fn send(child: &Child, signal: Signal) {
+        let process = Pid::from_raw(child.id().try_into().expect("a number of a process"));
+        kill(process, signal).expect("the process runs");
     }
 
     /// Whether this process was started with a signal ignored, as a shell starts what runs in the background; then what
     /// it starts ignores the signal too.
-    fn is_ignored(number: i32) -> bool {
+    fn is_ignored(signal: Signal) -> bool {
         let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
         let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
         let mask = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
-        mask >> (number - 1) & 1 == 1
+        mask >> (signal as i32 - 1) & 1 == 1
+    }
+
+    /// Signals that end a program, but those that this process was started to ignore.
+    fn signals() -> impl Iterator<Item = Signal> {
+        [Signal::SIGINT, Signal::SIGTERM, Signal::SIGHUP].into_iter().filter(|signal| !is_ignored(*signal))
     }
 
     /// Waits until something is so; a child that ends before has failed, and so has one that never gets there.
@@ -227,32 +236,26 @@ mod unix {
             assert!(ended.is_none(), "it ended by {ended:?}");
             thread::sleep(Duration::from_millis(5));
         }
-        let _ = child.kill();
         panic!("it does not get there");
     }
 
     /// States that never end come through a pipe, so the file is being written when the signal comes.
     #[test]
     fn a_signal_leaves_no_temporary_file() {
-        let signals = [("INT", 2), ("TERM", 15), ("HUP", 1)];
-        for (name, number) in signals.into_iter().filter(|(_, number)| !is_ignored(*number)) {
+        for signal in signals() {
             for out in ["out.csv", "out.npy"] {
-                let folder = folder(&format!("signal_{name}_{out}"));
+                let folder = folder(&format!("{signal}_{out}"));
                 let arguments = ["eval", "planar2", "--function", "gravity_torques", "--states", "-", "-o", out];
-                let mut child = command(&arguments)
-                    .current_dir(&folder)
-                    .stdin(Stdio::piped())
-                    .stderr(Stdio::piped())
-                    .spawn()
-                    .expect("rne starts");
+                let mut command = command(&arguments);
+                let mut child = Running::of(command.current_dir(&folder).stdin(Stdio::piped()).stderr(Stdio::piped()));
                 let mut states = child.stdin.take().expect("a pipe");
                 states.write_all(b"q1,q2\n0.1,0.2\n").expect("it reads");
                 until(&mut child, |_| !names(&folder).is_empty());
-                signal(&child, name);
+                send(&child, signal);
                 let ended = child.wait().expect("it ends");
                 // by the signal itself: a shell tells it by 128 and its number
-                assert_eq!(ended.signal(), Some(number), "{name} {out}: {ended:?}");
-                assert_eq!(names(&folder), Vec::<String>::new(), "{name} {out}");
+                assert_eq!(ended.signal(), Some(signal as i32), "{signal} {out}: {ended:?}");
+                assert_eq!(names(&folder), Vec::<String>::new(), "{signal} {out}");
             }
         }
     }
@@ -263,18 +266,13 @@ mod unix {
         let folder = folder("signal_ignored");
         let line = "trap '' HUP; exec \"$@\"";
         let arguments = ["eval", "planar2", "--function", "gravity_torques", "--states", "-", "-o", "out.csv"];
-        let mut child = Command::new("sh")
-            .args(["-c", line, "sh", env!("CARGO_BIN_EXE_rne")])
-            .args(arguments)
-            .current_dir(&folder)
-            .stdin(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("a shell");
+        let mut shell = Command::new("sh");
+        shell.args(["-c", line, "sh", env!("CARGO_BIN_EXE_rne")]).args(arguments).current_dir(&folder);
+        let mut child = Running::of(shell.stdin(Stdio::piped()).stderr(Stdio::piped()));
         let mut states = child.stdin.take().expect("a pipe");
         states.write_all(b"q1,q2\n0.1,0.2\n").expect("it reads");
         until(&mut child, |_| !names(&folder).is_empty());
-        signal(&child, "HUP");
+        send(&child, Signal::SIGHUP);
         drop(states);
         assert_eq!(child.wait().expect("it ends").code(), Some(0));
         assert_eq!(names(&folder), ["out.csv"]);
@@ -292,22 +290,20 @@ mod unix {
     #[test]
     #[cfg(target_os = "linux")]
     fn a_search_keeps_its_best_after_ctrl_c_alone() {
-        let signals = [("INT", 2, Some(0)), ("TERM", 15, None), ("HUP", 1, None)];
-        for (name, number, status) in signals.into_iter().filter(|(_, number, _)| !is_ignored(*number)) {
-            let folder = folder(&format!("signal_search_{name}"));
+        for signal in signals() {
+            let folder = folder(&format!("{signal}_search"));
             fs::copy(format!("{}/robots/planar2.yaml", crate::call::ROOT), folder.join("arm.yaml")).expect("a copy");
-            let mut child = command(&["search", "arm.yaml", "--seconds", "100000"])
-                .current_dir(&folder)
-                .stdout(Stdio::piped())
-                .stderr(Stdio::piped())
-                .spawn()
-                .expect("rne starts");
+            // longer than any machine takes to send a signal; where this test is killed itself, the search ends
+            let mut command = command(&["search", "arm.yaml", "--seconds", "600"]);
+            let mut child = Running::of(command.current_dir(&folder).stdout(Stdio::piped()).stderr(Stdio::piped()));
             until(&mut child, blocks_interrupt);
-            signal(&child, name);
+            send(&child, signal);
             let ended = child.wait().expect("it ends");
-            assert_eq!((ended.code(), ended.signal()), (status, status.is_none().then_some(number)), "{name}");
-            let expected: &[&str] = if status.is_some() { &["arm.plan.yaml", "arm.yaml"] } else { &["arm.yaml"] };
-            assert_eq!(names(&folder), expected, "{name}");
+            let is_kept = signal == Signal::SIGINT;
+            let expected = if is_kept { (Some(0), None) } else { (None, Some(signal as i32)) };
+            assert_eq!((ended.code(), ended.signal()), expected, "{signal}");
+            let expected: &[&str] = if is_kept { &["arm.plan.yaml", "arm.yaml"] } else { &["arm.yaml"] };
+            assert_eq!(names(&folder), expected, "{signal}");
         }
     }
 

@@ -8,7 +8,7 @@ use std::process::Stdio;
 use rne_codegen::{Argument, Function};
 use serde_json::Value;
 
-use crate::call::{Called, called, command, fails, fine, folder, rne, rne_reading};
+use crate::call::{Called, Running, called, command, fails, fine, folder, rne, rne_reading};
 
 /// The columns that a function asks for, as it tells them.
 fn columns(robot: &str, function: &str) -> Vec<String> {
@@ -563,7 +563,7 @@ fn a_reader_that_goes_away_is_no_error() {
 fn peak(states: usize) -> u64 {
     const PART: usize = 1000;
     let mut command = command(&["eval", "planar2", "--states", "-"]);
-    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("rne");
+    let mut child = Running::of(command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null()));
     let mut stdin = child.stdin.take().expect("a pipe");
     let part = bytes(&(0..6 * PART).map(|index| number(index / 6, index % 6)).collect::<Vec<_>>());
     stdin.write_all(&npy("<f8", "False", &format!("({states}, 6)"), &[])).expect("it reads");
