@@ -5,12 +5,21 @@
 const RAISED: [&str; 2] = ["ᵀ⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹", "T-+0123456789"];
 
 /// Letters with dots in one character: the letter, and how many dots it has.
-const DOTTED: [(char, char, usize); 5] = [('Ṁ', 'M', 1), ('ċ', 'c', 1), ('ḋ', 'd', 1), ('ẋ', 'x', 1), ('ẍ', 'x', 2)];
+const DOTTED: [(char, char, usize); 8] = [
+    ('Ġ', 'G', 1),
+    ('Ṁ', 'M', 1),
+    ('ḃ', 'b', 1),
+    ('ċ', 'c', 1),
+    ('ḋ', 'd', 1),
+    ('ṡ', 's', 1),
+    ('ẋ', 'x', 1),
+    ('ẍ', 'x', 2),
+];
 
 /// Pairs of a letter and its spelling in ASCII.
 const SPELLINGS: &str = "\
     α alpha β beta γ gamma Δ Delta δ delta ε epsilon θ theta Θ Theta λ lambda μ mu π pi ρ rho Σ sum σ sigma τ tau \
-    φ phi ψ psi Ω Omega ω w ∂ d · * × x − - – - — - ─ - ± +- ≤ <= ≥ >= → -> √ sqrt ∫ int ½ 1/2 ₀ 0 ₁ 1 ₂ 2 ₃ 3 … ... \
+    φ phi ψ psi Ω Omega ω w ∂ d · * × x − - – - — - ─ - ± +- ≤ <= ≥ >= → -> √ sqrt ∫ int ½ 1/2 ₀ 0 ₁ 1 ₂ 2 ₃ 3 ₖ k … ... \
     ’ ' ‘ ' “ \" ” \" ä a à a á a â a å a ç c è e é e ê e ë e ï i í i ñ n ö o ó o ô o ø o ü u ú u û u Ä A É E Ö O Ü U \
     ß ss";
 
@@ -79,6 +88,7 @@ mod tests {
         assert_eq!(ascii("a/·b — 腕"), "a/ *b - _");
         assert_eq!(ascii("θ̇1² + θ̈2 sin² θ1 - γ1"), "thetad1^2 + thetadd2 sin^2 theta1 - gamma1");
         assert_eq!(ascii("d3, ḋ3, d̈3"), "d3, dd3, ddd3");
+        assert_eq!(ascii("G q̈ + Ġ q̇, Ġ q̇; Σ Jₖᵀ wₖ"), "G qdd + dG qd, dG qd; sum Jk^T wk");
         assert_eq!(ascii("M⁻¹ in s⁻¹², (Rᵀ)²"), "M^-1 in s^-12, (R^T)^2");
     }
 }

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use rne_codegen::{ArgumentArray, Layout, Name, Program, Quantity};
+use rne_codegen::{ArgumentArray, Layout, Name, Program, Quantity, SineCosine};
 use rne_model::{JointIdentifier, Robot};
 
 use super::annotated::Annotated;
@@ -66,7 +66,7 @@ const WITH_SIN_COS: [&str; 2] = [include_str!("sin_cos_f64.rs"), include_str!("s
 
 fn file(robot: &Robot, programs: &[Program], sin_cos: SinCos) -> String {
     let mut text = header(robot, programs, sin_cos);
-    text.push_str(&scalar(programs));
+    text.push_str(&scalar(programs, sin_cos));
     if sin_cos == SinCos::InFile {
         let chooses = programs.iter().any(Program::chooses_by_sign);
         let by_sign = if chooses { format!("\n{BY_SIGN_OF_FLOAT}") } else { String::new() };
@@ -80,7 +80,7 @@ fn file(robot: &Robot, programs: &[Program], sin_cos: SinCos) -> String {
     }
     for program in programs {
         text.push('\n');
-        text.push_str(&function(robot, program));
+        text.push_str(&function(robot, program, sin_cos));
     }
     text
 }
@@ -108,7 +108,7 @@ fn record_of_parameters(robot: &Robot) -> String {
 const PATTERN: usize = 62;
 
 /// The trait that the generated functions ask of a number type; the body of a function refers to nothing else.
-fn scalar(programs: &[Program]) -> String {
+fn scalar(programs: &[Program], sin_cos: SinCos) -> String {
     let divides = programs.iter().any(|program| program.operations().div > 0);
     let chooses = programs.iter().any(Program::chooses_by_sign);
     let (imported, bounds) = if divides {
@@ -123,10 +123,11 @@ fn scalar(programs: &[Program]) -> String {
             "    Copy + Neg<Output = Self> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>",
         )
     };
+    let array = if sin_cos == SinCos::OfCaller { SIN_COS_ARRAY } else { "" };
     let by_sign = if chooses { BY_SIGN } else { "" };
     format!(
         "\nuse core::ops::{{{imported}}};\n\n/// A number: `f64`, `f32`, or any type with these operations.\n\
-         pub trait Scalar:\n{bounds}\n{{\n{METHODS}{by_sign}}}\n"
+         pub trait Scalar:\n{bounds}\n{{\n{METHODS}{array}{by_sign}}}\n"
     )
 }
 
@@ -138,7 +139,9 @@ const METHODS: &str = "    /// A constant of the robot, rounded once.
     fn from_f64(value: f64) -> Self;
     /// Sine and cosine of an angle in rad.
     fn sin_cos(self) -> (Self, Self);
-    /// The sines and the cosines of several angles in rad.
+";
+
+const SIN_COS_ARRAY: &str = "    /// The sines and the cosines of several angles in rad.
     fn sin_cos_array<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]) {
         let pairs = angles.map(Self::sin_cos);
         (pairs.map(|pair| pair.0), pairs.map(|pair| pair.1))
@@ -264,7 +267,7 @@ fn argument_type(array: &ArgumentArray) -> String {
 /// The longest tuple that rustfmt writes in one line.
 const TUPLE: usize = 60;
 
-fn function(robot: &Robot, program: &Program) -> String {
+fn function(robot: &Robot, program: &Program, sin_cos: SinCos) -> String {
     let arrays = program.arrays_without_parameters();
     let mut text = format!("/// {}\n", program.function.summary());
     if let Some(frame) = about_frame(program) {
@@ -329,7 +332,7 @@ fn function(robot: &Robot, program: &Program) -> String {
         for statement in &program.angles {
             let _ = writeln!(text, "{}", Line::statement(program, statement));
         }
-        let _ = writeln!(text, "{}", turns(program));
+        let _ = writeln!(text, "{}", turns(program, sin_cos));
     }
     let statements = listing(robot, program, Selection::default());
     if !statements.is_empty() {
@@ -428,18 +431,26 @@ impl Piece {
     }
 }
 
-/// The statement that evaluates all sines and cosines, with the line breaks of rustfmt.
-fn turns(program: &Program) -> String {
-    let sines = names(program.sines_and_cosines.iter().map(|turn| turn.sine));
-    let cosines = names(program.sines_and_cosines.iter().map(|turn| turn.cosine));
-    let angles = Annotated::join(
-        program.sines_and_cosines.iter().map(|turn| line(Syntax::Rust, program.values.used(turn.angle))),
-        ", ",
-    );
-    if program.sines_and_cosines.len() == 1 {
-        return format!("    let ({sines}, {cosines}) = Scalar::sin_cos({angles});");
+/// The statements that evaluate all sines and cosines, with the line breaks of rustfmt. Where the file has the sine, each
+/// angle has its own call: compilers leave the calls over an array as a loop from five angles on.
+fn turns(program: &Program, sin_cos: SinCos) -> String {
+    let turns = &program.sines_and_cosines[..];
+    let groups = turns.chunks(if sin_cos == SinCos::InFile { 1 } else { turns.len() });
+    groups.map(statement_of_turns(program)).collect::<Vec<_>>().join("\n")
+}
+
+fn statement_of_turns(program: &Program) -> impl Fn(&[SineCosine]) -> String {
+    |turns| {
+        let sines = names(turns.iter().map(|turn| turn.sine));
+        let cosines = names(turns.iter().map(|turn| turn.cosine));
+        let angles = turns.iter().map(|turn| line(Syntax::Rust, program.values.used(turn.angle)));
+        let angles = Annotated::join(angles, ", ");
+        if turns.len() == 1 {
+            return format!("    let ({sines}, {cosines}) = Scalar::sin_cos({angles});");
+        }
+        let (left, right) =
+            (format!("    let ([{sines}], [{cosines}]) ="), format!("Scalar::sin_cos_array([{angles}]);"));
+        let gap = if left.len() + 1 + right.len() <= WIDTH { " " } else { "\n        " };
+        left + gap + &right
     }
-    let (left, right) = (format!("    let ([{sines}], [{cosines}]) ="), format!("Scalar::sin_cos_array([{angles}]);"));
-    let gap = if left.len() + 1 + right.len() <= WIDTH { " " } else { "\n        " };
-    left + gap + &right
 }

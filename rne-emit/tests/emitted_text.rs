@@ -10,8 +10,9 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 use quote::quote;
-use rne_codegen::{Form, Function, Program};
-use rne_model::Robot;
+use rne_codegen::{Compiler, Form, Function, Program};
+use rne_emit::{Precision, Prefix};
+use rne_model::{Reader, Robot};
 use syn::visit::{self, Visit};
 
 /// What is emitted, compiled once for all tests.
@@ -111,8 +112,13 @@ impl<'ast> Visit<'ast> for Counter {
 
 #[test]
 fn operators_in_the_text_are_what_the_counts_say() {
-    for (robot, programs) in emitted() {
-        for (program, function) in programs.iter().zip(functions(&rne_emit::rust_file(robot, programs))) {
+    type File = fn(&Robot, &[Program]) -> String;
+    let files: [(File, bool); 2] = [(rne_emit::rust_file, true), (rne_emit::rust_file_with_sin_cos, false)];
+    for ((robot, programs), (file, has_array)) in emitted().iter().flat_map(|all| files.map(|file| (all, file))) {
+        let text = file(robot, programs);
+        // of a loop over angles, a compiler makes a branch
+        assert!(has_array || !text.contains("sin_cos_array") && !text.contains(".map("), "{}", robot.name);
+        for (program, function) in programs.iter().zip(functions(&text)) {
             let mut counter = Counter::default();
             counter.visit_block(&function.block);
             let counted = program.operations();
@@ -126,8 +132,9 @@ fn operators_in_the_text_are_what_the_counts_say() {
             assert!(counter.other.is_empty(), "no branch, loop, index or method: {:?}", counter.other);
             let called = |name: &str| counter.calls.iter().filter(|call| *call == name).count();
             let (one, several) = (called("Scalar :: sin_cos"), called("Scalar :: sin_cos_array"));
-            // all angles in one call
-            assert_eq!((one, several), (usize::from(counted.sincos == 1), usize::from(counted.sincos > 1)));
+            // all angles in one call, or each in its own where the file has the sine
+            let in_one = (usize::from(counted.sincos == 1), usize::from(counted.sincos > 1));
+            assert_eq!((one, several), if has_array { in_one } else { (counted.sincos, 0) });
             assert_eq!(counter.angles, counted.sincos);
             let (constants, signs) = (called("Scalar :: from_f64"), called("Scalar :: by_sign"));
             assert!(signs == 0 || program.function == Function::ActuatorTorques, "only friction asks for a sign");
@@ -219,6 +226,23 @@ fn every_reduced_form_tells_its_proof() {
         }
         let text = rne_emit::rust_file(robot, programs);
         assert!(text.contains("Identical to the seven steps but for a probability below 1e-100"), "{text}");
+    }
+}
+
+/// Every letter of the emitted C has a spelling in ASCII: one without it would be `_`.
+#[test]
+fn emitted_c_has_a_spelling_for_each_letter() {
+    let loops = include_str!("../../docs/four_bar.yaml");
+    let loops = Reader::new("four_bar").trees().couplings().loops().read(loops).expect("a robot").robot;
+    let compile = |function| Compiler::new(&loops).compile(function, Form::Reduced).expect("it compiles");
+    let programs = Function::of_robot(&loops).map(compile).collect();
+    let of_loops = (loops, programs);
+    for (robot, programs) in emitted().iter().chain([&of_loops]) {
+        let prefix = Prefix::of(robot);
+        let code = rne_emit::c_code(robot, programs, Precision::Double, &prefix).expect("numbers of double").one_file();
+        let ascii = rne_emit::ascii(&code);
+        assert!(ascii.is_ascii(), "{}", robot.name);
+        assert_eq!(ascii.matches('_').count(), code.matches('_').count(), "{}", robot.name);
     }
 }
 
