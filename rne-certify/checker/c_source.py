@@ -9,6 +9,9 @@ KERNELS = {  # of the sine, by the type, with the comments removed and the prefi
     "double": "832cb059c93293dbe679defff4e5a128e7221d57220703aa1a890c25590203ef",
 }
 
+PREPROCESSOR = re.compile(
+    r'# ?(include (<float\.h>|<stdint\.h>|"[^"]*")|ifdef RNE_SIN_COS|else|endif|if .*|error ".*")')
+
 TOKEN = re.compile(r"\s*([A-Za-z_]\w*|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?[fu]?|[-+*/()\[\]{},;=&])")
 
 def tokens_of(text):
@@ -25,20 +28,30 @@ def tokens_of(text):
 class File:
     """The functions of a C source by their names: (parameters, body). Nothing else may stand in it but what rne adds."""
     def __init__(self, text, prefix, kind):
-        text = re.sub(r"//[^\n]*", "", re.sub(r"/\*.*?\*/", "", text, flags=re.S))
+        def line(at):
+            return f"line {text.count(chr(10), 0, at) + 1} of the source"
+        if found := re.search(r"(\\|\?\?/)[ \t]*$", text, flags=re.M):  # it makes one line of two
+            raise Wrong(f"{line(found.start())} ends with a backslash")
+        # a comment leaves its line ends, so that the lines keep their numbers
+        text = re.sub(r"//[^\n]*|/\*.*?\*/", lambda comment: "\n" * comment.group().count("\n"), text, flags=re.S)
         text, *tests = text.split("#ifdef RNE_TEST\n")
         if len(tests) > 1 or tests and re.findall(r"#\s*(?!include)\w+", tests[0]) != ["#endif"]:
             raise Wrong("the tests must be the end of the source")
         if tests and not tests[0].rstrip().endswith("#endif"):
             raise Wrong("the source has code after the tests")
-        text = re.sub(r'#include (<float.h>|<stdint.h>|"[^"\n]*")\n', "", text)
+        for found in re.finditer(r"^[ \t]*#.*", text, flags=re.M):
+            directive = " ".join(found.group().split())
+            if not PREPROCESSOR.fullmatch(directive):
+                raise Wrong(f"{line(found.start())} is a line of the preprocessor that rne does not write: {directive}")
+        text = re.sub(r'#include (<float.h>|<stdint.h>|"[^"\n]*")\n', "\n", text)
         first = re.search(rf"^((void|{kind}) {prefix}_|static {kind} {prefix}_by_sign)", text, flags=re.M)
         kernel, rest = (text[:first.start()], text[first.start():]) if first else (text, "")
         kernel = " ".join(kernel.replace(prefix, "PREFIX").split())
         if kernel and hashlib.sha256(kernel.encode()).hexdigest() != KERNELS[kind]:
-            raise Wrong("the sine and cosine are not those of rne: " + hashlib.sha256(kernel.encode()).hexdigest())
+            raise Wrong(f"the sine and cosine, above {line(len(text) - len(rest))}, are not those of rne")
         if "#" in rest:
-            raise Wrong("the source has a line of the preprocessor among its functions")
+            at = text.index("#", len(text) - len(rest))
+            raise Wrong(f"{line(at)} is a line of the preprocessor among the functions: {text[at:].splitlines()[0]}")
         function = re.compile(rf"\s*(?:void|{kind}|static {kind}) ({prefix}_\w+)\(([^()]*)\)\s*\{{(.*?)\n\}}\n", flags=re.S)
         union = re.compile(rf"\s*typedef union \{{\s*{kind} number;\s*uint\d\d_t bits;\s*\}} {prefix}_number;\n")
         self.functions, at = {}, 0
@@ -47,11 +60,17 @@ class File:
             if not found:
                 found = function.match(rest, at)
                 if not found:
-                    raise Wrong(f"the source has code outside its functions: {rest[at:].strip()[:40]!r}")
+                    at += len(rest[at:]) - len(rest[at:].lstrip())
+                    place = line(len(text) - len(rest) + at)
+                    raise Wrong(f"{place} is code outside the functions: {rest[at:at + 40]!r}")
                 if found.group(1) in self.functions:
                     raise Wrong(f"the source must define {found.group(1)} once")
                 self.functions[found.group(1)] = found.group(2, 3)
             at = found.end()
+
+def text_of(parameters, body):
+    """The SHA-256 of a function's text from its parameters on, without comments and with one blank between words."""
+    return hashlib.sha256(" ".join(f"{parameters}) {{ {body}".split()).encode()).hexdigest()
 
 class Source:
     """A function of straight-line code."""

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks C code of an arm against its Denavit-Hartenberg table, independently of rne.
 
-    python3 check_c.py [--all] my_arm.c my_arm.trace.json my_arm.yaml
+    python3 check_c.py [--partial] my_arm.c my_arm.trace.json my_arm.yaml
 
 The script shares no code with rne and needs only Python's standard library. It reads the C source as text.
 1. The table: robot_table.py, beside this script, reads the robot file. Each number of the table in the trace must be
@@ -11,17 +11,19 @@ The script shares no code with rne and needs only Python's standard library. It 
 3. Each function of the trace (inverse_dynamics, bias_torques, gravity_torques): the script evaluates the source modulo a random
    prime at random points, with the expressions of the constants. It computes the torques modulo the prime by its own
    recursive Newton-Euler algorithm, in the axes of frame 0. Both must be equal. The sine and cosine of an angle are a
-   random point (s, c) with s^2 + c^2 = 1.
+   random point (s, c) with s^2 + c^2 = 1. If the trace has rotors, each adds G^2 Jm qdd to the torque of its joint.
 4. Sine and cosine: their source must be one of two texts whose SHA-256 stands in c_source.py. A test of rne compares
    the functions with high precision at 100,000 angles; this script does not.
+5. Other functions, such as friction_torques: their text must be the one whose SHA-256 stands in the trace. The script
+   does not compute what they return. A function of which the trace says nothing is an error; with --partial, the
+   script names it and goes on.
 
-A source may have more functions, such as friction_torques: the script names them as not checked, and with --all it
-fails. c_source.py, beside this script, reads the source; it refuses anything else that stands there.
+c_source.py, beside this script, reads the source; it refuses anything else that stands there.
 
 The primes have 127 bits. A wrong term survives one point with a probability below 1e-33; there are 8 points.
 Not checked: the header, the compiler and the processor; without a robot file, that the table in the trace is that of the arm.
 Exit status: 0 all is right, 1 something is wrong, 2 a file cannot be read, or the robot is not supported: it has
-couplings, loops, motors, bodies or a floating base.
+couplings, loops, a list of motors, bodies or a floating base.
 """
 import json
 import math
@@ -33,7 +35,7 @@ from decimal import Decimal
 
 sys.dont_write_bytecode = True  # no folder __pycache__ beside this script
 import robot_table
-from c_source import File, Source
+from c_source import File, Source, text_of
 from robot_table import PI, NotSupported, Wrong, cosine, sine
 
 POINTS = 8
@@ -283,10 +285,13 @@ def torques(field, table, machine):
         moment = add(moment, cross(add(origin, arm), force))  # about the origin of frame 0
         links.append((int(joint["parent"]), is_revolute, axis, point, force, moment))
     result, carried = [], [(zero, zero)] * (len(links) + 1)
+    rotors = [joint.get("rotor", ["1", "0"]) for joint in table["joints"]]
     for parent, is_revolute, axis, point, own_force, own_moment in reversed(links):
         force, moment = (add(*pair) for pair in zip(carried.pop(), (own_force, own_moment)))
         about_axis = add(moment, times(-1, cross(point, force)))
-        result.append(dot(axis, about_axis if is_revolute else force))
+        ratio, rotor = (field.decimal(x) for x in rotors.pop())
+        resists = ratio * ratio * rotor * machine.arguments["qdd"][len(rotors)]
+        result.append((dot(axis, about_axis if is_revolute else force) + resists) % p)
         carried[parent] = tuple(add(*pair) for pair in zip(carried[parent], (force, moment)))
     return result[::-1]
 
@@ -341,7 +346,7 @@ def missing(trace):
         for key, kind in kinds.items():
             if not isinstance(mapping.get(key), kind):
                 return f"{what} has no {kind.__name__} '{key}'"
-    if found := lacks(trace, "the file", prefix=str, real=str, functions=list, table=dict):
+    if found := lacks(trace, "the file", prefix=str, real=str, functions=list, texts=dict, table=dict):
         return found
     if found := lacks(trace["table"], "the table", convention=str, gravity=list, joints=list):
         return found
@@ -362,7 +367,7 @@ def is_of_another_robot(text, trace):
     return None
 
 def main():
-    files = [name for name in sys.argv[1:] if name != "--all"]
+    files = [name for name in sys.argv[1:] if name != "--partial"]
     if len(files) not in (2, 3):
         print(__doc__)
         return 2
@@ -390,14 +395,22 @@ def main():
         file = File(text, trace["prefix"], trace["real"])
         for traced in trace["functions"]:
             print(check(file, traced, trace))
-        checked = [traced["function"] for traced in trace["functions"]]
-        others = [name for name in file.functions if name not in checked]
-        if not checked:
+        if not trace["functions"]:
             raise Wrong("the trace names no function")
+        checked, same = [traced["function"] for traced in trace["functions"]], trace["texts"]
+        for name, text in same.items():
+            if name not in file.functions:
+                raise Wrong(f"the source must define {name} once")
+            if text_of(*file.functions[name]) != text:
+                raise Wrong(f"{name} is not the text that rne wrote; this script does not compute what it returns")
+        if same:
+            print(f"compared by their texts alone, not computed: {', '.join(same)}")
+        others = [name for name in file.functions if name not in checked and name not in same]
+        if others and "--partial" not in sys.argv:
+            raise Wrong(f"the trace does not name these functions of the source: {', '.join(others)}; write a trace of "
+                        "all of them by rne certify --evidence, or give --partial to check the others alone")
         if others:
             print(f"not checked, because the trace does not name them: {', '.join(others)}")
-            if "--all" in sys.argv:
-                raise Wrong("--all asks for every function of the source; these are not checked")
     except NotSupported as error:
         print(f"not supported: {error}")
         return 2

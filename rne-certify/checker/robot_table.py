@@ -9,7 +9,7 @@ with the robot file. The script shares no code with rne and needs only Python's 
 It reads the part of YAML that robot files use: mappings and lists, in lines or in braces, texts and comments. It
 refuses anchors, tags and everything else that it does not know. Numbers are decimals and expressions with parameters,
 + - * / ^, parentheses, pi, sqrt, sin, cos, tan, deg, mm and g. They are computed with 60 digits. Base, tool, frames,
-limits and motors change no torque of the links, so the script does not read them. A tree has for each joint its
+limits and friction change no torque of the links, so the script does not read them. A tree has for each joint its
 parent, and the place where its row begins in the link frame of the parent.
 """
 import decimal
@@ -281,6 +281,8 @@ def complete(table):
     """Adds to the table of a serial arm what only a tree writes: each row begins where the row before it ends."""
     for index, joint in enumerate(table["joints"]):
         given = [key for key in ("parent", "xyz", "rpy") if key in joint]
+        if len(joint.get("rotor", "GJ")) != 2:
+            raise Wrong(f"the rotor of joint {index + 1} is not a ratio and an inertia")
         if len(given) not in (0, 3) or joint.get("parent", "0") not in map(str, range(index + 1)):
             raise Wrong(f"joint {index + 1} begins nowhere in the trace")
         if not given:
@@ -308,19 +310,21 @@ def table_of(text):
         if len(formulas) != 3:
             raise Wrong(f"three numbers are expected: {formulas}")
         return [number(formula) for formula in formulas]
-    joints, names_of_links = [], ["base"]
+    joints, names_of_links = [], ["base"]  # a joint may have the name `base`, too: without a parent, the place counts
     for index, joint in enumerate(robot["joints"]):
         what = f"joint {index + 1}"
         only(joint, "name type dh link limits motor" + " parent at" * is_tree, what)
         dh = only(joint["dh"], "theta d a alpha" + " gamma b" * (is_tree and is_modified), f"dh of {what}")
-        parent = joint.get("parent", names_of_links[-1])
-        if names_of_links.count(parent) != 1:
+        parents = [at for at, name in enumerate(names_of_links) if name == joint.get("parent")]
+        if len(parents) != 1 and "parent" in joint:
             raise Wrong(f"the parent of {what} must be the name of one joint above it")
         if "at" in joint and ("gamma" in dh or "b" in dh):
             raise Wrong(f"{what} has both `at` and `gamma` or `b`")
         place = only(joint.get("at", {}), "xyz rpy", f"at of {what}")
         link = only(joint.get("link", {}), "mass com first_moment inertia inertia_about physical", f"link of {what}")
         tensor = only(link.get("inertia", {}), " ".join(ELEMENTS), f"inertia of {what}")
+        motor = only(joint.get("motor", {}), "inertia gear_ratio viscous coulomb coulomb_width coulomb_displacement",
+                     f"motor of {what}")
         mass = number(link.get("mass", "0"))
         com = vector(link.get("com", ["0"] * 3))
         if "first_moment" in link:
@@ -330,10 +334,12 @@ def table_of(text):
         if joint["type"] not in ("revolute", "prismatic") or link.get("inertia_about", "com") not in ("com", "origin"):
             raise Wrong(f"{what} has an unknown type or inertia_about")
         joints.append({
-            "parent": str(names_of_links.index(parent)), "xyz": vector(place.get("xyz", ["0", "0", dh.get("b", "0")])),
+            "parent": str(parents[0] if parents else index),
+            "xyz": vector(place.get("xyz", ["0", "0", dh.get("b", "0")])),
             "rpy": vector(place.get("rpy", ["0", "0", dh.get("gamma", "0")])), "type": joint["type"], **{key: number(dh[key]) for key in ("theta", "d", "a", "alpha")}, "mass": mass,
             "com": com, "inertia": [number(tensor.get(element, "0")) for element in ELEMENTS],
             "inertia_about": link.get("inertia_about", "com"),
+            "rotor": [number(motor.get("gear_ratio", "1")), number(motor.get("inertia", "0"))],
         })
         names_of_links.append(joint.get("name", f"joint{index + 1}"))
     return {"convention": robot["convention"], "gravity": vector(robot["gravity"]), "joints": joints}
@@ -360,6 +366,8 @@ def compare(found, text):
         for key, value in table.items():
             if key == "joints":
                 continue
+            if key == "rotor" and key not in trace:
+                continue  # the code is without rotors
             if isinstance(value, str):
                 if trace[key] != value:
                     raise Wrong(f"{key} of {what} is {trace[key]} in the trace, {value} in the robot file")

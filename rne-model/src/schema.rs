@@ -12,7 +12,7 @@ use crate::document::{self, Content, MAX_JOINTS, Node};
 use crate::drive::drives;
 use crate::expression::{Meaning, is_identifier, is_reserved};
 use crate::floating_base::{self, name_of_base};
-use crate::frame::{carrier, frames};
+use crate::frame::{BASE, carrier, frames};
 use crate::link::link;
 use crate::loops::loops;
 use crate::quantity::Quantity;
@@ -355,7 +355,7 @@ fn joint(cx: &Context, node: &Node, index: usize) -> Option<Joint> {
         return cx.refuse(mistake);
     }
     read_mapping!(cx, node, "a joint", {
-        name: or(format!("joint{}", index + 1)) "name" |cx, node| text_of_one_line(cx, node, "joint name"),
+        name: or(format!("joint{}", index + 1)) "name" joint_name,
         _parent: optional "parent" |_, _| Some(()),
         at: optional "at" fixed_transform,
         kind: required "type" joint_kind,
@@ -387,6 +387,16 @@ fn joint(cx: &Context, node: &Node, index: usize) -> Option<Joint> {
         coulomb_width,
         coulomb_displacement,
     })
+}
+
+fn joint_name(cx: &Context, node: &Node) -> Option<String> {
+    let name = text_of_one_line(cx, node, "joint name")?;
+    if name == BASE {
+        let message = "the joint has the name `base`, which is the name of frame 0, too";
+        let help = "rename the joint: readers take `base` for frame 0, and with `format: 2` `parent: base` is an error";
+        cx.report(Diagnostic::lint(node.span.clone(), message).label("two meanings").help(help));
+    }
+    Some(name)
 }
 
 fn joint_kind(cx: &Context, node: &Node) -> Option<JointKind> {

@@ -450,3 +450,18 @@ fn a_floating_base_that_nothing_resists() {
         assert!(!report.to_string().contains("resists"), "{report}");
     }
 }
+
+/// Frame 0 has the name `base`, so a joint of this name is told in each format, with the place of the name.
+#[test]
+fn a_joint_with_the_name_of_frame_0_is_told() {
+    let row = "type: revolute, dh: {theta: 0, d: 0.1, a: 0.3, alpha: 0}, link: {mass: 1, com: [-0.1, 0, 0]}";
+    for format in [1, 2] {
+        for (name, is_told) in [("base", true), ("Base", false), ("basis", false), ("world", false), ("tip", false)] {
+            let head = "source: own\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n";
+            let said = found(&format!("format: {format}\nname: x\n{head}  - {{name: {name}, {row}}}\n  - {{{row}}}\n"));
+            let told = said.diagnostics.iter().filter(|diagnostic| diagnostic.message.contains("name of frame 0"));
+            assert_eq!(told.count(), usize::from(is_told), "format {format}, {name}: {said}");
+            assert!(!is_told || said.to_string().contains("robots/x.yaml:7:12"), "{said}");
+        }
+    }
+}
