@@ -222,12 +222,7 @@ impl Certificate {
             }
         }
         self.rules(&mut text);
-        text.push_str("\n## Trace\n\nEach line of the code with the step that it belongs to.\n\n");
-        text.push_str("| line | name | step | equations |\n|---:|---|---|---|\n");
-        for Traced { line, name, step, equations } in &self.trace {
-            let [step, equations] = [step, equations].map(|words| words.replace('|', "\\|"));
-            let _ = writeln!(text, "| {line} | `{name}` | {step} | {equations} |");
-        }
+        text.push_str("\n## Trace\n\nWith `--json`, the certificate lists each line of the code with its step.\n");
         text
     }
 

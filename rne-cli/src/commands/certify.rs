@@ -72,8 +72,8 @@ pub(crate) struct Arguments {
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = choice::function(),
         default_value = "inverse_dynamics", hide_possible_values = true)]
     functions: Vec<Function>,
-    /// Certify an update of the momentum observer instead
-    #[arg(long, conflicts_with = "functions")]
+    /// Certify an update of the momentum observer, too
+    #[arg(long)]
     pub(super) observer: bool,
     /// Gain of the observer's low-pass, Hz
     #[arg(long, value_name = "HZ", default_value_t = 20.0, requires = "observer")]
@@ -92,6 +92,9 @@ pub(crate) struct Arguments {
     /// Prefix of names in C [default: the robot's name]
     #[arg(long, value_name = "P")]
     pub(super) prefix: Option<Prefix>,
+    /// File of the code, of `rne emit -o` [default: as FILE]
+    #[arg(long, value_name = "SOURCE")]
+    pub(super) source: Option<PathBuf>,
     /// Certify friction and its derivatives, too
     #[arg(long)]
     friction: bool,
@@ -122,7 +125,7 @@ pub(crate) struct Arguments {
     /// Number type of C in FOLDER: float (default), double
     #[arg(long, value_enum, value_name = "TYPE", hide_possible_values = true, requires = "evidence")]
     pub(super) real: Option<Real>,
-    /// Print the certificate as JSON
+    /// Print the certificate as JSON, with a trace of all lines
     #[arg(long)]
     pub(super) json: bool,
     /// Output file; - is standard output [default: -]
@@ -131,7 +134,7 @@ pub(crate) struct Arguments {
     /// Overwrite OUT even if it is no certificate
     #[arg(long, requires = "output")]
     pub(super) force: bool,
-    /// Check that OUT is what rne would write now
+    /// Check OUT, and the code beside it
     #[arg(long, value_name = "OUT", conflicts_with_all = ["output", "evidence"])]
     pub(super) check: Option<PathBuf>,
 }
@@ -162,17 +165,29 @@ impl Language {
 impl Arguments {
     /// The functions whose programs are compiled, each once, in the order of `rne emit`.
     fn programs(&self) -> Vec<Function> {
-        let is_asked = |function: &Function| {
-            if self.observer { *function == Function::MomentumAndRate } else { self.functions.contains(function) }
-        };
+        let of_observer = self.observer.then_some(Function::MomentumAndRate);
+        let is_asked = |function: &Function| self.functions.contains(function) || of_observer == Some(*function);
         Function::ALL.into_iter().filter(is_asked).collect()
     }
 
-    /// The functions to certify: programs, or the observer; then friction and limits.
+    /// Options that `rne emit` takes, too, and whether they are given.
+    fn flags(&self) -> [(&'static str, bool); 6] {
+        [
+            ("--rotors", self.rotors.rotors),
+            ("--friction", self.friction),
+            ("--limits", self.limits),
+            ("--names", self.names),
+            ("--tests", self.tests),
+            ("--ascii", self.ascii),
+        ]
+    }
+
+    /// The functions to certify: programs and the observer; then friction and limits.
     fn subjects<'a>(&self, robot: &Robot, programs: &'a [Program]) -> Result<Vec<Subject<'a>>, Failure> {
         let low_pass = LowPass { gain: self.gain, period: self.period };
-        let subject = |program| {
-            if self.observer { Subject::Observer(program, low_pass) } else { Subject::Program(program) }
+        let subject = |program: &'a Program| match program.function {
+            Function::MomentumAndRate if self.observer => Subject::Observer(program, low_pass),
+            _ => Subject::Program(program),
         };
         let mut subjects: Vec<Subject> = programs.iter().map(subject).collect();
         if self.friction {
@@ -244,7 +259,7 @@ fn written(arguments: &Arguments, certificate: &Certificate) -> Result<Outcome, 
         certificate.page()
     };
     if let Some(file) = &arguments.check {
-        return check(file, &text);
+        return check(file, &text, certificate);
     }
     let Some(out) = arguments.output.as_deref().filter(|out| !is_standard_output(out)) else {
         return Ok(Outcome::text(text));
@@ -266,13 +281,8 @@ fn written(arguments: &Arguments, certificate: &Certificate) -> Result<Outcome, 
 
 /// Whether the options fit together, and the gain and the period of an observer are above zero.
 fn fits_together(arguments: &Arguments) -> Result<(), Failure> {
-    let of_c = [
-        ("--friction", arguments.friction),
-        ("--limits", arguments.limits),
-        ("--names", arguments.names),
-        ("--tests", arguments.tests),
-        ("--ascii", arguments.ascii),
-    ];
+    // rotors are in Rust, too
+    let [_, of_c @ ..] = arguments.flags();
     if let Some((option, _)) = of_c.into_iter().find(|(_, is_given)| *is_given && arguments.lang != Language::C) {
         return Err(Failure::usage(format_args!("{TYPED}{option}{TYPED:#} is for {TYPED}--lang c{TYPED:#}")));
     }
@@ -303,11 +313,6 @@ fn fits_together(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.lang != Language::C {
         return Err(Failure::usage(format_args!(
             "{TYPED}--observer{TYPED:#} is for {TYPED}--lang c{TYPED:#}: in Rust, the observer is `rne::ObserverState`"
-        )));
-    }
-    if arguments.evidence.is_some() {
-        return Err(Failure::usage(format_args!(
-            "{TYPED}--evidence{TYPED:#} is for inverse_dynamics: the checker computes no momenta"
         )));
     }
     for (option, value) in [("--gain", arguments.gain), ("--period", arguments.period)] {
@@ -497,15 +502,8 @@ fn of_emit(arguments: &Arguments) -> String {
     if let Some(prefix) = &arguments.prefix {
         let _ = write!(options, " --prefix {prefix}");
     }
-    for (option, is_given) in [
-        (" --rotors", arguments.rotors.rotors),
-        (" --friction", arguments.friction),
-        (" --limits", arguments.limits),
-        (" --names", arguments.names),
-        (" --tests", arguments.tests),
-        (" --ascii", arguments.ascii),
-    ] {
-        options.push_str(if is_given { option } else { "" });
+    for (option, _) in arguments.flags().into_iter().filter(|(_, is_given)| *is_given) {
+        let _ = write!(options, " {option}");
     }
     options += &emit::of_order(arguments.order);
     options
@@ -532,11 +530,10 @@ fn emit(arguments: &Arguments, source: &str) -> String {
 /// The command that makes the certificate: the file by its name, so that the page is the same in each folder.
 fn command(arguments: &Arguments) -> String {
     let lang = arguments.lang.name();
-    let function = if arguments.observer {
-        format!("--observer --gain {} --period {}", arguments.gain, arguments.period)
-    } else {
-        format!("--function {}", list(&arguments.programs()))
-    };
+    let mut function = format!("--function {}", list(&arguments.programs()));
+    if arguments.observer {
+        let _ = write!(function, " --observer --gain {} --period {}", arguments.gain, arguments.period);
+    }
     let mut command = format!(
         "rne certify {} --lang {lang} --cpu {} {function} --form {} --states {} --seed {}",
         robot_file::shell(Path::new(&file_name(&arguments.file))),
@@ -552,6 +549,9 @@ fn command(arguments: &Arguments) -> String {
         let _ = write!(command, " --cc-options={}", robot_file::shell(Path::new(&arguments.cc_options)));
     }
     command.push_str(&of_emit(arguments));
+    if let Some(source) = &arguments.source {
+        let _ = write!(command, " --source {}", robot_file::shell(Path::new(&file_name(source))));
+    }
     if arguments.json {
         command.push_str(" --json");
     }

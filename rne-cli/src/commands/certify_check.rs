@@ -1,13 +1,18 @@
 //! `rne certify --check`: a certificate in a file, compared with that of now.
 
+use std::fmt::Write as _;
+use std::fs;
 use std::path::Path;
+
+use rne_certify::certificate::Certificate;
+use rne_certify::sha256;
 
 use crate::files::output_file::{self, Existing};
 use crate::outcome::{Failure, Outcome};
-use crate::palette::{GOOD, TYPED};
+use crate::palette::{GOOD, TITLE, TYPED};
 
-/// Compares a file with the certificate of now, line by line.
-pub(super) fn check(file: &Path, text: &str) -> Result<Outcome, Failure> {
+/// Compares a file with the certificate of now, line by line, and then the code beside it with its SHA-256.
+pub(super) fn check(file: &Path, text: &str, certificate: &Certificate) -> Result<Outcome, Failure> {
     let shown = file.display();
     let found = match output_file::existing(file) {
         Existing::Text(found) if found.trim().is_empty() => {
@@ -20,7 +25,8 @@ pub(super) fn check(file: &Path, text: &str) -> Result<Outcome, Failure> {
         _ => return Err(Failure::input(format_args!("{shown} is no certificate of rne"))),
     };
     if found == text {
-        return Ok(Outcome::remark(format!("{GOOD}up to date:{GOOD:#} {shown}\n")));
+        let code = code(file, certificate)?;
+        return Ok(Outcome::remark(format!("{GOOD}up to date:{GOOD:#} {shown}\n{code}")));
     }
     // other figures before other hashes
     let (mut differences, mut hashes): (Vec<String>, Vec<String>) = Default::default();
@@ -48,6 +54,31 @@ pub(super) fn check(file: &Path, text: &str) -> Result<Outcome, Failure> {
         "{made_by}{shown} is not what rne would write now; {count} lines differ:\n{}",
         differences.join("\n")
     )))
+}
+
+/// Compares the files of the code beside a file with the hashes of the certificate; says what was compared.
+fn code(beside: &Path, certificate: &Certificate) -> Result<String, Failure> {
+    let mut remark = String::new();
+    let is_code = |name: &str| [".c", ".h", ".rs"].iter().any(|end| name.ends_with(end));
+    for (name, expected) in certificate.hashes.iter().filter(|(name, _)| is_code(name)) {
+        let path = beside.with_file_name(name);
+        let shown = path.display();
+        let Ok(bytes) = fs::read(&path) else {
+            let _ = writeln!(remark, "{TITLE}note{TITLE:#}: {shown} cannot be read, so it is not compared");
+            continue;
+        };
+        let hash = sha256(&bytes);
+        if hash != *expected {
+            return Err(Failure::input(format_args!(
+                "{shown} is not the code of the certificate: its SHA-256 is {hash} instead of {expected}. This \
+                 command writes the code; with {TYPED}--check{TYPED:#} in the place of {TYPED}-o{TYPED:#}, it says \
+                 what differs:\n  {}",
+                certificate.emit
+            )));
+        }
+        let _ = writeln!(remark, "{GOOD}up to date:{GOOD:#} {shown}");
+    }
+    Ok(remark)
 }
 
 /// The command of a certificate, as its page or its JSON says it.

@@ -104,7 +104,8 @@ pub(super) fn build(
 
 /// The name of the files without their endings.
 pub(super) fn stem(arguments: &Arguments, robot: &Robot) -> String {
-    let stem = arguments.file.file_stem().filter(|_| !is_stream(&arguments.file));
+    let file = arguments.source.as_ref().unwrap_or(&arguments.file);
+    let stem = file.file_stem().filter(|_| !is_stream(file));
     stem.map_or_else(|| robot.name.clone(), |stem| stem.to_string_lossy().into_owned())
 }
 

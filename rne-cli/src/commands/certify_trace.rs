@@ -1,7 +1,9 @@
 //! The trace that the independent checker reads: the table of the arm, and the exact expressions of the constants.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
+use rne_certify::sha256;
 use rne_codegen::{Derivation, ExactConstant, ExactStep, Function, Program};
 use rne_emit::{Precision, Prefix};
 use rne_model::{Angle, InertiaReference, QuarterTurns, Robot, Transform};
@@ -39,10 +41,11 @@ pub(super) fn write(
     programs: &[Program],
     bytes: &[u8],
 ) -> Result<String, Failure> {
-    let is_known = programs.iter().all(|program| CHECKED.contains(&program.function));
-    if arguments.lang != Language::C || !is_known || robot.has_rotors() {
+    let checked: Vec<&Program> = programs.iter().filter(|program| CHECKED.contains(&program.function)).collect();
+    if arguments.lang != Language::C || checked.is_empty() {
         return Err(Failure::usage(format_args!(
-            "{TYPED}--evidence{TYPED:#} is for {} in C without rotors: the checker computes these functions",
+            "{TYPED}--evidence{TYPED:#} is for code in C with one of {}, which the checker computes; give one of \
+             them in {TYPED}--function{TYPED:#}",
             CHECKED.map(Function::name).join(", ")
         )));
     }
@@ -50,7 +53,7 @@ pub(super) fn write(
     let precision = arguments.real.map_or(Precision::Single, Real::precision);
     let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
     let mut functions = Vec::new();
-    for program in programs {
+    for &program in &checked {
         let Some(derivation) = compiler.derivation(program)? else {
             return Err(Failure::usage(format_args!(
                 "{TYPED}--evidence{TYPED:#} is for {TYPED}--form reduced{TYPED:#}: the constants of this code are \
@@ -59,10 +62,15 @@ pub(super) fn write(
         };
         functions.push(function(program, &derivation, &prefix));
     }
+    let (code, stem) = (arguments.c_code(robot, programs, bytes, precision)?, stem(arguments, robot));
+    let header = format!("{stem}.h");
+    let source = code.source(&header);
+    let names = checked.iter().map(|program| format!("{prefix}_{}", program.function)).collect::<Vec<_>>();
     let mut trace = json!({
         "prefix": prefix.to_string(),
         "real": precision.c_type(),
         "functions": functions,
+        "texts": texts(&source, prefix.as_str(), precision.c_type(), &names),
         "table": table(robot),
     });
     let unsupported = not_supported(robot);
@@ -71,10 +79,8 @@ pub(super) fn write(
     }
     let trace = serde_json::to_string_pretty(&trace).map_err(Failure::input)? + "\n";
     output_folder::make(evidence)?;
-    let (code, stem) = (arguments.c_code(robot, programs, bytes, precision)?, stem(arguments, robot));
-    let header = format!("{stem}.h");
     let files = [
-        (evidence.join(format!("{stem}.c")), code.source(&header)),
+        (evidence.join(format!("{stem}.c")), source),
         (evidence.join(&header), code.header().to_owned()),
         (evidence.join(format!("{stem}.trace.json")), trace),
     ];
@@ -118,6 +124,20 @@ fn function(program: &Program, derivation: &Derivation, prefix: &Prefix) -> Valu
         })
         .collect();
     json!({"function": format!("{prefix}_{}", program.function), "steps": steps, "constants": constants})
+}
+
+/// The SHA-256 of each function of a source that the checker does not compute: of its text from the parameters on,
+/// without comments and with one blank between words.
+fn texts(source: &str, prefix: &str, real: &str, checked: &[String]) -> BTreeMap<String, String> {
+    let heads = ["void", real, &format!("static {real}")].map(|kind| format!("\n{kind} {prefix}_"));
+    let functions = rne_emit::without_c_tests(source).split("\n}\n").filter_map(|part| {
+        let start = heads.iter().filter_map(|head| part.rfind(head.as_str())).max()?;
+        let (head, text) = part.get(start..)?.split_once('(')?;
+        let words = text.lines().flat_map(|line| line.split("//").next().unwrap_or(line).split_whitespace());
+        let text = words.collect::<Vec<_>>().join(" ");
+        Some((head.split_whitespace().last()?.to_owned(), sha256(text.as_bytes())))
+    });
+    functions.filter(|(name, _)| !checked.contains(name)).collect()
 }
 
 /// A step: its operator, and the places of its operands. Numbers are texts, which keep their digits.
@@ -166,6 +186,10 @@ fn table(robot: &Robot) -> Value {
                 "inertia": inertia.map(text),
                 "inertia_about": if *reference == InertiaReference::Com { "com" } else { "origin" },
             });
+            if robot.has_rotors() {
+                let rotor = joint.motor.map_or([1.0, 0.0], |motor| [motor.gear_ratio, motor.inertia]);
+                row["rotor"] = json!(rotor.map(text));
+            }
             if is_tree {
                 let placement = joint.branch.map_or(Transform::IDENTITY, |branch| branch.placement);
                 // counted from 1; 0 is the base

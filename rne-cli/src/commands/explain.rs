@@ -115,7 +115,14 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
         Form::Reduced => plan_file::Compiler::new(path, &robot).compile(function, form)?,
     };
     let inspection = Inspection::new(&robot, &program);
-    if let Some(text) = equations::of_name(View { inspection: &inspection, letters: arguments.letters }, name) {
+    if let Some(mut text) = equations::of_name(View { inspection: &inspection, letters: arguments.letters }, name) {
+        // units of lengths, forces and masses
+        if inspection.unit(name).contains(['m', 'N', 'k']) {
+            let evidence = program.proof.iter().flat_map(|proof| rne_emit::evidence(&program, proof));
+            for scaled in evidence.filter(|line| line.starts_with("Scaled values")) {
+                let _ = writeln!(text, "\n{}", wrap(&scaled, terminal::width(PAGE), ""));
+            }
+        }
         return Ok(Outcome::text(text));
     }
     if let Some(parameter) = LinkParameter::parse(name) {

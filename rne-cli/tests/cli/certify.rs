@@ -54,13 +54,17 @@ fn a_certificate_is_checked_and_a_change_is_found() {
     let said = rne(&certify);
     assert!(said.status == 0 && !said.err.contains("states are few"), "{said:?}");
     let page = fs::read_to_string(out).expect("it was written");
-    for part in
-        ["| double precision | none |", "QEMU runs the code", "| 19.2 | 4 |", "| `tau[0]` | result: joint ", "SHA-256"]
-    {
+    for part in [
+        "| double precision | none |",
+        "QEMU runs the code",
+        "| 19.2 | 4 |",
+        "`--json`, the certificate lists",
+        "SHA-256",
+    ] {
         assert!(page.contains(part), "{part}: {page}");
     }
-    // a long expression begins on the line after its name
-    assert!(!page.contains("| `=` |") && page.contains("| result | joint | unit |"), "{page}");
+    // two pages for a reader: the lines of the code are in JSON
+    assert!(page.lines().count() < 250 && page.contains("| result | joint | unit |"), "{page}");
     let check = ["certify", ROBOT, "--states", "100", "--check", out];
     assert_eq!(rne(&check).status, 0);
     fs::write(out, page.replacen("| bytes of constants | ", "| bytes of constants | 1", 1)).expect("written");
@@ -98,25 +102,25 @@ fn the_figures_of_json_are_those_of_the_page() {
     }
 }
 
-/// The table of docs/firmware.md, and that more options of the compiler do not change a bit: QEMU's results are
+/// The tables of docs/firmware.md, and that more options of the compiler do not change a bit: QEMU's results are
 /// compared with those of this computer.
 #[test]
 #[ignore = "slow: cargo xtask verify certify"]
-fn options_of_the_compiler_make_a_quadruped_smaller() {
+fn options_of_the_compiler_make_robots_smaller() {
     if !has_tools() {
         return;
     }
     let document = fs::read_to_string(Path::new(ROOT).join("docs/firmware.md")).expect("it is there");
-    let rows: Vec<Vec<&str>> = document
-        .lines()
-        .filter(|line| line.starts_with("| `-O2"))
-        .map(|line| line.trim_matches('|').split('|').map(|cell| cell.trim().trim_matches('`')).collect())
-        .collect();
-    assert_eq!(rows.len(), 3);
+    let rows = |start: &str| -> Vec<Vec<&str>> {
+        document
+            .lines()
+            .filter(|line| line.starts_with(start))
+            .map(|line| line.trim_matches('|').split('|').map(|cell| cell.trim().trim_matches('`')).collect())
+            .collect()
+    };
     let certify = ["certify", "docs/standing_hyq.yaml", "--function", "inverse_dynamics_of_floating_base", "--json"];
-    for row in rows {
-        let options = row[0].trim_start_matches("-O2").trim();
-        let text = fine(&[&certify[..], &["--states", "100", &format!("--cc-options={options}")]].concat());
+    let is_right = |certify: &[&str], options: &str, figures: &[&str]| {
+        let text = fine(&[certify, &["--states", "100", &format!("--cc-options={options}")]].concat());
         let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
         let cost = &json["cost"];
         let of = |figure: &str| cost[figure].as_u64().expect("a number");
@@ -124,9 +128,20 @@ fn options_of_the_compiler_make_a_quadruped_smaller() {
         assert_eq!(json["emulation"]["instructions"], cost["instructions"]);
         // the figures are those of one compiler
         if text.contains("12.2.1") {
-            let figures = [of("instructions"), of("cycles"), of("code") + of("constants"), of("stack")];
-            assert_eq!(figures.map(|figure| figure.to_string()).as_slice(), &row[1..]);
+            let found = [of("instructions"), of("cycles"), of("code") + of("constants"), of("stack")];
+            assert_eq!(found.map(|figure| figure.to_string()).as_slice(), figures, "{certify:?} {options}");
         }
+    };
+    let of_legs = rows("| `-O2");
+    assert_eq!(of_legs.len(), 3);
+    for row in of_legs {
+        is_right(&certify, row[0].trim_start_matches("-O2").trim(), &row[1..]);
+    }
+    let is_of_arm = |row: &Vec<&str>| row.get(1).is_some_and(|name| ["panda", "puma560"].contains(name));
+    let of_arms: Vec<_> = rows("| ").into_iter().filter(is_of_arm).collect();
+    assert_eq!(of_arms.len(), 6);
+    for row in of_arms {
+        is_right(&["certify", row[1], "--json"], row[0].trim_start_matches("none"), &row[2..]);
     }
     fails(1, &[&certify[..], &["--cc-options=-fno-such-option"]].concat(), &["-fno-such-option"]);
     // what would write another file, and a function that the certificate of Rust does not call
@@ -177,10 +192,17 @@ fn both_languages_and_other_functions_have_a_trace() {
     }
     for lang in ["c", "rust"].into_iter().filter(|lang| *lang == "c" || has_rust) {
         for function in ["inverse_dynamics", "forward_dynamics"] {
-            let page = fine(&["certify", ROBOT, "--states", "20", "--lang", lang, "--function", function]);
-            let (_, trace) = page.split_once("\n## Trace\n").expect("a trace");
-            assert!(trace.lines().count() > 40, "{lang} {function}: {trace}");
-            assert!(trace.contains("| joint 3, "), "{lang} {function}: {trace}");
+            let certify = ["certify", ROBOT, "--states", "20", "--lang", lang, "--function", function];
+            let page = fine(&certify);
+            let json: serde_json::Value =
+                serde_json::from_str(&fine(&[&certify[..], &["--json"]].concat())).expect("JSON");
+            let trace = json["trace"].as_array().expect("a trace");
+            assert!(trace.len() > 40, "{lang} {function}: {trace:?}");
+            let is_of_joint =
+                |line: &serde_json::Value| line["step"].as_str().is_some_and(|step| step.starts_with("joint 3, "));
+            assert!(trace.iter().any(is_of_joint), "{lang} {function}: {trace:?}");
+            // a long expression begins on the line after its name
+            assert!(trace.iter().all(|line| line["name"] != "="), "{lang} {function}: {trace:?}");
             assert_eq!(page.contains("the rules are for C"), lang == "rust", "{page}");
             assert!(!page.contains("cppcheck is not installed"), "{page}");
         }
@@ -207,7 +229,8 @@ fn the_observer_of_each_arm_has_a_certificate() {
     {
         let file = format!("rne-cli/tests/cli/arms/{arm}.yaml");
         for cpu in ["cortex-m4", "cortex-m7"] {
-            let certify = ["certify", &file, "--observer", "--states", "200", "--cpu", cpu];
+            let certify = ["certify", &file, "--function", "momentum_and_rate", "--observer"];
+            let certify = [&certify[..], &["--states", "200", "--cpu", cpu]].concat();
             let json: serde_json::Value =
                 serde_json::from_str(&fine(&[&certify[..], &["--json"]].concat())).expect("JSON");
             assert_eq!(json["function"], "observer_update", "{arm}");
@@ -237,7 +260,8 @@ fn the_observer_of_each_arm_has_a_certificate() {
         }
         // twice the gain lets more errors through
         let bound = |gain: &str| {
-            let certify = ["certify", &file, "--observer", "--gain", gain, "--states", "200", "--json"];
+            let certify = ["certify", &file, "--function", "momentum_and_rate", "--observer", "--gain", gain];
+            let certify = [&certify[..], &["--states", "200", "--json"]].concat();
             let json: serde_json::Value = serde_json::from_str(&fine(&certify)).expect("JSON");
             json["accuracy"]["results"][0]["bound"].as_f64().expect("a number")
         };
@@ -248,11 +272,11 @@ fn the_observer_of_each_arm_has_a_certificate() {
 #[test]
 fn options_of_the_observer_are_checked() {
     fails(2, &["certify", ROBOT, "--observer", "--lang", "rust"], &["--observer", "rne::ObserverState"]);
-    fails(2, &["certify", ROBOT, "--observer", "--evidence", "e"], &["--evidence", "momenta"]);
+    let alone = ["certify", ROBOT, "--function", "momentum_and_rate", "--observer", "--evidence", "e"];
+    fails(2, &alone, &["--evidence", "inverse_dynamics", "--function"]);
     fails(2, &["certify", ROBOT, "--observer", "--gain", "0"], &["--gain is 0", "1e-6"]);
     fails(2, &["certify", ROBOT, "--observer", "--period", "-1"], &["--period"]);
     fails(2, &["certify", ROBOT, "--gain", "20"], &["--observer"]);
-    fails(2, &["certify", ROBOT, "--observer", "--function", "gravity_torques"], &["--observer", "--function"]);
 }
 
 /// Whether the checker accepts a source with a trace of a robot file, and what it says.

@@ -267,7 +267,7 @@ fn the_checker_refuses_what_is_no_trace() {
     let folder = folder("checker_no_trace");
     let (source, trace) = (folder.join("arm.c"), folder.join("e.json"));
     fs::write(&source, "int x;\n").expect("written");
-    let table = r#""prefix": "a", "real": "float", "functions": []"#;
+    let table = r#""prefix": "a", "real": "float", "functions": [], "texts": {}"#;
     for (text, lacks) in [
         ("{}".to_owned(), "the file has no str 'prefix'"),
         ("[]".to_owned(), "the file is no mapping"),

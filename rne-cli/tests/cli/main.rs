@@ -3,6 +3,7 @@
 mod ascii;
 mod call;
 mod certify;
+mod certify_files;
 mod certify_joints;
 mod certify_trees;
 mod check;
