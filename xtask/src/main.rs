@@ -7,6 +7,7 @@ mod bare;
 mod batch_profile;
 mod capi;
 mod certificate;
+mod certify_all;
 mod counts;
 mod derivatives;
 mod doors;
@@ -69,6 +70,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Task {
     Certificate(certificate::Certificate),
+    CertifyAll(certify_all::CertifyAll),
     Instructions(instructions::Instructions),
     Performance(performance::Performance),
     Bare(bare::Bare),
@@ -121,6 +123,7 @@ impl Task {
     fn run(&self) -> (&'static str, bool, Result<Verdict>) {
         match self {
             Self::Certificate(task) => ("embedded certificate", task.install, task.run()),
+            Self::CertifyAll(task) => ("certify-all", task.install, task.run()),
             Self::Instructions(task) => ("instruction counts", task.install, task.run()),
             Self::Performance(task) => ("performance", false, task.run()),
             Self::Bare(task) => ("bare", false, task.run()),
