@@ -10,22 +10,32 @@ use rne_model::{Report, robot_of};
 
 /// The errors of a robot file or a URDF with the options that help.
 pub(crate) fn worded(report: &Report) -> Report {
+    report.clone().worded(in_options)
+}
+
+/// A remedy as options.
+#[allow(clippy::unnecessary_wraps)] // what a report asks for
+pub(crate) fn in_options(remedy: &rne_model::Remedy) -> Option<String> {
     use rne_model::Remedy;
-    report.clone().worded(|remedy| {
-        Some(match remedy {
-            Remedy::ImportUrdf { file } => {
-                let file = file.as_deref().unwrap_or("FILE");
-                format!("`rne import {file} -o robot.yaml` converts a URDF or MJCF file to a robot file")
-            }
-            Remedy::NameTip => {
-                "name the tip with --tip LINK; `rne import FILE --whole` takes all of them, as a tree".to_owned()
-            }
-            Remedy::LockJoint { joint } => format!("--lock {joint}=VALUE locks `{joint}` at this value"),
-            Remedy::LockOthers => {
-                "--lock JOINT=VALUE locks one joint at this value, --lock-others locks all others at zero".to_owned()
-            }
-            Remedy::KeepUnphysical => "--keep-unphysical imports the inertia without a change".to_owned(),
-        })
+    Some(match remedy {
+        Remedy::ImportUrdf { file } => {
+            let file = file.as_deref().unwrap_or("FILE");
+            format!("`rne import {file} -o robot.yaml` converts a URDF or MJCF file to a robot file")
+        }
+        Remedy::NameTip => {
+            "name the tip with --tip LINK; `rne import FILE --whole` takes all of them, as a tree".to_owned()
+        }
+        Remedy::LockJoint { joint } => format!("--lock {joint}=VALUE locks `{joint}` at this value"),
+        Remedy::LockOthers => {
+            "--lock JOINT=VALUE locks one joint at this value, --lock-others locks all others at zero".to_owned()
+        }
+        Remedy::KeepUnphysical => "--keep-unphysical imports the inertia without a change".to_owned(),
+        Remedy::Whole => "`rne import FILE --whole` imports the whole robot".to_owned(),
+        Remedy::WholeOrLock { joint } => {
+            format!("--whole imports the whole robot, --lock {joint}=VALUE locks `{joint}` at this value")
+        }
+        Remedy::Float => "`rne import FILE --whole --floating` makes the base float".to_owned(),
+        Remedy::Rotors => "a command counts it with --rotors".to_owned(),
     })
 }
 

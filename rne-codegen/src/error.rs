@@ -70,6 +70,13 @@ pub enum CompileError {
         /// The function.
         function: Function,
     },
+    /// A function of a robot whose base floats, of one whose file has no `floating_base`.
+    NoFloatingBase {
+        /// The function.
+        function: Function,
+        /// The robot's name.
+        robot: String,
+    },
     /// A plan with a choice that the robot does not offer.
     PlanDoesNotFit {
         /// The robot's name.
@@ -319,6 +326,13 @@ impl fmt::Display for CompileError {
                 f,
                 "`{function}` returns numbers of every link, and the joint `{follower}` follows other joints: arrays \
                  have no element for it. Leave this function out; `rne::DynArm` computes it"
+            ),
+            Self::NoFloatingBase { function, robot } => write!(
+                f,
+                "`{function}` is of robots with a floating base, and the file of {robot} has no `floating_base`: the mass \
+                 of its base is not known. Import it with `rne import FILE --whole --floating`, in Python with \
+                 `rne.load(FILE, whole=True, floating=True)`, or write the base into the robot file, such as `floating_base: {{name: trunk, link: {{mass: 20, com: [0, 0, 0], inertia: \
+                 {{xx: 1, yy: 1, zz: 1}}}}}}`"
             ),
             Self::PlanDoesNotFit { robot } => {
                 write!(f, "the plan does not fit `{robot}`: one of its choices is not possible for this robot")

@@ -6,11 +6,12 @@ mod follower;
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
-use rne_model::{Coupling, Limits, Motor, Remedy, Report, one_line};
+use rne_model::{Coupling, Limits, Motor, Remedy, Report, one_line, six_digits};
 
 use self::follower::Coupled;
 use crate::body::Body;
 use crate::geometry::{Pose, Rotation, Vector, decimal};
+use crate::remark::{Remark, Remarks};
 use crate::selection::{End, Selection, link, locks, path, refuse_value, tip};
 use crate::snap::{Snapped, Snapping};
 use crate::source::{names, quoted, some};
@@ -18,6 +19,10 @@ use crate::urdf::{Joint, Urdf};
 
 /// More joints than a robot file may have.
 const MAX_JOINTS: usize = 64;
+
+/// The help against a joint that no row of a table can describe.
+const SEVERAL: &str = "a row of the table is one revolute or prismatic joint: write the joint as several of them, such as \
+                       a ball as three hinges about x, y and z";
 
 /// A serial arm, or a whole tree: joints with bodies between them.
 #[derive(Clone, Debug)]
@@ -114,9 +119,7 @@ pub(crate) struct Extracted {
     /// Joints of the chain, and those that are held.
     pub(crate) joints: BTreeSet<usize>,
     /// Notes for the reader of the robot file, in sentences.
-    pub(crate) remarks: Vec<String>,
-    /// The notes among `remarks` that say which limits are ignored.
-    pub(crate) ignored_limits: Vec<String>,
+    pub(crate) remarks: Remarks,
 }
 
 /// Takes the chain out of the tree. `gravity` is in the axes of the root link.
@@ -151,6 +154,7 @@ pub(crate) fn extract(
         coupled: Vec::new(),
         places: HashMap::new(),
         frames: Vec::new(),
+        standing: 0.0,
         told: Extracted {
             base: urdf.links[base].name.clone(),
             tip: urdf.links[tip].name.clone(),
@@ -188,9 +192,11 @@ pub(crate) fn extract(
     if !walk.loose.is_empty() {
         let joints = names(walk.loose.iter().map(|&joint| &urdf.joints[joint].name));
         let is_before_base = |joint: &usize| urdf.joints[*joint].kind.has_one_freedom();
+        let mut help = "hold these joints still, each at a position of its own or all at zero".to_owned();
         let message = if selection.whole && walk.loose.iter().any(is_before_base) {
             format!("movable joints that do not come after the base {}: {joints}", quoted(&walk.told.base))
         } else if selection.whole {
+            help = format!("{SEVERAL}, or hold it still at zero");
             format!("joints with more than one freedom, which no row of a table can describe: {joints}")
         } else {
             format!(
@@ -200,7 +206,6 @@ pub(crate) fn extract(
             )
         };
         let span = &urdf.joints[walk.loose[0]].span;
-        let help = "hold these joints still, each at a position of its own or all at zero".to_owned();
         return Err(urdf.source.error_with(span, message, help, &Remedy::LockOthers));
     }
     if let Some(&(first, _)) = walk.followers.first() {
@@ -214,6 +219,12 @@ pub(crate) fn extract(
             "these joints carry mass, and no row of the table can describe that this mass moves along; if the mass may \
              stand still, lock each of these joints by its name".to_owned();
         return Err(urdf.source.error_with(&urdf.joints[first].span, message, help, &lock(name(first))));
+    }
+    if walk.standing > 0.0 {
+        let mass = six_digits(walk.standing);
+        let remark = Remark::from(format!("the base stands still: its mass of {mass} kg is left out"));
+        // another remark says how a base floats that the file lets float
+        walk.told.remarks.push(if urdf.floats.is_none() { remark.remedy(Remedy::Float) } else { remark });
     }
     (chain.loops, chain.frames) = (walk.loops(base)?, walk.frames);
     walk.told.snapped = walk.snapping.found;
@@ -252,6 +263,8 @@ struct Walk<'a> {
     places: HashMap<usize, usize>,
     /// The links, where they are fixed to the chain.
     frames: Vec<ChainFrame>,
+    /// The mass of the links that stand still with the base, kg.
+    standing: f64,
     told: Extracted,
 }
 
@@ -425,7 +438,8 @@ impl Walk<'_> {
             if !self.selection.whole {
                 let mover = quoted(&self.urdf.joints[mover].name);
                 let message = format!("the joint {mover} of the arm moves the closed loop {name}");
-                return error(message, "import the whole robot: an arm alone has no closed loops");
+                let help = "an arm alone has no closed loops".to_owned();
+                return Err(self.urdf.source.error_with(&closed.span, message, help, &Remedy::Whole));
             }
             let mut ends = [(None, Pose::identity()); 2];
             for (end, (link, place)) in ends.iter_mut().zip(closed.ends) {
@@ -466,7 +480,11 @@ impl Walk<'_> {
                     let body = self.body(link, (None, pose));
                     chain.floating_base = chain.floating_base.map(|base| base + body);
                 }
-                None => self.frames.push(ChainFrame { name: self.urdf.links[link].name.clone(), on, place: pose }),
+                None => {
+                    let link = &self.urdf.links[link];
+                    self.standing += link.mass;
+                    self.frames.push(ChainFrame { name: link.name.clone(), on, place: pose });
+                }
             }
             if let (true, Some(joint)) = (link == tip, on) {
                 (chain.tip_on, chain.tip) = (joint, pose);
@@ -475,6 +493,10 @@ impl Walk<'_> {
             open.extend(joints.map(|&joint| (Some(joint), on, pose)));
         }
         let error = |message: String| Err(self.urdf.source.error(&self.urdf.links[base].span, message, None));
+        // joints that nobody holds are the mistake
+        if !self.loose.is_empty() {
+            return Ok(());
+        }
         if chain.joints.is_empty() {
             return error(format!("there is no movable joint after {}", quoted(&self.told.base)));
         }
@@ -507,16 +529,15 @@ impl Walk<'_> {
         let name = quoted(&joint.name);
         if !joint.kind.has_one_freedom() {
             let message = format!("the joint {name} on the chain is {}", joint.kind.name());
-            let help = "a row of the table is one revolute or prismatic joint; choose base and tip so that this joint \
-                        is not between them";
-            return error(message, help.to_owned());
+            return error(message, format!("{SEVERAL}, or choose base and tip so that this joint is not between them"));
         }
         if let Some(mimic) = joint.mimic.as_ref().filter(|_| !self.selection.whole) {
             let message = format!("the joint {name} on the chain follows {}", quoted(&mimic.joint));
-            let help = "its torque acts on the joint that it follows, and no row of the table can describe this; \
-                        import the whole robot, end the chain before this joint, or lock this joint"
+            let help = "its torque acts on the joint that it follows, and no row of the table can describe this: end \
+                        the chain before this joint, lock it, or import the whole robot"
                 .to_owned();
-            return Err(self.urdf.source.error_with(&joint.span, message, help, &lock(&joint.name)));
+            let remedy = Remedy::WholeOrLock { joint: one_line(&joint.name) };
+            return Err(self.urdf.source.error_with(&joint.span, message, help, &remedy));
         }
         if joint.axis == [0.0; 3] {
             return error(
@@ -532,20 +553,18 @@ impl Walk<'_> {
         self.told.joints.insert(index);
         let joint = &self.urdf.joints[index];
         let name = one_line(&joint.name);
-        let before = self.told.ignored_limits.len();
         if !joint.has_axis {
             self.told.remarks.push(format!("the joint {name} has no element `axis`, so its axis is 1 0 0"));
         }
         if let Some((lower, upper)) = joint.crossed {
-            self.told.ignored_limits.push(format!(
+            self.told.remarks.push(Remark::warning(format!(
                 "the joint {name} has a lower limit, {lower}, above its upper limit, {upper}; rne ignores both limits"
-            ));
+            )));
         }
         for (limit, value) in &joint.negative {
             let what = format!("the joint {name} has a negative limit of {limit}, {value}; rne ignores it");
-            self.told.ignored_limits.push(what);
+            self.told.remarks.push(Remark::warning(what));
         }
-        self.told.remarks.extend_from_slice(&self.told.ignored_limits[before..]);
     }
 
     /// The link and all that is fixed to it, but for what hangs on the joint `next`, seen from the frame in which the
@@ -574,6 +593,7 @@ impl Walk<'_> {
         let mut open = vec![(link, pose)];
         while let Some((index, pose)) = open.pop() {
             let link = &self.urdf.links[index];
+            self.standing += link.mass;
             self.frames.push(ChainFrame { name: link.name.clone(), on: None, place: pose });
             for &index in link.children.iter().rev().filter(|&&joint| Some(joint) != next) {
                 let joint = &self.urdf.joints[index];

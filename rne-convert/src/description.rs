@@ -47,6 +47,11 @@ pub enum OpenError {
         /// The words of the system.
         error: io::Error,
     },
+    /// The file is a scene in Universal Scene Description.
+    Usd {
+        /// The path.
+        path: PathBuf,
+    },
     /// The file cannot be read.
     Unreadable {
         /// The path.
@@ -65,6 +70,11 @@ impl fmt::Display for OpenError {
                 write!(f, "there is no {what} {}", path.display())?;
                 hint.as_ref().map_or(Ok(()), |hint| write!(f, "; {hint}"))
             }
+            Self::Usd { path } => write!(
+                f,
+                "{} is a USD file (Universal Scene Description), which rne does not read; export the robot as URDF or MJCF",
+                path.display()
+            ),
             Self::Unreadable { path, error } if error.kind() == ErrorKind::IsADirectory => {
                 if path.join("metadata.yaml").is_file() {
                     return write!(
@@ -118,14 +128,20 @@ impl Description {
             }
             Ok(if is_urdf { Self::Urdf(bytes) } else { Self::RobotFile(bytes) })
         };
-        file(path).and_then(read).map_err(|error| {
+        let opened = file(path).and_then(read).map_err(|error| {
             let path = path.to_owned();
             if error.kind() == ErrorKind::NotFound {
                 OpenError::NotFound { hint: hint(&path), path, error }
             } else {
                 OpenError::Unreadable { path, error }
             }
-        })
+        })?;
+        match &opened {
+            Self::RobotFile(bytes) if [&b"#usda"[..], b"PXR-USDC"].iter().any(|usd| bytes.starts_with(usd)) => {
+                Err(OpenError::Usd { path: path.to_owned() })
+            }
+            _ => Ok(opened),
+        }
     }
 
     /// The description that a text is.
@@ -243,6 +259,11 @@ mod tests {
         assert_eq!(said("xyzzy.urdf"), "there is no URDF xyzzy.urdf");
         assert!(said("src").starts_with("src is a folder"), "{}", said("src"));
         let folder = tempfile::tempdir().expect("a folder");
+        for text in ["#usda 1.0\ndef Xform \"arm\" {}\n", "PXR-USDC\0\0"] {
+            let path = folder.path().join("scene.usd");
+            fs::write(&path, text).expect("a file");
+            assert!(said(path.to_str().expect("Unicode")).contains("is a USD file (Universal Scene Description)"));
+        }
         for name in ["one.yaml", "two.yaml", "two.plan.yaml"] {
             fs::write(folder.path().join(name), "").expect("a file");
         }

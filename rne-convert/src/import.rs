@@ -13,10 +13,11 @@ use crate::comparison::Difference;
 use crate::dynamics::Dynamics;
 use crate::frames::{as_identifiers, named_frames, transform};
 use crate::geometry::Pose;
+use crate::remark::Remark;
 use crate::robot_file;
 use crate::selection::Selection;
 use crate::snap::Snapped;
-use crate::source::{quoted, some};
+use crate::source::{names, quoted, some};
 use crate::table::{FAR, NEARLY_PARALLEL, Table, table, tree_table};
 use crate::urdf::Urdf;
 
@@ -94,16 +95,22 @@ pub struct Account {
     pub change: Option<Difference>,
     /// Between the chain and the table as rne computes it: the rounding of the conversion.
     pub rounding: Difference,
-    /// Remarks, in sentences.
-    pub remarks: Vec<String>,
-    /// The remarks on probable mistakes of the URDF: limits that the import ignores, numbers in other units. They are
-    /// among `remarks`, too.
-    pub suspicious: Vec<String>,
+    /// What the import leaves out or assumes, and probable mistakes of the file: limits that it ignores, numbers in other
+    /// units.
+    pub remarks: Vec<Remark>,
+    /// Whether the file is an MJCF file.
+    pub is_mjcf: bool,
     /// The lints of the robot file.
     pub lints: Report,
 }
 
 impl Account {
+    /// The remarks as sentences.
+    #[must_use]
+    pub fn sentences(&self) -> Vec<String> {
+        self.remarks.iter().map(ToString::to_string).collect()
+    }
+
     /// How many angles were snapped, and how far this moves torques and tip; `None` where none was snapped.
     #[must_use]
     pub fn snapping(&self) -> Option<String> {
@@ -163,7 +170,7 @@ impl Urdf {
         }
         let gravity = self.gravity.unwrap_or(options.gravity);
         let (chain, mut told) = extract(self, &options.selection, gravity, options.snap)?;
-        told.remarks.splice(0..0, self.remarks.iter().cloned());
+        told.remarks.0.splice(0..0, self.remarks.0.iter().cloned());
         // a serial arm on a floating base keeps the frame of that
         let is_tree = !chain.is_serial() || chain.floating_base.is_some();
         if is_tree && options.convention == Convention::Standard {
@@ -191,7 +198,7 @@ impl Urdf {
         let frames: Vec<_> = links.into_iter().zip(chain.frames.iter().map(|frame| frame.name.clone())).collect();
         if options.frames {
             robot.frames = named_frames(&chain, &table);
-            told.remarks.extend(base_remark(&told.base, &frames, transform(table.start)));
+            told.remarks.0.extend(base_remark(&told.base, &frames, transform(table.start)).map(Remark::from));
         }
         if !options.more_tips.is_empty() {
             let tips = self.tips(options, &told.tip, &frames)?;
@@ -229,11 +236,14 @@ impl Urdf {
             Reader::new(&format!("{}, imported", self.source.file)).trees().couplings().loops().read(&text)?;
         let rounding = Difference::of_table(&exact, &checked.robot);
         let joints = chain.joints.iter().map(|joint| joint.name.clone());
-        let ignored = self.ignored(&told);
+        let mut all: Vec<Remark> = self.ignored(&told).into_iter().map(Remark::from).collect();
         let numbers = [self.suspicious_numbers(), self.impossible_parts(&told)].concat();
+        all.append(&mut told.remarks.0);
+        all.extend(numbers.into_iter().map(Remark::warning));
+        all.extend(remarks(&robot, &table).into_iter().map(Remark::from).chain(rotors(&robot)));
         let account = Account {
-            suspicious: [told.ignored_limits, numbers.clone()].concat(),
-            remarks: [ignored, told.remarks, numbers, remarks(&robot, &table)].concat(),
+            remarks: all,
+            is_mjcf: self.gravity.is_some(),
             lumped: joints.zip(told.lumped).filter(|(_, links)| links.len() > 1).collect(),
             base: told.base,
             tip: told.tip,
@@ -253,8 +263,8 @@ impl Urdf {
     fn tips(&self, options: &Options, first: &str, frames: &[(String, String)]) -> Result<Vec<String>, Report> {
         if !options.selection.whole {
             let message = "several tips are of a whole robot, and this is one arm";
-            let help = "import the whole robot, or name one tip";
-            return Err(self.source.error(&(0..0), message.to_owned(), help.to_owned()));
+            let help = "name one tip".to_owned();
+            return Err(self.source.error_with(&(0..0), message.to_owned(), help, &Remedy::Whole));
         }
         let mut tips: Vec<String> = Vec::new();
         for link in [first].into_iter().chain(options.more_tips.iter().map(String::as_str)) {
@@ -297,8 +307,7 @@ impl Urdf {
             if joint.is_physical() {
                 continue;
             }
-            let several =
-                if lumped.len() > 1 { format!(" (lumped of {})", crate::source::names(lumped)) } else { String::new() };
+            let several = if lumped.len() > 1 { format!(" (lumped of {})", names(lumped)) } else { String::new() };
             let name = format!("the link that the joint {} moves", quoted(&joint.name));
             return Err(self.unphysical(span, &name, &joint.row.link, &several));
         }
@@ -406,7 +415,7 @@ fn notes(told: &Extracted, change: Option<&Difference>) -> Option<String> {
     for (joint, value) in &told.held {
         notes.push(format!("- the joint {} is locked at {}", printable(joint), rne_model::exact_digits(*value)));
     }
-    notes.extend(told.remarks.iter().map(|remark| format!("- {remark}")));
+    notes.extend(told.remarks.0.iter().map(|remark| format!("- {remark}")));
     notes.extend(change.map(|change| format!("- {}", snapping(&told.snapped, change))));
     (!notes.is_empty()).then(|| notes.join("\n"))
 }
@@ -484,6 +493,15 @@ fn base_remark(link: &str, frames: &[(String, String)], start: Transform) -> Opt
         quoted(link),
         quoted(name)
     ))
+}
+
+/// A remark on the rotors, which belong to the arm only on request.
+fn rotors(robot: &Robot) -> Option<Remark> {
+    let has_rotor = |joint: &&Joint| joint.motor.is_some_and(|motor| motor.inertia != 0.0);
+    let joints: Vec<&str> = robot.joints.iter().filter(has_rotor).map(|joint| joint.name.as_str()).collect();
+    let (count, s) = (joints.len(), if joints.len() == 1 { " has" } else { "s have" });
+    let text = || format!("{count} joint{s} the inertia of a rotor (`armature` of MJCF): {}", names(&joints));
+    (count > 0).then(|| Remark::from(text()).remedy(Remedy::Rotors))
 }
 
 /// Remarks on a table.

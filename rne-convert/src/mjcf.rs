@@ -21,28 +21,53 @@ use rne_model::Report;
 use self::body::Bodies;
 use self::compiler::Compiler;
 use self::element::Element;
-use self::settings::Settings;
+use self::settings::{Classed, Settings};
+use crate::remark::Remark;
 use crate::source::{Source, names};
 use crate::urdf::Urdf;
 
-/// Parts of a model that a robot file cannot describe, in words, and the names of the elements that have them.
+/// Parts of a model that a robot file cannot describe, in words; whether MuJoCo's torques have them; and the names of
+/// the elements that have them.
 #[derive(Default)]
-struct LeftOut(BTreeMap<&'static str, Vec<String>>);
+struct LeftOut(BTreeMap<&'static str, (bool, Vec<String>)>);
 
 impl LeftOut {
     fn add(&mut self, what: &'static str, of: &str) {
-        self.0.entry(what).or_default().push(of.to_owned());
+        self.0.entry(what).or_default().1.push(of.to_owned());
+    }
+
+    /// Adds a part without which forces or inertias are others than MuJoCo's.
+    fn add_felt(&mut self, what: &'static str, of: &str) {
+        self.add(what, of);
+        self.0.entry(what).or_default().0 = true;
     }
 
     /// Whether an element is among those of a kind.
     fn has(&self, what: &str, of: &str) -> bool {
-        self.0.get(what).is_some_and(|elements| elements.iter().any(|element| element == of))
+        self.0.get(what).is_some_and(|(_, elements)| elements.iter().any(|element| element == of))
     }
 
     /// A remark for each thing.
-    fn remarks(self) -> impl Iterator<Item = String> {
-        self.0.into_iter().map(|(what, of)| format!("{what}: {}", names(of)))
+    fn remarks(self) -> impl Iterator<Item = Remark> {
+        self.0.into_iter().map(|(what, (is_felt, of))| {
+            let of = names(of);
+            if is_felt {
+                Remark::warning(format!("{what}, but MuJoCo's torques have them: {of}"))
+            } else {
+                format!("{what}: {of}").into()
+            }
+        })
     }
+}
+
+/// Whether one of the numbers of some attributes is not zero.
+fn is_there(element: Classed, attributes: &[&str]) -> Result<bool, Report> {
+    let mut is_there = false;
+    for attribute in attributes {
+        is_there |=
+            element.numbers(attribute, 1, 3)?.is_some_and(|numbers| numbers.iter().any(|number| *number != 0.0));
+    }
+    Ok(is_there)
 }
 
 /// Reads an MJCF file and the files that it includes, which are searched in the folder of the file.
@@ -56,14 +81,26 @@ pub(crate) fn read(mut source: Source) -> Result<Urdf, Report> {
     actuator::read(&settings, &mut left_out, &root, &mut urdf)?;
     equality::read(&settings, &mut left_out, &root, &mut urdf)?;
     urdf.split_spherical_joints(&source)?;
-    for tendon in root.below("tendon") {
-        left_out.add("tendons are left out", tendon.text("name").unwrap_or(&tendon.name));
+    for element in root.below("tendon") {
+        let (tendon, name) = (settings.classed(element, 0)?, element.text("name").unwrap_or(&element.name));
+        if is_there(tendon, &["armature", "stiffness", "damping", "frictionloss"])? {
+            left_out.add_felt("springs, friction and armature of tendons are left out", name);
+        } else {
+            left_out.add("tendons are left out", name);
+        }
+    }
+    for option in root.children("option").map(|option| settings.plain(option)) {
+        for attribute in ["density", "viscosity"] {
+            if is_there(option, &[attribute])? {
+                left_out.add_felt("forces of a fluid are left out", attribute);
+            }
+        }
     }
     for flex in root.below("deformable") {
         left_out.add("deformable bodies are left out", flex.text("name").unwrap_or(&flex.name));
     }
     urdf.gravity = Some(gravity(&settings, &root)?);
-    urdf.remarks.extend(left_out.remarks());
+    urdf.remarks.0.extend(left_out.remarks());
     urdf.name = name;
     urdf.source = source;
     Ok(urdf)

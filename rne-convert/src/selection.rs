@@ -6,7 +6,7 @@ use rne_model::{LARGEST_ANGLE, Remedy, Report, did_you_mean};
 
 use crate::scan::LARGEST;
 use crate::source::{names, quoted};
-use crate::urdf::{Joint, Urdf};
+use crate::urdf::{Joint, Kind, Urdf};
 
 /// Largest number of leaves that are listed where the tip must be named.
 const LISTED: usize = 60;
@@ -57,8 +57,9 @@ impl Selection {
         let may_float = self.whole && (base == urdf.root || urdf.floats == Some(base));
         if floats && !may_float {
             let message = "a floating base is the root link of a whole robot, or the link that floats in the file";
-            let help = "import the whole robot, and name no other base";
-            return Err(urdf.source.error(&urdf.links[base].span, message.to_owned(), help.to_owned()));
+            let help = if self.whole { Some("name no other base".to_owned()) } else { None };
+            let report = urdf.source.error(&urdf.links[base].span, message.to_owned(), help);
+            return Err(if self.whole { report } else { report.with_remedy(&Remedy::Whole) });
         }
         Ok(floats)
     }
@@ -100,7 +101,7 @@ pub(crate) fn link(urdf: &Urdf, name: &str, what: &str) -> Result<usize, Report>
 /// A joint that is to be locked.
 fn joint(urdf: &Urdf, name: &str) -> Result<usize, Report> {
     urdf.joints.iter().position(|joint| joint.name == name).ok_or_else(|| {
-        let movable = urdf.joints.iter().filter(|joint| joint.kind.has_one_freedom());
+        let movable = urdf.joints.iter().filter(|joint| joint.kind != Kind::Fixed);
         let movable: Vec<&str> = movable.map(|joint| joint.name.as_str()).collect();
         let message = format!("there is no joint {}, so it cannot be locked", quoted(name));
         let known = format!("the movable joints are {}", names(&movable));
@@ -184,8 +185,8 @@ pub(crate) fn tip(urdf: &Urdf, base: usize, selection: &Selection) -> Result<End
         let link = others.remove(likeliest.unwrap_or(others.len() - 1));
         Ok(End { link, others })
     };
-    if selection.whole && !moved.is_empty() {
-        return end(moved);
+    if selection.whole {
+        return end(if moved.is_empty() { leaves.iter().map(|(leaf, _)| *leaf).collect() } else { moved });
     }
     let last_joint = |leaf: &usize| last_movable(urdf, base, *leaf);
     if let Some(first) = moved.first()
@@ -269,10 +270,11 @@ pub(crate) fn locks(urdf: &Urdf, selection: &Selection) -> Result<HashMap<usize,
             }
             continue;
         }
-        if !joint.kind.has_one_freedom() {
+        if joint.kind == Kind::Fixed || !joint.kind.has_one_freedom() && *value != 0.0 {
             let message =
                 format!("the joint {} is {} and cannot be locked at a value", quoted(name), joint.kind.name());
-            return Err(urdf.source.error(&joint.span, message, None));
+            let help = "a joint with more than one freedom can be locked at 0".to_owned();
+            return Err(urdf.source.error(&joint.span, message, Some(help).filter(|_| joint.kind != Kind::Fixed)));
         }
         refuse_value(urdf, joint, *value)?;
         locks.insert(index, *value);
@@ -282,7 +284,7 @@ pub(crate) fn locks(urdf: &Urdf, selection: &Selection) -> Result<HashMap<usize,
 
 /// Refuses a value that is not a position of a joint.
 pub(crate) fn refuse_value(urdf: &Urdf, joint: &Joint, value: f64) -> Result<(), Report> {
-    let is_angle = joint.kind != crate::urdf::Kind::Prismatic;
+    let is_angle = joint.kind != Kind::Prismatic;
     let is_position = if is_angle { value.abs() < LARGEST_ANGLE } else { value.abs() <= LARGEST };
     if is_position {
         return Ok(());

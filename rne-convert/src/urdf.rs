@@ -8,6 +8,7 @@ use rne_model::{Cut, Inertia, Limits, Report};
 
 use crate::closed_loop::Loop;
 use crate::mjcf;
+use crate::remark::Remarks;
 use crate::scan::{Seen, root_name, scan};
 use crate::source::{Source, names, quoted};
 use crate::transmission::{self, Transmission};
@@ -35,7 +36,7 @@ pub struct Urdf {
     /// The acceleration of gravity in the axes of the root, m/s², where the file says it.
     pub(crate) gravity: Option<[f64; 3]>,
     /// Remarks on what the file has and a robot file has not, in sentences.
-    pub(crate) remarks: Vec<String>,
+    pub(crate) remarks: Remarks,
     /// Kinds of elements and attributes that are not known, in words.
     pub(crate) unknown: Vec<String>,
     /// The unknown elements beside links and joints.
@@ -241,7 +242,7 @@ impl Urdf {
             base: 0,
             floats: None,
             gravity: None,
-            remarks: Vec::new(),
+            remarks: Remarks::default(),
             unknown: Vec::new(),
             beside: BTreeSet::new(),
         }

@@ -97,7 +97,7 @@ fn what_looks_like_a_slip_is_refused() {
 fn what_is_not_known_is_noted() {
     let remarks = |text: &str| {
         let imported = Urdf::read("a.urdf", text).and_then(|urdf| urdf.import(&Options::default()));
-        imported.unwrap_or_else(|report| panic!("{report}")).account.remarks
+        imported.unwrap_or_else(|report| panic!("{report}")).account.sentences()
     };
     let axis = |text: String| text.replace("<limit ", "<axis xyz=\"0 0 1\"/><limit ");
     let known = axis(with(

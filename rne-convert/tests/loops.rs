@@ -54,7 +54,7 @@ fn dependent(robot: &Robot) -> Vec<&str> {
 }
 
 fn told(imported: &Imported) -> String {
-    imported.account.remarks.join("\n")
+    imported.account.sentences().join("\n")
 }
 
 #[test]

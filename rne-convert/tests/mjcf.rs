@@ -94,7 +94,7 @@ fn what_a_robot_file_has_is_kept() {
     assert_eq!((motor.viscous, motor.coulomb), (0.5, [0.3, -0.3]));
     let frames: Vec<&str> = account.frames.iter().map(|(_, name)| name.as_str()).collect();
     assert!(frames.contains(&"trunk_site") && frames.contains(&"sole"), "{frames:?}");
-    let told = account.remarks.join("\n");
+    let told = account.sentences().join("\n");
     assert!(told.contains("smaller one: `hip_x`"), "{told}");
     assert!((robot.gravity[0] - 1.0).abs() < 1e-15, "{:?}", robot.gravity);
 }
@@ -106,7 +106,7 @@ fn a_free_joint_makes_the_base_float() {
         let Imported { robot, account, .. } = import(name, &whole());
         let base = robot.floating_base.as_ref().unwrap_or_else(|| panic!("{name}: a floating base"));
         assert_eq!((&base.name, account.floats), (&account.base, Some(true)));
-        let told = account.remarks.join("\n");
+        let told = account.sentences().join("\n");
         let expected = format!("the link `{}` floats in the file, so the robot has a floating base", base.name);
         assert!(told.contains(&expected), "{told}");
         let arm = DynArm::from_robot(&robot).with_rotors();
@@ -150,15 +150,18 @@ fn a_base_floats_or_is_fixed_as_the_selection_says() {
         assert_eq!((trunk.name.as_str(), trunk.link.mass), ("trunk", 2.0), "without the ball");
         // z of the trunk points down in the file, but gravity is in axes of the world, in which the base turns
         assert_eq!((robot.base, robot.gravity), (rne_model::Transform::IDENTITY, [0.0, 0.0, -9.81]));
-        let told = account.remarks.join("\n");
+        let told = account.sentences().join("\n");
         assert!(told.contains("the body `ball` has a free joint, and rne fixes it"), "{told}");
-        assert!(told.contains("springs of free joints are left out: `trunk`"), "{told}");
+        assert!(
+            told.contains("springs of free joints are left out, but MuJoCo's torques have them: `trunk`"),
+            "{told}"
+        );
     }
     let Imported { robot, account, .. } = scene(Some(false), None).expect("a robot");
     assert!(robot.floating_base.is_none() && account.floats == Some(false));
     assert_eq!(account.base, "trunk");
     assert!((robot.base.xyz[2] - 3.0).abs() < 1e-15, "{:?}", robot.base);
-    let told = account.remarks.join("\n");
+    let told = account.sentences().join("\n");
     assert!(told.contains("the link `trunk` floats in the file, and rne fixes it where the file has it"), "{told}");
     // the world floats with all that no joint moves
     assert_eq!(scene(Some(true), Some("world")).expect("a robot").robot.floating_base.expect("a base").link.mass, 7.0);
@@ -180,12 +183,72 @@ fn a_base_floats_or_is_fixed_as_the_selection_says() {
 fn equalities_couple() {
     let selection = Selection { floating: Some(false), ..whole().selection };
     let Imported { robot, account, text, .. } = import("gripper", &Options { selection, ..whole() });
-    let told = account.remarks.join("\n");
+    let told = account.sentences().join("\n");
     assert!(told.contains("joints that an equality holds are fixed: `held`"), "{told}");
     assert!(told.contains("equalities that are not active are left out"), "{told}");
     // right - 0.02 = 0.01 - 0.5 (left - 0.01); wheel = 0.2 + 30 (right - 0.02)
     assert!(text.contains("{joint: right, follows: {left: -0.5}, offset: 0.035}"), "{text}");
     assert_eq!(robot.joints.iter().filter(|joint| joint.coupling.is_some()).count(), 2);
+}
+
+/// Each part that a robot file has not is told once; a warning, where MuJoCo's torques have it.
+#[test]
+fn what_is_left_out_is_told() {
+    let tendon = |attributes: &str| {
+        format!("<tendon><fixed name=\"t\" {attributes}><joint joint=\"j\" coef=\"1\"/></fixed></tendon><equality/>")
+    };
+    let of_class = format!("<default><tendon stiffness=\"3\"/></default>{}", tendon(""));
+    let springs = "springs, friction and armature of tendons are left out, but MuJoCo's torques have them: `t`";
+    let actuator = "<actuator><motor joint=\"j\" damping=\"1\"/></actuator>";
+    for (old, new, told, is_warning) in [
+        ("<equality/>", &tendon("") as &str, "tendons are left out: `t`", false),
+        ("<equality/>", &tendon("armature=\"0.5\""), springs, true),
+        ("<equality/>", &tendon("stiffness=\"0 1\""), springs, true),
+        ("<equality/>", &of_class, springs, true),
+        ("<equality/>", "<option density=\"1.2\"/>", "forces of a fluid are left out, but", true),
+        ("<equality/>", "<option viscosity=\"1e-5\" wind=\"1 0 0\"/>", "have them: `viscosity`", true),
+        ("<equality/>", "<option density=\"0\"/>", "", false),
+        ("<equality/>", actuator, "forces that damp actuators are left out", true),
+        ("<joint name=\"j\"/>", "<joint name=\"j\" damping=\"1 2\"/>", "of higher degree are left out", true),
+        ("<joint name=\"j\"/>", "<joint name=\"j\" stiffness=\"1\"/>", "springs of joints are left out", true),
+        ("<joint name=\"j\"/>", "<joint name=\"j\" armature=\"1\"/>", "1 joint has the inertia of a rotor", false),
+        ("<body name=\"a\">", "<body name=\"a\" gravcomp=\"1\">", "forces that compensate gravity", true),
+        (
+            "<equality/>",
+            "<equality><weld name=\"w\" body1=\"a\" active=\"false\"/></equality>",
+            "equalities that are not active are left out: `w`",
+            false,
+        ),
+    ] {
+        let urdf = Urdf::read("m.xml", &with(old, new)).unwrap_or_else(|report| panic!("{report}"));
+        let account = urdf.import(&whole()).unwrap_or_else(|report| panic!("{report}")).account;
+        let serial = |remark: &&rne_convert::Remark| !remark.text.contains("is a serial arm");
+        let found: Vec<_> = account.remarks.iter().filter(serial).collect();
+        if told.is_empty() {
+            assert!(found.is_empty(), "{new}: {found:?}");
+            continue;
+        }
+        let [remark] = found[..] else { panic!("{new}: {found:?}") };
+        assert!(remark.text.contains(told) && remark.is_warning == is_warning, "{new}: {remark:?}");
+    }
+}
+
+/// A ball is named, with what to do, and can be held at zero.
+#[test]
+fn a_ball_alone_is_named() {
+    let ball = with("<joint name=\"j\"/>", "<joint name=\"j\" type=\"ball\"/>");
+    let said = refused(&ball);
+    assert!(said.contains("which no row of a table can describe: `j`"), "{said}");
+    assert!(said.contains("a ball as three hinges about x, y and z") && said.contains("bad.xml:5:"), "{said}");
+    let two = "<joint name=\"j\"/><body name=\"b\"><joint name=\"k\" type=\"ball\"/></body>";
+    let text = with("<joint name=\"j\"/>", two);
+    let locked = |value: f64| {
+        let selection = Selection { lock: vec![("k".to_owned(), value)], ..whole().selection };
+        Urdf::read("two.xml", &text).and_then(|urdf| urdf.import(&Options { selection, ..whole() }))
+    };
+    assert_eq!(locked(0.0).expect("an arm").robot.dof(), 1);
+    let said = locked(0.5).expect_err("a ball").to_string();
+    assert!(said.contains("the joint `k` is spherical and cannot be locked") && said.contains("locked at 0"), "{said}");
 }
 
 /// An arm of a tree is chosen as in a URDF.
@@ -239,7 +302,7 @@ fn every_mistake_has_its_message_and_its_place() {
         ("diaginertia", "quat=\"1 0 0 0\" euler=\"0 0 0\" diaginertia", 4, "several orientations"),
         ("<joint name=\"j\"/>", "<joint name=\"j\" axis=\"0 0 0\"/>", 5, "has no direction"),
         ("<joint name=\"j\"/>", "<joint name=\"j\" type=\"screw\"/>", 5, "it must be hinge, slide, ball or free"),
-        ("<joint name=\"j\"/>", "<joint name=\"j\" type=\"ball\"/>", 1, "there is no movable joint"),
+        ("<joint name=\"j\"/>", "<joint name=\"j\" type=\"ball\"/>", 5, "more than one freedom"),
         ("<joint name=\"j\"/>", "<joint/><body><joint type=\"ball\"/></body>", 5, "more than one freedom"),
         ("<joint name=\"j\"/>", "<joint name=\"j\"/><joint name=\"j\"/>", 5, "two elements `joint` with the name `j`"),
         ("<joint name=\"j\"/>", "<joint name=\"j\" class=\"x\"/>", 5, "there is no class `x`"),
@@ -277,7 +340,7 @@ fn every_mistake_has_its_message_and_its_place() {
         ("<equality/>", "<equality><connect body1=\"a\" ancor=\"0 0 0\"/></equality>", 7, "did you mean `anchor`"),
         ("<equality/>", "<equality><weld body1=\"a\"/></equality>", 7, "leave no joint that moves"),
         ("<equality/>", "<equality><weld body1=\"a\" relpose=\"0 0 0 1\"/></equality>", 7, "it must be 7 numbers"),
-        ("<equality/>", "<equality><tendon tendon1=\"a\"/></equality>", 7, "neither `joint`, `connect` nor `weld`"),
+        ("<equality/>", "<equality><tendon tendon1=\"a\"/></equality>", 7, "neither `joint`, `connect` nor"),
         ("<equality/>", "<equality><joint joint1=\"k\"/></equality>", 7, "the joint `k`, which does not exist"),
         ("<equality/>", "<equality><joint/></equality>", 7, "lacks the attribute `joint1`"),
         (

@@ -252,10 +252,12 @@ impl CompiledArm {
     /// A function, compiled now if it has not been before.
     ///
     /// # Errors
-    /// When it cannot be compiled for this robot: its numbers overflow, say.
+    /// When it cannot be compiled for this robot: its numbers overflow, say; when it needs a floating base, and the
+    /// file has none.
     pub fn function(&self, function: Function) -> Result<&CompiledFunction, EvaluationError> {
         let Compiled { robot, form, file, plans, functions, .. } = &*self.0;
         let compiled = functions[function as usize].get_or_init(|| {
+            function.check_base(robot)?;
             let mut compiler = Compiler::new(robot).for_target(Target::Throughput);
             // what has no plan does not wait until one is found
             if *form == Form::Reduced && (file.is_some() || Algorithm::is_planned(function)) {

@@ -25,6 +25,17 @@ pub enum Remedy {
     LockOthers,
     /// A body whose inertia no physical body has can be kept.
     KeepUnphysical,
+    /// The whole robot of a URDF can be imported, and not one arm.
+    Whole,
+    /// So it can, or a joint can be locked by its name.
+    WholeOrLock {
+        /// The name of the joint.
+        joint: String,
+    },
+    /// The base of a whole robot can float.
+    Float,
+    /// The inertia of rotors can belong to the arm.
+    Rotors,
 }
 
 /// How grave a [`Diagnostic`] is.

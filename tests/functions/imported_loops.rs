@@ -222,8 +222,9 @@ fn spherical_and_universal_joints_give_the_torques_of_virtual_work() {
     let Options { selection, .. } = options([0.0, 0.0, -9.81], &left);
     let selection = Selection { whole: true, tip: Some("foot".to_owned()), ..selection };
     let imported = import(file, &text, &Options { selection, convention: Convention::Modified, ..Options::default() });
-    let told = imported.account.remarks.iter().filter(|remark| remark.contains("no joint that moves is in it")).count();
-    assert_eq!(told, 3, "{:?}", imported.account.remarks);
+    let told =
+        imported.account.sentences().iter().filter(|remark| remark.contains("no joint that moves is in it")).count();
+    assert_eq!(told, 3, "{:?}", imported.account.sentences());
     let other_names = [
         ("heel_rod_x", "spherical_free_knee_x"),
         ("heel_rod_y", "spherical_free_knee_y"),

@@ -197,6 +197,7 @@ impl Arm {
         parameters: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
+<<<<<<< HEAD
         self.moves_its_base(function)?;
         given.extend(self.given_parameters(parameters)?);
         evaluate(py, &self.at(frame)?, function, &given, out)
@@ -220,6 +221,12 @@ impl Arm {
         Ok(())
     }
 
+=======
+        given.extend(self.given_parameters(py, parameters)?);
+        evaluate(py, &self.arm, function, &given, out)
+    }
+
+>>>>>>> 74113a12 (wip)
     /// The argument of the run-time parameters, if the arm has any.
     pub(crate) fn given_parameters<'py>(&self, parameters: Option<&Bound<'py, PyAny>>) -> PyResult<Option<Given<'py>>> {
         let run_time = &self.robot().run_time;
@@ -243,6 +250,7 @@ impl Arm {
     /// A program of a function, in a form.
     pub(crate) fn program(&self, function: &str, form: Option<&str>) -> PyResult<rne_codegen::Program> {
         let function: Function = name(function)?;
+        function.check_base(self.robot()).map_err(|error| of_evaluation(&error))?;
         let form = form.map_or(Ok(self.arm.form()), name)?;
         let compiler = Compiler::new(self.robot());
         let compiler = match (&self.origin.plan, self.robot().run_time.is_empty()) {
@@ -286,6 +294,12 @@ impl Arm {
     #[getter]
     fn dof(&self) -> usize {
         self.arm.dof()
+    }
+
+    /// Whether nothing holds the base. Functions of a floating base need one.
+    #[getter]
+    fn floating(&self) -> bool {
+        self.robot().floating_base.is_some()
     }
 
     /// The names of the joints, base to tip. Joints that follow others are not among them: see `followers`.
@@ -481,6 +495,7 @@ impl Arm {
 
     fn __repr__(&self) -> String {
         let robot = self.robot();
-        format!("<rne.Arm {}: {} joints, {}, {}>", robot.name, robot.dof(), self.rows(), self.arm.form())
+        let base = if self.floating() { ", floating base" } else { "" };
+        format!("<rne.Arm {}: {} joints{base}, {}, {}>", robot.name, robot.dof(), self.rows(), self.arm.form())
     }
 }

@@ -41,12 +41,18 @@ pub(crate) fn of_report(py: Python<'_>, report: &Report) -> PyErr {
 pub(crate) fn in_keywords(remedy: &Remedy) -> Option<String> {
     Some(match remedy {
         Remedy::ImportUrdf { .. } => "rne.load(path) imports a URDF".to_owned(),
-        Remedy::NameTip => "name the tip with tip=\"LINK\"".to_owned(),
+        Remedy::NameTip => "name the tip with tip=\"LINK\"; whole=True takes all of them, as a tree".to_owned(),
         Remedy::LockJoint { joint } => format!("lock={{{joint:?}: VALUE}} locks it at this value"),
         Remedy::LockOthers => {
             "lock={\"JOINT\": VALUE} locks one joint at this value, lock_others=True locks all others at 0".to_owned()
         }
         Remedy::KeepUnphysical => "keep_unphysical=True keeps the inertia as it is".to_owned(),
+        Remedy::Whole => "whole=True imports the whole robot".to_owned(),
+        Remedy::WholeOrLock { joint } => {
+            format!("whole=True imports the whole robot, lock={{{joint:?}: VALUE}} locks the joint at this value")
+        }
+        Remedy::Float => "whole=True, floating=True makes the base float".to_owned(),
+        Remedy::Rotors => "rotors=True counts it, rotors=False leaves it out".to_owned(),
     })
 }
 

@@ -56,8 +56,9 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 ///     Parameters of a robot file with other values than it has.
 /// form : {"reduced", "seven_steps"}
 ///     Fewest operations, or every intermediate of the lecture in its bits.
-/// rotors : bool
-///     Whether the rotors of the motors belong to the arm.
+/// rotors : bool, optional
+///     Whether the rotors of the motors belong to the arm. The default is True for an MJCF file, whose `armature` MuJoCo
+///     counts, too, and False for others.
 ///
 /// Raises
 /// ------
@@ -70,11 +71,12 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 /// -----
 /// RobotFileWarning
 ///     For numbers that are allowed but probably wrong, such as an arm without mass or with placeholder inertias.
-///     For a URDF, also for limits that the import ignores, and angles of more than a turn in an `rpy`.
+///     For a URDF, also for limits that the import ignores, and angles of more than a turn in an `rpy`. For an MJCF file,
+///     for what MuJoCo's torques have and the arm has not, such as springs. `arm.notes` has these and all other remarks.
 #[pyfunction]
 #[pyo3(signature = (source, *, tip=None, base=None, whole=false, floating=None, lock=None, lock_others=false,
     convention=None, snap=true, keep_unphysical=false, run_time=Vec::new(), settings=None, form="reduced",
-    rotors=false))]
+    rotors=None))]
 #[allow(clippy::fn_params_excessive_bools)] // keywords of Python
 pub(crate) fn load(
     py: Python<'_>,
@@ -91,7 +93,7 @@ pub(crate) fn load(
     run_time: Vec<String>,
     settings: Option<BTreeMap<String, f64>>,
     form: &str,
-    rotors: bool,
+    rotors: Option<bool>,
 ) -> PyResult<Arm> {
     let form = form.parse().map_err(|error: rne_codegen::UnknownName| PyValueError::new_err(error.to_string()))?;
     let convention = match convention {
@@ -102,7 +104,13 @@ pub(crate) fn load(
             return Err(PyValueError::new_err(format!("`{other}` is not a convention; write standard or modified")));
         }
     };
-    let origin = Origin { form, rotors, run_time, settings: settings.unwrap_or_default(), ..Origin::default() };
+    let origin = Origin {
+        form,
+        rotors: rotors.unwrap_or(false),
+        run_time,
+        settings: settings.unwrap_or_default(),
+        ..Origin::default()
+    };
     let given = Given::of(source)?;
     let description = match &given {
         Given::Text(text) => Description::of_text(text.clone()),
@@ -141,12 +149,15 @@ pub(crate) fn load(
         (false, true) => "without `floating=False`, the link that floats is the floating base".to_owned(),
         (false, false) => "with `whole=True`, the link that floats is the floating base of the whole robot".to_owned(),
     });
-    let notes = snapping.into_iter().chain(floats).chain(imported.account.remarks.iter().cloned()).collect();
-    let arm = Arm::of(py, Origin { robot: imported.text.clone(), held, notes, ..origin })?;
+    let said = imported.account.remarks.iter().map(|remark| (remark.is_warning, remark.worded(in_keywords)));
+    let (warnings, remarks): (Vec<_>, Vec<_>) = said.map(|(warns, text)| (warns.then(|| text.clone()), text)).unzip();
+    let notes = snapping.into_iter().chain(floats).chain(remarks).collect();
+    let rotors = rotors.unwrap_or(imported.account.is_mjcf);
+    let arm = Arm::of(py, Origin { robot: imported.text.clone(), held, notes, rotors, ..origin })?;
     // nobody has written the lines of this robot file, and `snap` has decided on its angles
     let is_rounded = |lint: &Diagnostic| lint.label.as_deref() == Some("rounded?");
     warn_of(py, &imported.account.lints, |lint| (!is_rounded(lint)).then(|| name.clone()))?;
-    warn(py, &name, imported.account.suspicious.iter().map(|text| format!("{name}: {text}")).collect())?;
+    warn(py, &name, warnings.into_iter().flatten().map(|text| format!("{name}: {text}")).collect())?;
     Ok(arm)
 }
 

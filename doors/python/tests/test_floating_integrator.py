@@ -199,26 +199,36 @@ def test_mistakes_are_told():
         weightless.floating_runge_kutta_step_derivatives(*given, 0.01)
 
 
-def test_a_base_without_mass_is_named():
-    arm, joints = rne.robots.planar2, ([0, 0], [0, 0], [0, 0])
-    for function in (
-        arm.floating_euler_step,
-        arm.floating_euler_step_derivatives,
-        arm.floating_runge_kutta_step,
-        arm.floating_runge_kutta_step_derivatives,
-    ):
-        with pytest.raises(ValueError, match="the base of planar2 has no mass.* `floating_base: {name: body"):
-            function(*joints, np.eye(4), [0] * 6, 0.01)
-    with pytest.raises(ValueError, match="the base of planar2 has no mass"):
-        arm.floating_forward_dynamics(*joints, [0] * 3)
-    # what needs no acceleration of the base is there without its mass
-    assert np.isfinite(arm.floating_mass_matrix([0, 0])).all()
-    # two arms hold each other: neither can turn against the base alone
-    arm = "type: revolute, dh: {theta: 0, d: 0, a: 1, alpha: 0}, link: {mass: 1, com: [-0.5, 0.1, 0], inertia: {xx: 1, yy: 1, zz: 1}}"
-    first, second = f"{{name: left, parent: base, {arm}}}", f"{{name: right, parent: base, at: {{xyz: [0, 1, 0]}}, {arm}}}"
-    two = rne.load(f"{{format: 2, name: two, source: own, convention: standard, gravity: [0, 0, 0], tool: {{on: left}}, joints: [{first}, {second}]}}")
-    still = [0.1] * two.dof
-    assert np.isfinite(np.hstack(two.floating_forward_dynamics(still, still, still, [0] * 3))).all()
+def test_functions_of_a_floating_base_need_one():
+    """At every door of Python; a file that holds the base does not say its mass."""
+    arm, floats = rne.robots.planar2, rne.load(SATELLITE)
+    assert (arm.floating, floats.floating) == (False, True)
+    assert "floating base" in repr(floats) and "floating base" not in repr(arm)
+    words = "the file of planar2 has no `floating_base`.*floating=True"
+    joints, base = ([0, 0], [0, 0], [0, 0]), (np.eye(4), [0] * 6, 0.01)
+    for name in [name for name in dir(arm) if name.startswith(("floating_", "centroidal_", "tip_jacobians"))]:
+        arguments = {
+            "floating_inertial_parameters": None,
+            "floating_euler_step": (*joints, *base),
+            "floating_euler_step_derivatives": (*joints, *base),
+            "floating_runge_kutta_step": (*joints, *base),
+            "floating_runge_kutta_step_derivatives": (*joints, *base),
+            "floating_forward_dynamics": (*joints, [0] * 3),
+            "floating_bias": (*joints[:2], [0] * 3),
+            "centroidal_bias": (*joints[:2], [0] * 3),
+            "floating_regressor": joints,
+            "floating_inverse_dynamics_derivatives": joints,
+            "floating_kinetic_energy": (*joints[:2], [0] * 6),
+            "centroidal_momentum": (*joints[:2], [0] * 6),
+            "floating_potential_energy": (joints[0], np.eye(4)),
+        }.get(name, joints[:1])
+        if arguments is not None:
+            with pytest.raises(ValueError, match=words):
+                getattr(arm, name)(*arguments)
+    with pytest.raises(ValueError, match=words):
+        arm.inverse_dynamics_of_floating_base(*joints)
+    with pytest.raises(ValueError, match=words):
+        arm.code("floating_mass_matrix")
 
 
 def test_a_matrix_that_is_no_pose_is_refused():

@@ -35,7 +35,6 @@ SHAPES = {
     "centre_of_mass_jacobian": ("q", lambda n: (3, n)),
     "regressor": ("q qd qdd", lambda n: (n, 10 * n)),
     "joint_wrenches": ("q qd qdd", lambda n: (n, 6)),
-    "floating_regressor": ("q qd qdd", lambda n: (6 + n, 10 * (n + 1))),
     "actuator_torques": ("qd qdd", lambda n: (n,)),
 }
 

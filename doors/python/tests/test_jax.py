@@ -125,7 +125,7 @@ def test_every_function_gives_the_numbers_of_the_arm(frame):
 
 
 def test_functions_of_a_floating_base_and_of_trees_give_the_numbers_of_the_arm():
-    arm = rne.load(Path(__file__).parents[3] / "robots/trees/hyq.yaml")
+    arm = rne.load(Path(__file__).parents[3] / "docs/standing_hyq.yaml")
     functions, random = arm.jax(), np.random.default_rng(4)
     q, qd, qdd = states(arm, 4)
     omega, wrenches = random.normal(size=(4, 3)), random.normal(size=(4, len(arm.tips), 6))

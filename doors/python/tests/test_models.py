@@ -1,5 +1,6 @@
 """Arms of models in memory: torques of MuJoCo and Pinocchio."""
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -37,12 +38,12 @@ def test_mujoco(name):
     assert arm.joints == [model.joint(i).name for i in range(model.njnt)]
     q, qd, qdd = states(arm)
     tau = mujoco_torques(mujoco, model, q, qd, qdd)
-    close(arm.inverse_dynamics(q, qd, qdd), tau)
+    close(rne.from_mujoco(model, rotors=False).inverse_dynamics(q, qd, qdd), tau)
     armature = model.dof_armature.copy()
     for k in range(model.nu):
         armature[model.jnt_dofadr[model.actuator_trnid[k, 0]]] += (
             model.actuator_gear[k, 0] ** 2 * model.actuator_armature[k])
-    close(rne.from_mujoco(model, rotors=True).inverse_dynamics(q, qd, qdd), tau + armature * qdd)
+    close(arm.inverse_dynamics(q, qd, qdd), tau + armature * qdd)
 
 
 def test_mujoco_is_refused():
@@ -51,6 +52,82 @@ def test_mujoco_is_refused():
         "</mujoco>", "<equality><weld body1='a' body2='d'/></equality></mujoco>")
     with pytest.raises(rne.RobotFileError, match="leave no joint that moves"):
         rne.from_mujoco(mujoco.MjModel.from_xml_string(text))
+    # the element has its name, and no line of a text that nobody has written is shown
+    text = PENDULUM.format(joint="", body="", more='<tendon><fixed name="t"><joint joint="j" coef="1"/></fixed></tendon>'
+                           '<equality><tendon name="c" tendon1="t"/></equality>')
+    with pytest.raises(rne.RobotFileError, match="the equality `c` is of the kind `tendon`") as refusal:
+        rne.from_mujoco(mujoco.MjModel.from_xml_string(text))
+    assert "-->" not in str(refusal.value) and "^" not in str(refusal.value) and "<" not in str(refusal.value)
+
+
+#: A pendulum on a heavy foot, with attributes of the joint and the body, and sections.
+PENDULUM = """<mujoco model="pendulum"><worldbody><body name="foot"><inertial pos="0 0 0" mass="3" diaginertia="1 1 1"/>
+<body name="a" {body}><joint name="j" axis="0 1 0" {joint}/><inertial pos="0 0.1 1" mass="1" diaginertia="1 1 1"/>
+<body name="b"><joint name="k" axis="1 0 0"/><inertial pos="0 0 1" mass="1" diaginertia="1 1 1"/></body>
+</body></body></worldbody>{more}</mujoco>"""
+OF_TENDON = '<tendon><fixed name="t" {}><joint joint="j" coef="1"/><joint joint="k" coef="-1"/></fixed></tendon>'
+ON_MOCAP = PENDULUM.replace("<worldbody>", '<worldbody><body name="hand" mocap="true"/>')
+
+
+@pytest.mark.parametrize("joint, body, more, part, differs", [
+    ("", "", "", "its mass of 3 kg is left out", False),
+    ('armature="2"', "", "", "the inertia of a rotor", False),
+    ("", "", OF_TENDON.format(""), "tendons are left out: `t`", False),
+    ("", "", OF_TENDON.format('armature="0.5"'), "armature of tendons are left out", True),
+    ("", "", OF_TENDON.format('stiffness="3"'), "armature of tendons are left out", True),
+    ("", "", OF_TENDON.format('damping="3"'), "armature of tendons are left out", True),
+    ("", "", '<option density="1000" viscosity="0.1"/>', "forces of a fluid are left out", True),
+    ('stiffness="3"', "", "", "springs of joints are left out", True),
+    ('damping="0 2"', "", "", "of higher degree are left out", True),
+    ("", 'gravcomp="0.5"', "", "forces that compensate gravity", True),
+    ("", "", '<actuator><motor name="m" joint="j" damping="2"/></actuator>', "forces that damp actuators", True),
+    ("", "", '<equality><joint name="e" joint1="j" joint2="k" active="false"/></equality>', "not active", False),
+    ("", "", '<equality><weld name="w" body1="hand" body2="b"/></equality>', "a motion capture moves are left out", False),
+])
+def test_remarks_and_torques_of_mujoco(joint, body, more, part, differs):
+    """A file and its model have the same remarks. Torques are those of `mj_inverse`, or a warning says why not."""
+    mujoco = pytest.importorskip("mujoco")
+    text = (ON_MOCAP if "hand" in more else PENDULUM).format(joint=joint, body=body, more=more)
+    model = mujoco.MjModel.from_xml_string(text)
+    told = []
+    for load in (lambda: rne.load(text, whole=True, snap=False), lambda: rne.from_mujoco(model)):
+        with warnings.catch_warnings(record=True) as warned:
+            warnings.simplefilter("always")
+            arm = load()
+        warned = [str(warning.message) for warning in warned if "left out" in str(warning.message)]
+        assert any(part in warning for warning in warned) == differs, (warned, arm.notes)
+        told.append((sorted(arm.notes), sorted(warned)))
+        assert any(part in note for note in arm.notes), arm.notes
+        q, qd, qdd = states(arm)
+        data = mujoco.MjData(model)
+        data.qpos[:], data.qvel[:], data.qacc[:] = q, qd, qdd
+        model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
+        mujoco.mj_inverse(model, data)
+        difference = np.abs(arm.inverse_dynamics(q, qd, qdd) - data.qfrc_inverse).max()
+        assert (difference > 1e-6) == differs, difference
+        columns = np.zeros((model.nv, model.nv))
+        for column, unit in zip(columns, np.eye(model.nv)):
+            mujoco.mj_mulM(model, data, column, unit)
+        if "tendon" not in more:
+            close(arm.mass_matrix(q), columns)
+    assert told[0] == told[1]
+
+
+def test_loops_of_mujoco():
+    """Loops of a model are those of its file."""
+    mujoco = pytest.importorskip("mujoco")
+    text = """<mujoco><worldbody>
+    <body name="a"><joint name="p" axis="0 1 0"/><inertial pos="0 0 .5" mass="1" diaginertia="1 1 1"/>
+    <body name="c" pos="0 0 1"><joint name="r" axis="0 1 0"/><inertial pos=".5 0 0" mass="1" diaginertia="1 1 1"/></body>
+    </body>
+    <body name="b" pos="1 0 0"><joint name="s" axis="0 1 0"/><inertial pos="0 0 .5" mass="1" diaginertia="1 1 1"/></body>
+    </worldbody><actuator><motor joint="p"/></actuator>
+    <equality><connect name="pin" body1="c" body2="b" anchor="1 0 0"/></equality></mujoco>"""
+    file, model = rne.load(text, whole=True, snap=False), rne.from_mujoco(mujoco.MjModel.from_xml_string(text))
+    assert (file.joints, file.passive_joints) == (model.joints, model.passive_joints) and model.passive_joints
+    q, passive = model.closures[0]
+    state = q, passive, [0.3], [0.5]
+    close(file.inverse_dynamics_of_loops(*state), model.inverse_dynamics_of_loops(*state))
 
 
 def of_base(arm, state, base):
@@ -151,7 +228,7 @@ def test_pinocchio(mimic):
     arm = rne.from_pinocchio(model, rotors=True)
     close(arm.inverse_dynamics(q, qd, qdd), tau + 0.25 * qdd)
     model.armature = np.arange(1.0, model.nv + 1)
-    arm = rne.from_pinocchio(model, rotors=True)
+    arm = rne.from_pinocchio(model)
     close(arm.inverse_dynamics(q, qd, qdd), pinocchio_torques(pin, model, q, qd, qdd))
 
 

@@ -113,15 +113,20 @@ def test_a_whole_urdf_has_the_torques_of_its_arms():
 def test_the_root_of_a_whole_urdf_may_float():
     fixed, floating = rne.load(urdf(), whole=True, tip="hand"), rne.load(urdf(), whole=True, floating=True, tip="hand")
     assert "floating_base" in floating.yaml and "floating_base" not in fixed.yaml
+    assert (floating.floating, fixed.floating) == (True, False)
+    told = "the base stands still: its mass of 1 kg is left out; whole=True, floating=True makes the base float"
+    assert told in fixed.notes and told not in floating.notes
     still = np.zeros(5)
     zero = {name: np.zeros(3) for name in ["base_omega", "base_omega_dot", "base_acceleration"]}
-    [wrench, tau], [bare, _] = [
-        arm.inverse_dynamics_of_floating_base(still, still, still, base_gravity=[0, 0, -9.81], **zero)
-        for arm in (floating, fixed)
-    ]
-    # the base weighs 1 kg
-    assert np.isclose(wrench[2] - bare[2], 9.81) and np.allclose(tau, fixed.gravity_torques(still))
-    with pytest.raises(rne.RobotFileError, match="whole robot"):
+    with pytest.raises(ValueError, match="has no `floating_base`.*floating=True"):
+        fixed.inverse_dynamics_of_floating_base(still, still, still, base_gravity=[0, 0, -9.81], **zero)
+    wrench, tau = floating.inverse_dynamics_of_floating_base(still, still, still, base_gravity=[0, 0, -9.81], **zero)
+    # the base weighs 1 kg, each other link what its joint carries
+    assert np.isclose(wrench[2], 9.81 * floating.floating_mass_matrix(still)[0, 0])
+    assert np.allclose(tau, fixed.gravity_torques(still))
+    with pytest.raises(rne.RobotFileError, match="whole=True"):
+        rne.load(urdf())
+    with pytest.raises(rne.RobotFileError, match="whole=True imports the whole robot"):
         rne.load(urdf(), floating=True, tip="hand", lock_others=True)
 
 

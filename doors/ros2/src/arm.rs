@@ -22,6 +22,7 @@ pub fn open(path: &Path, selection: Selection) -> Result<CompiledArm, String> {
         Description::Urdf(bytes) => {
             let name = path.display().to_string();
             let imported = rne_convert::import_arm(&name, bytes, selection).map_err(|report| report.to_string())?;
+            imported.account.remarks.iter().for_each(|remark| eprintln!("{name}: {remark}"));
             CompiledArm::from_yaml(&imported.text)
         }
         _ => CompiledArm::from_file(path),

@@ -338,7 +338,9 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
         checked.identifiers.map_err(|report| Failure::from(&report))?;
     }
     let compiled = Compiler::new(&arguments.file, &robot);
-    let programs = arguments.programs().into_iter().map(|function| compiled.compile(function, arguments.form));
+    let functions = arguments.programs();
+    functions.iter().try_for_each(|function| function.check_base(&robot)).map_err(Failure::usage)?;
+    let programs = functions.into_iter().map(|function| compiled.compile(function, arguments.form));
     let programs: Vec<Program> = programs.collect::<Result<_, _>>()?;
     let programs = emit::in_order(arguments.order, arguments.form, programs)?;
     let subjects = arguments.subjects(&robot, &programs)?;

@@ -9,7 +9,7 @@ use rne_model::{Checked, Robot, golden_of, misnamed_golden_of, plan_of, robot_of
 
 use crate::files::plan_file;
 use crate::files::plan_file::Compiler;
-use crate::files::robot_file::{self, Shape};
+use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::{Failure, Outcome, rendered};
 use crate::palette::{GOOD, QUIET, WARNING};
 use crate::render::heading::about;
@@ -35,9 +35,10 @@ operations. The note gives the reason.
 The exit status is 1 if a file has errors, or if an arm violates a law of
 mechanics by more than rounding. Warnings and notes do not change the status 0,
 except with --deny-warnings, which makes every warning count as an error.
-docs/robot-file.md explains every key of a robot file.")]
+docs/robot-file.md explains every key of a robot file. Of a URDF or an MJCF file
+that does not say which arm is meant, rne checks the whole robot.")]
 pub(crate) struct Arguments {
-    /// Robot files, names from `rne list`, or plan files of `rne search` (NAME.plan.yaml: choices that save operations
+    /// Robot files, URDFs, names from `rne list`, or plan files of `rne search` (NAME.plan.yaml: choices that save operations
     /// in the code); - is standard input
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
@@ -107,7 +108,7 @@ struct Good {
 fn robot(path: &Path, arguments: &Arguments) -> Result<Good, Failure> {
     // the laws are those of open trees
     let shape = if arguments.physics { Shape::Coupled } else { Shape::Closed };
-    let Checked { robot, lints, .. } = robot_file::read(path, shape)?;
+    let Checked { robot, lints, .. } = robot_file::read_with(path, &[], Frames::DroppedOfAll, shape)?;
     if !arguments.files.contains(&plan_of(path))
         && let Some(read) = plan_file::read(path, &robot)?
     {

@@ -478,6 +478,7 @@ fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failur
         can_be_rolled_out(arguments, robot)?;
     }
     let functions = functions(arguments, robot);
+    functions.iter().try_for_each(|function| function.check_base(robot)).map_err(Failure::usage)?;
     let (of_frames, of_arm): (Vec<_>, Vec<_>) = functions.iter().partition(|function| function.of_frame().is_some());
     if !arguments.frames.is_empty() && of_frames.is_empty() {
         return Err(not_of_frames("none of the functions that are written is one of them"));

@@ -276,8 +276,10 @@ impl Arguments {
         self.arm.robot_at(&self.at)
     }
 
-    /// Whether a robot has the function: with closed loops those of loops, and no others.
+    /// Whether a robot has the function: with closed loops those of loops, and no others; with a floating base those of
+    /// floating bases.
     fn has_function(function: Function, robot: &Robot) -> Result<(), Failure> {
+        function.check_base(robot).map_err(Failure::usage)?;
         match robot.closed.loops.first() {
             Some(closed) if !function.is_of_closed_loops() => {
                 Err(Failure::usage(CompileError::HasClosedLoops { function, name: closed.name.clone() }))

@@ -10,7 +10,7 @@ use rne_model::Convention;
 use crate::files::file_name::Format;
 use crate::files::input_file;
 use crate::files::output_file::Output;
-use crate::files::robot_file::not_opened;
+use crate::files::robot_file::{not_opened, notes};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{QUIET, TITLE, TYPED};
 use crate::render::heading::rounding;
@@ -128,7 +128,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     };
     let Imported { robot, text, account, .. } = urdf.import(&options).map_err(|report| Failure::from(&report))?;
     let joints = if robot.dof() == 1 { "1 joint".to_owned() } else { format!("{} joints", robot.dof()) };
-    let remark = format!("{TITLE}{}{TITLE:#}: {joints}\n{}", robot.name, told(&account, arguments));
+    let base = if robot.floating_base.is_some() { "floating" } else { "fixed" };
+    let remark = format!("{TITLE}{}{TITLE:#}: {joints}, {base} base\n{}", robot.name, told(&account, arguments));
     arguments.output.deliver(Format::RobotFile, text, remark, &arguments.file)
 }
 
@@ -209,9 +210,7 @@ fn told(account: &Account, arguments: &Arguments) -> String {
         }
         text += &changed(change);
     }
-    for remark in &account.remarks {
-        let _ = writeln!(text, "{TITLE}note{TITLE:#}: {remark}");
-    }
+    text += &notes(&account.remarks);
     text.extend(other_base(account, arguments).map(|option| format!("{TITLE}note{TITLE:#}: {option}\n")));
     let _ = writeln!(text, "{QUIET}{}{QUIET:#}", rounding(&account.rounding));
     let lints = account.lints.warnings().count();

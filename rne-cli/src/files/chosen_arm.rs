@@ -144,7 +144,11 @@ impl Carried {
             None => robot.tip(),
         };
         if frame.on.is_none() {
-            return Err(Failure::usage("--payload-on names a frame on the base, where a payload has no effect"));
+            return Err(Failure::usage(if robot.floating_base.is_some() {
+                "--payload-on names a frame on the floating base; write a payload there into the list `bodies` of the file"
+            } else {
+                "--payload-on names a frame on the base, where a payload has no effect"
+            }));
         }
         Ok(rne_convert::carrying_at(&robot, &frame, mass, com, inertia))
     }

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use rne_convert::{Account, Description, OpenError, Options};
-use rne_model::{Checked, Reader, Report, Robot};
+use rne_convert::{Account, Description, OpenError, Options, Remark, Selection};
+use rne_model::{Checked, Convention, Reader, Remedy, Report, Robot};
 
 use crate::files::input_file;
 use crate::outcome::Failure;
 use crate::palette::{TITLE, TYPED};
+use crate::remedy::in_options;
 use crate::terminal::remark;
 
 /// The robots that a command takes.
@@ -35,6 +36,8 @@ pub(crate) enum Frames {
     /// For `--frame`.
     Kept,
     Dropped,
+    /// As before; and the robot is whole where the file does not say which arm is meant.
+    DroppedOfAll,
 }
 
 /// Reads a robot file with other values of its parameters.
@@ -121,7 +124,21 @@ fn open(path: &Path) -> Result<Opened, Failure> {
 /// user may mean another arm.
 fn imported(name: &str, text: &str, frames: Frames) -> Result<String, Failure> {
     let options = Options { frames: frames == Frames::Kept, ..Options::default() };
-    let imported = rne_convert::import(name, text, &options).map_err(|report| {
+    let mut imported = rne_convert::import(name, text, &options);
+    let is_of_one_arm = |remedy: &Remedy| {
+        use Remedy::{LockJoint, LockOthers, NameTip, Whole, WholeOrLock};
+        matches!(remedy, LockJoint { .. } | LockOthers | NameTip | Whole | WholeOrLock { .. })
+    };
+    let takes_all = frames == Frames::DroppedOfAll
+        && imported.as_ref().is_err_and(|report| {
+            report.diagnostics.iter().filter_map(|found| found.remedy.as_deref()).any(is_of_one_arm)
+        });
+    if takes_all {
+        let selection = Selection { whole: true, ..Selection::default() };
+        let options = Options { selection, convention: Convention::Modified, ..options };
+        imported = rne_convert::import(name, text, &options);
+    }
+    let imported = imported.map_err(|report| {
         // the options that the help names are those of `rne import`
         let mut failure = Failure::from(&report);
         failure.text = format!(
@@ -131,15 +148,27 @@ fn imported(name: &str, text: &str, frames: Frames) -> Result<String, Failure> {
         );
         failure
     })?;
-    let Account { base, tip, .. } = &imported.account;
+    let Account { base, tip, remarks, .. } = &imported.account;
+    let what =
+        if takes_all { format!("robot is everything after {base}") } else { format!("arm is from {base} to {tip}") };
     let snapped = imported.account.snapping().map_or_else(String::new, |snapping| {
         format!("      {snapping}\n      {TYPED}rne import --no-snap{TYPED:#} keeps the angles of the file\n")
     });
     remark(format_args!(
-        "{TITLE}note{TITLE:#}: {name} is a URDF or an MJCF file, and the arm is from {base} to {tip}\n      \
-         {TYPED}rne import {name}{TYPED:#} prints its robot file and every assumption\n{snapped}"
+        "{TITLE}note{TITLE:#}: {name} is a URDF or an MJCF file, and the {what}\n      \
+         {TYPED}rne import {name}{TYPED:#} prints its robot file and every assumption\n{snapped}{}",
+        notes(remarks)
     ));
     Ok(imported.text.clone())
+}
+
+/// A line for each remark of an import.
+pub(crate) fn notes(remarks: &[Remark]) -> String {
+    let line = |remark: &Remark| {
+        let word = if remark.is_warning { "warning" } else { "note" };
+        format!("{TITLE}{word}{TITLE:#}: {}\n", remark.worded(in_options))
+    };
+    remarks.iter().map(line).collect()
 }
 
 fn checked(name: &str, bytes: &[u8], (settings, run_time): Parameters<'_>, shape: Shape) -> Result<Checked, Failure> {

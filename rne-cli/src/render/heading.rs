@@ -42,7 +42,7 @@ pub(crate) fn counts(program: &Program) -> String {
     )
 }
 
-/// The robot in a few words: `puma560, RRRRRR, standard`.
+/// The robot in a few words: `puma560, RRRRRR, standard`, and whether its base floats.
 pub(crate) fn about(robot: &Robot) -> String {
     let joints: String = robot
         .rows()
@@ -51,7 +51,8 @@ pub(crate) fn about(robot: &Robot) -> String {
             JointKind::Prismatic => 'P',
         })
         .collect();
-    format!("{}, {joints}, {}", robot.name, robot.convention.name())
+    let base = if robot.floating_base.is_some() { ", floating base" } else { "" };
+    format!("{}, {joints}, {}{base}", robot.name, robot.convention.name())
 }
 
 /// Rounding error of a conversion.

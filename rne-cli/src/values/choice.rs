@@ -206,18 +206,14 @@ pub(crate) fn of_loops(function: Function, robot: &Robot) -> Function {
 /// The functions that a robot has something to compute for, in the order of the traits: without motors,
 /// `actuator_torques` is zero, and there for who asks for it by name. With couplings, there is no `regressor`. Without
 /// named tips, a function with a wrench at each tip is the one with a wrench at the tip. Functions of a floating base
-/// are for robots that have one; but the wrench on the base tells what a mount must bear, too.
+/// are for robots that have one.
 pub(crate) fn functions_of(robot: &Robot) -> impl Iterator<Item = Function> {
     let has_motors = robot.joints.iter().any(|joint| joint.motor.is_some());
     let (has_couplings, has_tips) = (robot.has_couplings(), !robot.tips.is_empty());
-    let floats = robot.floating_base.is_some();
     Function::of_robot(robot).filter(move |function| {
         (*function != Function::ActuatorTorques || has_motors)
             && !(has_couplings && function.is_of_every_link())
-            && if function.is_of_floating_base() {
-                floats || has_tips && function.takes(Argument::Accelerations)
-            } else {
-                has_tips || !function.takes(Argument::Wrenches)
-            }
+            && function.check_base(robot).is_ok()
+            && (has_tips || function.is_of_floating_base() || !function.takes(Argument::Wrenches))
     })
 }

@@ -124,7 +124,7 @@ fn an_arm_at_rest_needs_positions_alone() {
     );
     let call = rne(&["eval", "robots/planar2.yaml", "--function", "bias_torques", "--q", "0.6,0.2"]);
     assert_eq!(call.err, "note: --qd is not given, so these numbers are 0\n");
-    let call = rne(&["eval", "robots/planar2.yaml", "--function", "floating_bias", "--q", "0.6,0.2"]);
+    let call = rne(&["eval", "docs/satellite.yaml", "--function", "floating_bias", "--q", "0.6,0.2"]);
     assert_eq!(call.err, "note: --qd and --base-omega are not given, so these numbers are 0\n");
 }
 
@@ -373,8 +373,20 @@ fn functions_take_their_arguments_and_no_others() {
         &["takes no --tip-wrench; `rne explain arguments` lists the functions that do"],
     );
     let (zeros, mirrored) = (["--base-rotation", "0,0,0,0,0,0,0,0,0"], ["--base-rotation", "1,0,0,0,1,0,0,0,-1"]);
-    call(2, "tip_jacobians", &[q, zeros].concat(), &["--base-rotation is no rotation: its three rows must"]);
-    call(2, "tip_jacobians", &[q, mirrored].concat(), &["right-handed"]);
+    for (rotation, part) in [(zeros, "--base-rotation is no rotation: its three rows must"), (mirrored, "right-handed")]
+    {
+        let satellite = ["eval", "docs/satellite.yaml", "--function", "tip_jacobians"];
+        fails(2, &[&satellite[..], &q, &rotation].concat(), &[part]);
+    }
+    // a function of a floating base, of every kind
+    for function in ["floating_mass_matrix", "centroidal_momentum_matrix", "floating_potential_energy", "tip_jacobians"]
+    {
+        call(2, function, &q, &[function, "the file of planar2 has no `floating_base`", "--whole --floating"]);
+        let emitted = ["emit", robot, "--lang", "c", "--function", function];
+        fails(2, &emitted, &["the file of planar2 has no `floating_base`"]);
+    }
+    let certified = ["certify", robot, "--function", "inverse_dynamics_of_floating_base"];
+    fails(2, &certified, &["the file of planar2 has no `floating_base`"]);
     call(
         2,
         "jacobian",

@@ -65,7 +65,7 @@ fn an_import_prints_the_robot_file_and_tells_what_it_did() {
     assert_eq!(called.status, 0, "{called:?}");
     insta::assert_snapshot!(called.out);
     for part in [
-        "two_links: 2 joints",
+        "two_links: 2 joints, fixed base",
         "from base to tip",
         "grip is locked at 0.05",
         "joint elbow, roll: 1.5708 is pi/2",
@@ -95,6 +95,61 @@ fn an_import_prints_the_robot_file_and_tells_what_it_did() {
     // From a pipe too.
     let piped = rne_reading(&["import", "-", "--tip", "tip", "--lock-others", "--name", "mine"], URDF);
     assert!(piped.out.contains("name: mine\n"), "{piped:?}");
+}
+
+/// What `rne import` remarks on a file, every command that reads the file remarks, in the same words.
+#[test]
+fn every_command_has_the_remarks_of_the_import() {
+    let folder = folder("import_remarks");
+    let mjcf = "<mujoco><option density=\"1.2\"/><worldbody><body name=\"a\"><joint name=\"j\" armature=\"0.1\" \
+                stiffness=\"2\"/><inertial pos=\"0 0 1\" mass=\"1\" diaginertia=\"1 1 1\"/></body></worldbody>\
+                <tendon><fixed name=\"t\" armature=\"1\"><joint joint=\"j\" coef=\"1\"/></fixed></tendon></mujoco>";
+    let hand = "<robot name=\"h\"><link name=\"base\"><inertial><mass value=\"7\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" \
+                ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link><link name=\"l\"><inertial><mass value=\"1\"/>\
+                <inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>\
+                <joint name=\"j\" type=\"continuous\"><parent link=\"base\"/><child link=\"l\"/><origin rpy=\"9 0 0\"/>\
+                </joint></robot>";
+    for (name, text, least) in [("hand.urdf", hand, 3), ("m.xml", mjcf, 4)] {
+        let file = folder.join(name);
+        fs::write(&file, text).expect("written");
+        let file = file.to_str().expect("UTF-8");
+        let remarks = |call: &[&str]| -> Vec<String> {
+            let called = rne(call);
+            assert_eq!(called.status, 0, "{called:?}");
+            let is_remark = |line: &&str| line.starts_with("note: ") || line.starts_with("warning: ");
+            let is_own = |line: &&str| {
+                ["is a URDF or an MJCF", "not given", "in the robot file", "rotor inertia"]
+                    .iter()
+                    .any(|part| line.contains(part))
+            };
+            called.err.lines().filter(is_remark).filter(|line| !is_own(line)).map(str::to_owned).collect()
+        };
+        let expected = remarks(&["import", file]);
+        assert!(expected.len() >= least, "{expected:?}");
+        for call in [
+            &["check", file] as &[&str],
+            &["eval", file, "--q", "0.1"],
+            &["ops", file],
+            &["emit", file, "--lang", "c"],
+            &["show", file],
+            &["convert", file, "--to", "modified"],
+        ] {
+            assert_eq!(remarks(call), expected, "{call:?}");
+        }
+    }
+}
+
+/// `rne check` needs no tip: where several could be meant, it checks the whole robot.
+#[test]
+fn a_urdf_with_several_ends_is_checked_as_a_whole() {
+    let urdf = folder("check_whole").join("arm.urdf");
+    fs::write(&urdf, URDF).expect("written");
+    let urdf = urdf.to_str().expect("UTF-8");
+    fails(1, &["eval", urdf, "--q", "0,0"], &["you must name the tip", "--whole"]);
+    let checked = rne(&["check", urdf]);
+    assert!(checked.status == 0 && checked.err.contains("the robot is everything after base"), "{checked:?}");
+    let floats = rne(&["check", "docs/satellite.yaml"]);
+    assert!(floats.out.contains("floating base"), "{floats:?}");
 }
 
 #[test]

@@ -12,6 +12,7 @@ mod table;
 
 use rne_model::{FrameId, Robot};
 
+use crate::error::CompileError;
 use crate::named::named;
 use crate::quantity::Quantity;
 
@@ -182,6 +183,19 @@ impl Function {
     pub const fn is_of_floating_base(self) -> bool {
         self.capability().has_velocities()
             || matches!(self.capability(), Capability::FloatingEnergy | Capability::FloatingEulerStep)
+    }
+
+    /// Whether a robot has the base that the function needs. The compiler takes a robot whose file has no
+    /// `floating_base` as one whose base has no mass; whoever computes numbers of the robot asks this first, because
+    /// that mass was probably left out.
+    ///
+    /// # Errors
+    /// [`CompileError::NoFloatingBase`] for a function of a floating base, and a robot without one.
+    pub fn check_base(self, robot: &Robot) -> Result<(), CompileError> {
+        if self.is_of_floating_base() && robot.floating_base.is_none() {
+            return Err(CompileError::NoFloatingBase { function: self, robot: robot.name.clone() });
+        }
+        Ok(())
     }
 
     /// Whether it is a function of a robot with closed loops.

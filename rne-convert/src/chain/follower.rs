@@ -3,8 +3,8 @@
 use rne_model::{Coupling, Motor, Report, one_line};
 
 use super::{Chain, Walk, lock};
-use crate::source::quoted;
-use crate::urdf::{Gear, Mimic};
+use crate::source::{quoted, some};
+use crate::urdf::{Gear, Joint, Mimic};
 
 impl Walk<'_> {
     /// The position at which a joint is held, if it is held. One that follows a held one is held by it.
@@ -55,8 +55,14 @@ impl Walk<'_> {
                 self.urdf.source.error_with(&joint.span, message, help, &lock(&joint.name))
             };
             leader = mimic.leader.ok_or_else(|| {
-                let (follower, leader) = (quoted(&joint.name), quoted(&mimic.joint));
-                error(format!("the joint {follower} follows {leader}, but the file has no such joint"))
+                let free = joints.iter().enumerate().filter(|(at, _)| !self.locks.contains_key(at));
+                let pair = |(_, joint): (usize, &Joint)| {
+                    let lost = joint.mimic.as_ref().filter(|mimic| mimic.leader.is_none())?;
+                    Some(format!("{} follows {}", quoted(&joint.name), quoted(&lost.joint)))
+                };
+                let pairs: Vec<String> = free.filter_map(pair).collect();
+                let s = if pairs.len() == 1 { "" } else { "s" };
+                error(format!("the joint{s} {}, but the file has no such joint{s}", some(pairs)))
             })?;
             mimics.push(mimic);
             if mimics.len() > joints.len() {

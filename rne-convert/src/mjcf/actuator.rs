@@ -4,10 +4,10 @@ use std::collections::HashMap;
 
 use rne_model::Report;
 
-use super::LeftOut;
 use super::body::effort;
 use super::element::Element;
 use super::settings::Settings;
+use super::{LeftOut, is_there};
 use crate::source::quoted;
 use crate::urdf::Urdf;
 
@@ -41,8 +41,8 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
         ));
         let rotor = actuator.number("armature")?.unwrap_or(0.0);
         urdf.joints[joint].rotor_inertia += gear * gear * rotor;
-        if actuator.numbers("damping", 1, 3)?.is_some_and(|damping| damping.iter().any(|number| *number != 0.0)) {
-            left_out.add("damping of actuators is left out", name);
+        if is_there(actuator, &["damping"])? {
+            left_out.add_felt("forces that damp actuators are left out", name);
         }
     }
     if !limits.is_empty() {

@@ -8,7 +8,7 @@ use super::compiler::twice;
 use super::element::Element;
 use super::geom;
 use super::settings::{Classed, Settings};
-use super::{LeftOut, inertial};
+use super::{LeftOut, inertial, is_there};
 use crate::geometry::{Pose, Rotation, Vector, decimal};
 use crate::source::{Source, quoted};
 use crate::urdf::{Joint, Kind, Link, Urdf};
@@ -18,6 +18,12 @@ pub(super) const WORLD: &str = "world";
 
 /// The remark on bodies that a motion capture moves.
 pub(super) const MOCAP: &str = "bodies that a motion capture moves (`mocap`) are fixed";
+
+/// The help where MuJoCo must compile the model.
+pub(super) const COMPILED: &str = "in Python, rne.from_mujoco(mujoco.MjModel.from_xml_path(FILE)) takes the compiled \
+                                   model; or mujoco.mj_saveLastXML(FILE, model) saves it as a file for rne, if \
+                                   `compiler` has `saveinertial=\"true\"`: without this, some versions of MuJoCo lose \
+                                   `inertiagrouprange`, and with it the right inertias";
 
 /// More links than any robot has.
 const MAX_LINKS: usize = 20_000;
@@ -94,9 +100,7 @@ impl<'a> Bodies<'a> {
                 }
                 "replicate" | "attach" | "composite" | "flexcomp" => {
                     let message = format!("rne does not read the element `{}`, which makes bodies", element.name);
-                    let help = "let MuJoCo write the bodies out: mujoco.MjModel.from_xml_path(file), then \
-                                mujoco.mj_saveLastXML(file, model)";
-                    return Err(self.settings.source.error(&element.span, message, help.to_owned()));
+                    return Err(self.settings.source.error(&element.span, message, COMPILED.to_owned()));
                 }
                 _ => contents.push(Content { element, frame, class }),
             }
@@ -127,7 +131,7 @@ impl<'a> Bodies<'a> {
         body.refuse_slips(&["name", "pos", "quat", "axisangle", "xyaxes", "zaxis", "euler", "childclass"], &[])?;
         let name = element.text("name").map_or_else(|| format!("body_{}", self.urdf.links.len()), str::to_owned);
         if body.number("gravcomp")?.unwrap_or(0.0) != 0.0 {
-            self.left_out.add("compensation of gravity (`gravcomp`) is left out", &name);
+            self.left_out.add_felt("forces that compensate gravity (`gravcomp`) are left out", &name);
         }
         if element.text("mocap") == Some("true") {
             self.left_out.add(MOCAP, &name);
@@ -163,13 +167,8 @@ impl<'a> Bodies<'a> {
                     let help = "MuJoCo takes a free joint as the only joint of a body in `worldbody`".to_owned();
                     return Err(joint.refused(message, help));
                 }
-                for attribute in ["armature", "damping", "frictionloss", "stiffness"] {
-                    if joint
-                        .numbers(attribute, 1, 3)?
-                        .is_some_and(|numbers| numbers.iter().any(|&number| number != 0.0))
-                    {
-                        self.left_out.add("armature, friction and springs of free joints are left out", name);
-                    }
+                if is_there(joint, &["armature", "damping", "frictionloss", "stiffness"])? {
+                    self.left_out.add_felt("armature, friction and springs of free joints are left out", name);
                 }
                 let link = self.link(name.to_owned(), body)?;
                 self.fixed(on, link, before);
@@ -256,7 +255,7 @@ impl<'a> Bodies<'a> {
             Some(numbers) if numbers[0] < 0.0 => Err(joint.error(attribute, "it must not be negative")),
             Some(numbers) => {
                 if numbers[1..].iter().any(|number| *number != 0.0) {
-                    self.left_out.add("damping and stiffness of higher degree are left out", &name);
+                    self.left_out.add_felt("damping and stiffness of higher degree are left out", &name);
                 }
                 Ok(numbers[0])
             }
@@ -265,7 +264,7 @@ impl<'a> Bodies<'a> {
         let friction = [not_negative("damping", 3)?, not_negative("frictionloss", 1)?];
         let rotor_inertia = not_negative("armature", 1)?;
         if not_negative("stiffness", 3)? != 0.0 || joint.numbers("springdamper", 2, 2)?.is_some() {
-            self.left_out.add("springs of joints are left out", &name);
+            self.left_out.add_felt("springs of joints are left out", &name);
         }
         let position = if kind == Kind::Spherical { None } else { joint.range("range", "limited")? };
         let position = position.filter(|(low, high)| low.is_finite() && high.is_finite());

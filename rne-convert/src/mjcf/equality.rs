@@ -29,8 +29,12 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
                 continue;
             }
             kind => {
-                let message = format!("the equality `{kind}` is neither `joint`, `connect` nor `weld`");
-                return Err(equality.refused(message, "rne reads these three; delete this one".to_owned()));
+                let message = format!(
+                    "the equality {} is of the kind `{kind}`, and is neither `joint`, `connect` nor `weld`",
+                    quoted(name)
+                );
+                let help = "rne reads these three; delete this one, or make it inactive: active=\"false\"";
+                return Err(equality.refused(message, help.to_owned()));
             }
         }
         let find = |attribute: &str| {

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use rne_model::{Inertia, Link, Report};
 
-use super::body::{Content, pose};
+use super::body::{COMPILED, Content, pose};
 use super::inertial::Inertial;
 use super::settings::{Classed, Settings};
 use crate::body::Body;
@@ -46,9 +46,7 @@ fn solid(geom: Classed, of: &str) -> Result<Option<(f64, Pose, Inertia)>, Report
     if is_mesh || is_shell {
         let of_what = if is_mesh { "the mesh of a geom, and rne opens no meshes" } else { "the shell of a geom" };
         let message = format!("the inertia of the body {} is that of {of_what}", quoted(of));
-        let help = "write it into an `inertial` of the body; MuJoCo does so, with `saveinertial=\"true\"` in \
-                    `compiler`: mujoco.MjModel.from_xml_path(file), then mujoco.mj_saveLastXML(file, model)";
-        return Err(geom.refused(message, help.to_owned()));
+        return Err(geom.refused(message, COMPILED.to_owned()));
     }
     let (place, sizes) = match geom.vector("fromto")? {
         Some(ends) => {

@@ -113,7 +113,11 @@ impl<'a> Classed<'a> {
         if let Some(value) = self.element.text(attribute) {
             return Some((self.element, value));
         }
-        let kind = |name: &str| if ACTUATORS.contains(&name) { "general".to_owned() } else { name.to_owned() };
+        let kind = |name: &'a str| match name {
+            "fixed" | "spatial" => "tendon",
+            name if ACTUATORS.contains(&name) => "general",
+            name => name,
+        };
         let name = kind(&self.element.name);
         let classes = &self.settings.classes;
         let class = std::iter::successors(self.class, |&class| classes[class].parent);

@@ -91,7 +91,8 @@ fn a_part_that_is_no_body_is_told() {
             joint("wrist", "continuous", ("base", "hand"), "", "<axis xyz=\"0 0 1\"/>"),
             joint("screws", "fixed", ("hand", "motor"), "", ""),
         ]);
-        plain(&text).account.suspicious
+        let remarks = plain(&text).account.remarks.into_iter();
+        remarks.filter(|remark| remark.is_warning).map(|remark| remark.text).collect::<Vec<_>>()
     };
     let told = "no body can have the inertia of `motor`: its largest principal moment is 2.319e-4 kg m², the sum of \
                 the two others is 2.261e-4 kg m²";

@@ -36,17 +36,17 @@ fn a_follower_of_a_moving_joint_is_refused_unless_it_is_held_by_name() {
         assert!(message.contains("lock each of these joints by its name; LockJoint { joint: \"k\" }"), "{message}");
         assert!(message.contains("arm.urdf:"), "{message}");
         let held = import(&text, &select(&[("k", 0.0)], true)).account;
-        assert_eq!(held.remarks, ["the joint k is locked, although it follows j, which moves"]);
+        assert_eq!(held.sentences(), ["the joint k is locked, although it follows j, which moves"]);
     }
     assert!(refused(&with_follower("base", 2.0, mimic), &select(&[], false)).contains("`k` follows `j`"));
     let note = "the joint k follows j, which moves; no link after it has mass, so rne locks it";
     let light = import(&with_follower("arm", 0.0, mimic), &select(&[], true));
-    assert_eq!(light.account.remarks, [note]);
+    assert_eq!(light.account.sentences(), [note]);
     assert!(light.text.contains(note), "{}", light.text);
     // one that has a multiplier of zero does not move
     let still = "<mimic joint=\"j\" multiplier=\"0\" offset=\"0.25\"/>";
     let held = import(&with_follower("arm", 2.0, still), &select(&[], true)).account;
-    assert_eq!((held.held, held.remarks), (vec![("k".to_owned(), 0.25)], Vec::new()));
+    assert_eq!((held.held.clone(), held.sentences()), (vec![("k".to_owned(), 0.25)], Vec::new()));
     // a joint of the chain that is held does not move either
     let locked = |lock: &[(&str, f64)]| {
         let text = robot(&[
@@ -63,9 +63,9 @@ fn a_follower_of_a_moving_joint_is_refused_unless_it_is_held_by_name() {
     };
     assert_eq!(locked(&[("j", 0.3)]).held, [("k".to_owned(), -0.3), ("j".to_owned(), 0.3)]);
     // and where it is held by name, too, the two agree or a remark tells that they do not
-    assert_eq!(locked(&[("j", 0.3), ("k", -0.3)]).remarks, [""; 0]);
+    assert_eq!(locked(&[("j", 0.3), ("k", -0.3)]).sentences(), [""; 0]);
     let note = "the joint k is locked at 0.5, although it follows j, whose position would put it at -0.3";
-    assert_eq!(locked(&[("j", 0.3), ("k", 0.5)]).remarks, [note]);
+    assert_eq!(locked(&[("j", 0.3), ("k", 0.5)]).sentences(), [note]);
 }
 
 /// What a follower follows must be there, and must not follow it.
@@ -84,6 +84,13 @@ fn followers_of_nobody_and_of_each_other_are_refused() {
     let message = refused(&nobody, &options(&[]));
     assert!(message.contains("the joint `k` follows `x`, but the file has no such joint"), "{message}");
     assert!(message.contains("lock the joint; LockJoint { joint: \"k\" }"), "{message}");
+    let more =
+        format!("<link name=\"c\"/>{}</robot>", joint("l", "continuous", ("arm", "c"), "", "<mimic joint=\"y\"/>"));
+    let message = refused(&nobody.replace("</robot>", &more), &options(&[]));
+    assert!(
+        message.contains("the joints `k` follows `x`, `l` follows `y`, but the file has no such joints"),
+        "{message}"
+    );
     let circle = with_follower("arm", 2.0, "<mimic joint=\"l\"/>").replace(
         "</robot>",
         &format!("<link name=\"c\"/>{}</robot>", joint("l", "continuous", ("arm", "c"), "", "<mimic joint=\"k\"/>")),
@@ -118,10 +125,10 @@ fn a_joint_that_is_held_outside_of_its_limits_is_told() {
         ..Options::default()
     };
     let text = with_end("");
-    let told = import(&text, &held_at(3.0)).account.remarks;
+    let told = import(&text, &held_at(3.0)).account.sentences();
     assert_eq!(told, ["the joint k is locked at 3, which is outside of its limits, from -0.5 to 1"]);
     for value in [-0.5, 0.0, 1.0] {
-        assert_eq!(import(&text, &held_at(value)).account.remarks, Vec::<String>::new(), "{value}");
+        assert_eq!(import(&text, &held_at(value)).account.sentences(), Vec::<String>::new(), "{value}");
     }
     for value in [8_388_608.0, 1e15, -1e16, 1e300, f64::NAN, f64::INFINITY] {
         let message = refused(&text, &held_at(value));

@@ -108,7 +108,7 @@ fn remarks_on_base(text: &str) -> Vec<String> {
     let selection = Selection { tip, ..Selection::default() };
     let imported = import(text, &Options { frames: true, selection, ..Options::default() });
     let remarks: Vec<String> =
-        imported.account.remarks.into_iter().filter(|remark| remark.starts_with("the base link")).collect();
+        imported.account.sentences().into_iter().filter(|remark| remark.starts_with("the base link")).collect();
     assert!(remarks.iter().all(|remark| imported.robot.notes.as_ref().is_some_and(|notes| notes.contains(remark))));
     remarks
 }

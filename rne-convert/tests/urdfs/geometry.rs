@@ -69,13 +69,17 @@ fn rounded_right_angles_are_snapped_and_the_change_is_told() {
 fn nearly_parallel_axes_are_told_or_snapped() {
     let text = planar("xyz=\"0.4 0.1 0\" rpy=\"3.1416 0 0\"");
     let far = converted(&text, &Options { snap: false, ..Options::default() });
-    assert!(far.account.remarks.iter().any(|remark| remark.contains("nearly parallel")), "{:?}", far.account.remarks);
+    assert!(
+        far.account.sentences().iter().any(|remark| remark.contains("nearly parallel")),
+        "{:?}",
+        far.account.sentences()
+    );
     // 0.1 m over 7.3e-6 rad: 14 km of d cost 14 km times the rounding of an f64.
     assert!(far.account.rounding.position < 2e-11, "{:?}", far.account.rounding);
     let near = plain(&text);
     assert_eq!(near.robot.joints[0].row.dh.d, 0.0);
     assert_eq!(near.robot.joints[0].row.dh.alpha.radians, PI, "never -pi");
-    assert!(near.account.remarks.is_empty(), "{:?}", near.account.remarks);
+    assert!(near.account.sentences().is_empty(), "{:?}", near.account.sentences());
 }
 
 /// Degrees and millimetres are told, by the name of their joint.
@@ -85,11 +89,11 @@ fn other_units_are_told() {
         ("xyz=\"0.4 0.1 0\" rpy=\"90 0 0\"", "has the angle 90 rad in its rpy, more than a turn: 90° is 1.5708 rad"),
         ("xyz=\"400 100 0\" rpy=\"1.5 0 0\"", "has an origin that is 400 m away: lengths are in metres"),
     ] {
-        let remarks = plain(&planar(origin)).account.remarks;
+        let remarks = plain(&planar(origin)).account.sentences();
         assert!(remarks.iter().any(|remark| remark.contains(told)), "{remarks:?}");
         assert!(!remarks.iter().any(|remark| remark.contains("nearly parallel")), "{remarks:?}");
     }
-    assert!(plain(&planar("xyz=\"0.4 0.1 0\" rpy=\"-6.28 0 0\"")).account.remarks.is_empty());
+    assert!(plain(&planar("xyz=\"0.4 0.1 0\" rpy=\"-6.28 0 0\"")).account.sentences().is_empty());
 }
 
 /// A tilt that a table can say is in the table; one that it cannot say is told.
@@ -104,7 +108,7 @@ fn no_tilt_is_dropped_in_silence() {
     for tilt in [1e-9, 1e-11] {
         let text = planar(&format!("xyz=\"0.4 0.1 0\" rpy=\"{tilt} 0 0\""));
         let imported = converted(&text, &Options { snap: false, ..Options::default() });
-        assert!(imported.account.remarks[0].contains("off parallel"), "{:?}", imported.account.remarks);
+        assert!(imported.account.sentences()[0].contains("off parallel"), "{:?}", imported.account.sentences());
         assert!(imported.account.rounding.position < tilt, "{:?}", imported.account.rounding);
     }
 }

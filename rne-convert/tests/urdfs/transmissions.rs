@@ -22,7 +22,7 @@ fn a_transmission_is_the_gear_of_a_motor() {
                <mechanicalReduction> 40 </mechanicalReduction></actuator></transmission>";
     let Imported { text, account, .. } = plain(&with(ros));
     assert!(text.contains("motor: {gear_ratio: 40, viscous: 0.005, coulomb: [0.15, -0.15]}"), "{text}");
-    assert_eq!(account.remarks, Vec::<String>::new());
+    assert_eq!(account.sentences(), Vec::<String>::new());
 }
 
 #[test]
@@ -35,7 +35,7 @@ fn other_transmissions_are_noted_or_refused() {
         format!("<joint name=\"other\"/>{reduction}"),
         format!("<joint name=\"hinge\"/>{reduction}{reduction}"),
     ] {
-        let remarks = plain(&of(&parts)).account.remarks;
+        let remarks = plain(&of(&parts)).account.sentences();
         assert!(remarks.len() == 1 && remarks[0].starts_with(left_out), "{remarks:?}");
     }
     for number in ["0", "nan", "1e9", "two"] {
@@ -45,5 +45,5 @@ fn other_transmissions_are_noted_or_refused() {
     let said = refused(&of("<rotor_inertia value=\"-1\"/>"), &Options::default());
     assert!(said.contains("it must be a number from 0 to 1e9"), "{said}");
     let one = of(&format!("<joint name=\"hinge\"/>{}", reduction.replace('2', "1.0")));
-    assert_eq!(plain(&one).account.remarks, Vec::<String>::new());
+    assert_eq!(plain(&one).account.sentences(), Vec::<String>::new());
 }

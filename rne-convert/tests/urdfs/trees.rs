@@ -209,6 +209,21 @@ fn a_floating_joint_makes_the_base_float() {
         assert_eq!([one.account.floats, other.account.floats], [Some(false), None]);
         assert_eq!(Robot { notes: None, ..one.robot }, Robot { notes: None, ..other.robot });
     }
+    // the mass of a base that stands still is told, whatever is imported, and is that of the floating base
+    let mass = expected.robot.floating_base.as_ref().unwrap().link.mass;
+    let told = format!("the base stands still: its mass of {mass} kg is left out");
+    let says = |imported: &Imported| imported.account.remarks.iter().find(|remark| remark.text == told).cloned();
+    for whole in [true, false] {
+        for (text, remedy) in [(&alone, Some(rne_model::Remedy::Float)), (&floats, None)] {
+            let selection = Selection { floating: Some(false), whole, ..Selection::default() };
+            let selection = Selection { tip: Some("left".to_owned()), lock_others: true, ..selection };
+            let options = Options { selection, convention: Convention::Modified, ..Options::default() };
+            let imported = Urdf::read("r.urdf", text).and_then(|urdf| urdf.import(&options)).unwrap();
+            assert_eq!(says(&imported).expect("a remark").remedy, remedy, "{text}");
+            assert!(imported.text.contains(&told), "{}", imported.text);
+        }
+    }
+    assert!(says(&expected).is_none());
     // a root with mass is a second body, and no world
     let heavy = world(&format!("<link name='world'>{inertial}</link>"), "floating");
     let said = import(&heavy, None).unwrap_err().to_string();

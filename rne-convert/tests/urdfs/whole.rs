@@ -65,7 +65,11 @@ fn every_joint_is_a_row_below_its_parent() {
     assert_eq!(account.lumped, [("waist".to_owned(), vec!["torso".to_owned(), "lamp".to_owned()])]);
     // the tip that is called so, and the others in a note
     assert_eq!(robot.tip().on, Some(4));
-    assert!(account.remarks.iter().any(|remark| remark.contains("the tip is `tool0`")), "{:?}", account.remarks);
+    assert!(
+        account.sentences().iter().any(|remark| remark.contains("the tip is `tool0`")),
+        "{:?}",
+        account.sentences()
+    );
     // the first joint on a link continues its frame, the second begins elsewhere
     assert!(robot.joints[1].branch.is_none() && robot.joints[2].branch.is_none(), "{text}");
     assert!(
@@ -215,7 +219,7 @@ fn a_serial_arm_is_no_tree() {
         assert!(text.starts_with("format: 1\n") && robot.is_serial(), "{text}");
         assert!(account.rounding.torque < 1e-13 && account.rounding.position < 1e-13, "{:?}", account.rounding);
         let note = "no link carries two joints, so the robot is a serial arm and its file has `format: 1`";
-        assert!(account.remarks.iter().any(|remark| remark == note) && text.contains(note), "{text}");
+        assert!(account.sentences().iter().any(|remark| remark == note) && text.contains(note), "{text}");
         let alone = import(false, convention).robot;
         assert_eq!((robot.joints, robot.base, robot.tool), (alone.joints, alone.base, alone.tool));
     }

@@ -51,6 +51,8 @@ class Arm:
     @property
     def dof(self) -> int: ...
     @property
+    def floating(self) -> bool: ...
+    @property
     def joints(self) -> list[str]: ...
     @property
     def followers(self) -> dict[str, tuple[dict[str, float], float]]: ...
@@ -554,7 +556,7 @@ def load(
     run_time: Sequence[str] = ...,
     settings: Mapping[str, float] | None = ...,
     form: Form = ...,
-    rotors: bool = ...,
+    rotors: bool | None = ...,
 ) -> Arm:
     """Return the arm of a robot file (YAML), a URDF, an MJCF file, the text of one, or of a built-in robot."""
 

@@ -4,17 +4,20 @@ Their arrays are written as an MJCF text with all digits, and `rne.load` reads t
 the same messages, names and options.
 """
 
+import re
+
 import numpy as np
 
-from ._rne import load
+from ._rne import RobotFileError, load
 
 
 def from_mujoco(model, **options):
     """The arm of a compiled MuJoCo model, an `mujoco.MjModel`.
 
     Positions are those of `qpos`: zero is where a joint's position is zero, not at its `ref`. The order of the joints
-    is `arm.joints`. `armature` is the rotor of a joint's motor: `rotors=True` has it in the torques. A joint that
-    follows another one by an equality has its torque at that one, and no place in q.
+    is `arm.joints`. `armature` is the rotor of a joint's motor, and belongs to the arm as in MuJoCo, unless `rotors` is
+    False. A joint that follows another one by an equality has its torque at that one, and no place in q. `arm.notes`
+    says what the arm has not, such as springs and tendons.
 
     A body with a free joint that carries all other joints is the floating base, whose motion `rne.base_from_mujoco`
     makes of `qpos`, `qvel` and `qacc`; `floating=False` fixes it.
@@ -34,10 +37,12 @@ def from_mujoco(model, **options):
         inertia = {"pos": model.body_ipos[i], "quat": model.body_iquat[i], "mass": model.body_mass[i]}
         body.add("inertial", **inertia, diaginertia=model.body_inertia[i])
         body.attributes["gravcomp"] = model.body_gravcomp[i]
+        if model.body_mocapid[i] >= 0:
+            body.attributes["mocap"] = "true"
     for i in range(model.njnt):
         name, kind, dof = model.joint(i).name or f"joint_{i}", _KINDS[int(model.jnt_type[i])], model.jnt_dofadr[i]
-        values = {"armature": model.dof_armature[dof], "damping": model.dof_damping[dof]}
-        values |= {"frictionloss": model.dof_frictionloss[dof], "stiffness": model.jnt_stiffness[i]}
+        values = {"armature": model.dof_armature[dof], "damping": _terms(model, "dof_damping", dof)}
+        values |= {"frictionloss": model.dof_frictionloss[dof], "stiffness": _terms(model, "jnt_stiffness", i)}
         if kind == "free":
             bodies[model.jnt_bodyid[i]].add("joint", name=name, type=kind, **values)
             continue
@@ -47,30 +52,49 @@ def from_mujoco(model, **options):
         if model.jnt_actfrclimited[i]:
             values |= {"actuatorfrcrange": model.jnt_actfrcrange[i], "actuatorfrclimited": "true"}
         bodies[model.jnt_bodyid[i]].add("joint", name=name, type=kind, **values)
+    is_between_sites = np.asarray(model.eq_objtype) == int(mujoco.mjtObj.mjOBJ_SITE)
+    ends_of_equalities = {*model.eq_obj1id[is_between_sites], *model.eq_obj2id[is_between_sites]}
+    sites = [model.site(i).name or f"site_{i}" for i in range(model.nsite)]
     for i in range(model.nsite):
-        if name := model.site(i).name:
-            bodies[model.site_bodyid[i]].add("site", name=name, pos=model.site_pos[i], quat=model.site_quat[i])
+        if model.site(i).name or i in ends_of_equalities:
+            bodies[model.site_bodyid[i]].add("site", name=sites[i], pos=model.site_pos[i], quat=model.site_quat[i])
 
-    equalities = []
-    words = {int(mujoco.mjtEq.mjEQ_CONNECT): "connect", int(mujoco.mjtEq.mjEQ_WELD): "weld"}
-    for i in np.flatnonzero(model.eq_active0):
-        if int(model.eq_type[i]) != int(mujoco.mjtEq.mjEQ_JOINT):
-            equalities.append(_tag(words.get(int(model.eq_type[i]), "tendon")))
-            continue
-        ends = [model.eq_obj1id[i], model.eq_obj2id[i]]
-        names = {f"joint{k + 1}": model.joint(end).name or f"joint_{end}" for k, end in enumerate(ends) if end >= 0}
-        equalities.append(_tag("joint", **names, polycoef=model.eq_data[i, :5]))
+    equalities, kinds = [], mujoco.mjtEq
+    words = {kinds.mjEQ_CONNECT: "connect", kinds.mjEQ_WELD: "weld", kinds.mjEQ_JOINT: "joint", kinds.mjEQ_TENDON: "tendon"}
+    words = {int(kind): word for kind, word in words.items()}
+    joints = [model.joint(i).name or f"joint_{i}" for i in range(model.njnt)]
+    for i in range(model.neq):
+        word, data = words.get(int(model.eq_type[i]), "flex"), model.eq_data[i]
+        values = {"name": model.eq(i).name} if model.eq(i).name else {}
+        if not model.eq_active0[i] or model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_EQUALITY):
+            values["active"] = "false"
+        ends = [int(end) for end in (model.eq_obj1id[i], model.eq_obj2id[i]) if end >= 0]
+        of = {"joint": ("joint", joints), "connect": ("body", names), "weld": ("body", names)}.get(word, (word, None))
+        part, known = ("site", sites) if is_between_sites[i] else of
+        if known is not None:
+            values |= {f"{part}{k + 1}": known[end] for k, end in enumerate(ends)}
+        if word == "joint":
+            values["polycoef"] = data[:5]
+        elif part == "body":
+            values |= {"anchor": data[:3]} if word == "connect" else {"anchor": data[:3], "relpose": data[3:10]}
+        equalities.append(_tag(word, **values))
+
+    tendons = []
+    for i in range(model.ntendon):
+        values = {"name": model.tendon(i).name} if model.tendon(i).name else {}
+        for part in ("stiffness", "damping", "armature", "frictionloss"):
+            values |= {part: _terms(model, f"tendon_{part}", i)} if hasattr(model, f"tendon_{part}") else {}
+        is_fixed = int(model.wrap_type[model.tendon_adr[i]]) == int(mujoco.mjtWrap.mjWRAP_JOINT)
+        tendons.append(_tag("fixed" if is_fixed else "spatial", **values))
 
     actuators = []
     on_joints = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))
-    armature = getattr(model, "actuator_armature", np.zeros(model.nu))  # since MuJoCo 3.4
     for i in range(model.nu):
         if int(model.actuator_trntype[i]) not in on_joints:
             continue
-        joint = model.actuator_trnid[i, 0]
-        values = {"joint": model.joint(joint).name or f"joint_{joint}", "gear": model.actuator_gear[i, :1]}
-        if armature[i] != 0:
-            values["armature"] = armature[i]
+        values = {"joint": joints[model.actuator_trnid[i, 0]], "gear": model.actuator_gear[i, :1]}
+        for part in ("armature", "damping"):  # since MuJoCo 3.4
+            values |= {part: _terms(model, f"actuator_{part}", i)} if hasattr(model, f"actuator_{part}") else {}
         if model.actuator_forcelimited[i]:
             values |= {"forcerange": model.actuator_forcerange[i], "forcelimited": "true"}
         is_motor = model.actuator_gaintype[i] == 0 and model.actuator_biastype[i] == 0
@@ -81,16 +105,19 @@ def from_mujoco(model, **options):
     weightless = model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY)
     gravity = np.zeros(3) if weightless else model.opt.gravity
     name = model.names[: model.names.index(b"\0")].decode() or "mujoco"
-    return _load(name, gravity, bodies[0], equalities, actuators, options)
+    option = {"gravity": gravity, "density": model.opt.density, "viscosity": model.opt.viscosity}
+    sections = {"equality": equalities, "tendon": tendons, "actuator": actuators}
+    return _load(name, option, bodies[0], sections, options)
 
 
 def from_pinocchio(model, **options):
     """The arm of a Pinocchio model, a `pinocchio.Model`.
 
     The order of the joints is `arm.joints`. The position of an unbounded joint, of which Pinocchio has cosine and sine,
-    is its angle. The frames of the model are `arm.frames`, by their names. `armature`, or else `rotorInertia` times the
-    square of `rotorGearRatio`, is the rotor of a joint's motor: `rotors=True` has it in the torques, as Pinocchio has
-    `armature` in them. A joint that follows another one has its torque at that one, and no place in q.
+    is its angle. The frames of the model are `arm.frames`, by their names. `armature`
+    belongs to the arm as in Pinocchio, unless `rotors` is False. In a model without it, `rotors=True` counts
+    `rotorInertia` times the square of `rotorGearRatio`, which Pinocchio does not count. A joint that follows another
+    one has its torque at that one, and no place in q.
 
     A free-flyer that carries all other joints is the floating base, whose motion `rne.base_from_pinocchio` makes of
     Pinocchio's vectors; `floating=False` fixes it.
@@ -101,7 +128,7 @@ def from_pinocchio(model, **options):
     Raises ValueError where another joint has more than one freedom.
     """
     bodies = [_Body("universe", np.zeros(3), _IDENTITY)]
-    equalities = []
+    equalities, has_armature = [], bool(np.any(model.armature))
     mimics = dict(zip(getattr(model, "mimicking_joints", []), getattr(model, "mimicked_joints", [])))
     for i in range(1, model.njoints):
         joint, name, placement = model.joints[i], model.names[i], model.jointPlacements[i]
@@ -127,7 +154,7 @@ def from_pinocchio(model, **options):
             equalities.append(_tag("joint", joint1=name, joint2=model.names[mimics[i]], polycoef=polynomial))
         else:
             v, q = joint.idx_v, joint.idx_q
-            rotor = model.armature[v] or model.rotorInertia[v] * model.rotorGearRatio[v] ** 2
+            rotor = model.armature[v] if has_armature else model.rotorInertia[v] * model.rotorGearRatio[v] ** 2
             friction = getattr(model, "upperDryFrictionLimit", None)
             friction = model.friction[v] if friction is None else friction[v]
             values = {"armature": rotor, "damping": model.damping[v], "frictionloss": friction}
@@ -148,7 +175,8 @@ def from_pinocchio(model, **options):
             place = frame.placement
             turn = _quaternion(place.rotation)
             bodies[frame.parentJoint].add("site", name=frame.name, pos=place.translation, quat=turn)
-    return _load(model.name or "pinocchio", model.gravity.linear, bodies[0], equalities, [], options)
+    options = {"rotors": has_armature, **options}
+    return _load(model.name or "pinocchio", {"gravity": model.gravity.linear}, bodies[0], {"equality": equalities}, options)
 
 
 # The kinds of joints, in the order of `mujoco.mjtJoint`.
@@ -201,13 +229,23 @@ def _quaternion(rotation):
     return column / np.linalg.norm(column)
 
 
-def _load(name, gravity, world, equalities, actuators, options):
+def _terms(model, name, index):
+    """A coefficient, and those of higher degree, which MuJoCo has since 4.0."""
+    return np.append(getattr(model, name)[index], getattr(model, f"{name}poly")[index] if hasattr(model, f"{name}poly") else [])
+
+
+def _load(name, option, world, sections, options):
     lines = [
         _tag("mujoco", model=name)[:-2] + ">",
         '<compiler angle="radian" autolimits="false" inertiafromgeom="false"/>',
-        _tag("option", gravity=gravity),
+        _tag("option", **option),
         world.text("worldbody"),
-        *["<equality>", *equalities, "</equality>", "<actuator>", *actuators, "</actuator>"],
+        *[line for section, parts in sections.items() for line in (f"<{section}>", *parts, f"</{section}>")],
         "</mujoco>",
     ]
-    return load("\n".join(lines), **{"whole": True, "snap": False, **options})
+    try:
+        return load("\n".join(lines), **{"whole": True, "snap": False, **options})
+    except RobotFileError as error:
+        # nobody has seen the text in whose lines the carets stand
+        said = [line for line in str(error).splitlines() if not re.match(r"\s*(-->|\d* *\|)", line)]
+        raise RobotFileError("\n".join(said)) from None
