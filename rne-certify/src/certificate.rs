@@ -222,7 +222,6 @@ impl Certificate {
             }
         }
         self.rules(&mut text);
-        text.push_str("\n## Trace\n\nWith `--json`, the certificate lists each line of the code with its step.\n");
         text
     }
 

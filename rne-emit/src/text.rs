@@ -431,8 +431,8 @@ impl Piece {
     }
 }
 
-/// The statements that evaluate all sines and cosines, with the line breaks of rustfmt. Where the file has the sine, each
-/// angle has its own call: compilers leave the calls over an array as a loop from five angles on.
+/// The statements that evaluate all sines and cosines, with the line breaks of rustfmt. Where the file has the sine,
+/// each angle has its own call: compilers leave the calls over an array as a loop from five angles on.
 fn turns(program: &Program, sin_cos: SinCos) -> String {
     let turns = &program.sines_and_cosines[..];
     let groups = turns.chunks(if sin_cos == SinCos::InFile { 1 } else { turns.len() });
