@@ -197,36 +197,10 @@ impl Arm {
         parameters: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-<<<<<<< HEAD
-        self.moves_its_base(function)?;
         given.extend(self.given_parameters(parameters)?);
         evaluate(py, &self.at(frame)?, function, &given, out)
     }
 
-    /// Refuses accelerations of a base without mass that carries one joint: the base and this joint can turn against
-    /// each other and move nothing, so the mass matrix is singular at every position.
-    pub(crate) fn moves_its_base(&self, function: Function) -> PyResult<()> {
-        let robot = self.robot();
-        let is_alone = (0..robot.joints.len()).filter(|&joint| robot.parent(joint).is_none()).count() == 1;
-        let is_massless = robot.floating_base.is_none() && robot.closed.is_empty() && is_alone;
-        if is_massless && function.is_of_floating_base() && function.takes(Argument::Torques) {
-            return Err(PyValueError::new_err(format!(
-                "{function}: the base of {} has no mass, so its acceleration is not defined: the mass matrix is \
-                 singular at every position. Write the base into the robot file, such as `floating_base: {{name: body, \
-                 link: {{mass: 20, com: [0, 0, 0], inertia: {{xx: 1, yy: 1, zz: 1}}}}}}`. For a base \
-                 that does not move, call the function without `floating_` in its name",
-                robot.name
-            )));
-        }
-        Ok(())
-    }
-
-=======
-        given.extend(self.given_parameters(py, parameters)?);
-        evaluate(py, &self.arm, function, &given, out)
-    }
-
->>>>>>> 74113a12 (wip)
     /// The argument of the run-time parameters, if the arm has any.
     pub(crate) fn given_parameters<'py>(&self, parameters: Option<&Bound<'py, PyAny>>) -> PyResult<Option<Given<'py>>> {
         let run_time = &self.robot().run_time;

@@ -140,7 +140,7 @@ impl Arm {
         wrenches: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Vec<Given<'py>>> {
         let twist = Given::vector("twist", 6, twist.clone());
-        self.moves_its_base(Function::FloatingForwardDynamics)?;
+        Function::FloatingForwardDynamics.check_base(self.robot()).map_err(|error| of_evaluation(&error))?;
         Ok(vec![self.of_pose("pose", pose)?, twist, self.of_tips("wrenches", wrenches)?])
     }
 

@@ -205,30 +205,26 @@ def test_functions_of_a_floating_base_need_one():
     assert (arm.floating, floats.floating) == (False, True)
     assert "floating base" in repr(floats) and "floating base" not in repr(arm)
     words = "the file of planar2 has no `floating_base`.*floating=True"
-    joints, base = ([0, 0], [0, 0], [0, 0]), (np.eye(4), [0] * 6, 0.01)
-    for name in [name for name in dir(arm) if name.startswith(("floating_", "centroidal_", "tip_jacobians"))]:
-        arguments = {
-            "floating_inertial_parameters": None,
-            "floating_euler_step": (*joints, *base),
-            "floating_euler_step_derivatives": (*joints, *base),
-            "floating_runge_kutta_step": (*joints, *base),
-            "floating_runge_kutta_step_derivatives": (*joints, *base),
-            "floating_forward_dynamics": (*joints, [0] * 3),
-            "floating_bias": (*joints[:2], [0] * 3),
-            "centroidal_bias": (*joints[:2], [0] * 3),
-            "floating_regressor": joints,
-            "floating_inverse_dynamics_derivatives": joints,
-            "floating_kinetic_energy": (*joints[:2], [0] * 6),
-            "centroidal_momentum": (*joints[:2], [0] * 6),
-            "floating_potential_energy": (joints[0], np.eye(4)),
-        }.get(name, joints[:1])
-        if arguments is not None:
+    q, qd, qdd = joints = ([0, 0], [0, 0], [0, 0])
+    omega, twist, pose, turn = [0] * 3, [0] * 6, np.eye(4), np.eye(3)
+    for names, arguments in [
+        ("floating_mass_matrix centroidal_momentum_matrix", (q,)),
+        ("floating_bias centroidal_bias", (q, qd, omega)),
+        ("floating_kinetic_energy centroidal_momentum", (q, qd, twist)),
+        ("floating_potential_energy", (q, pose)),
+        ("inverse_dynamics_of_floating_base floating_regressor floating_inverse_dynamics_derivatives", joints),
+        ("floating_forward_dynamics", (*joints, omega)),
+        ("tip_jacobians", (q, turn)),
+        ("tip_accelerations", (q, qd, omega, turn)),
+        ("forward_dynamics_in_contact", (*joints, omega, turn)),
+        ("floating_euler_step floating_euler_step_derivatives", (*joints, pose, twist, 0.01)),
+        ("floating_runge_kutta_step floating_runge_kutta_step_derivatives", (*joints, pose, twist, 0.01)),
+    ]:
+        for name in names.split():
             with pytest.raises(ValueError, match=words):
                 getattr(arm, name)(*arguments)
     with pytest.raises(ValueError, match=words):
-        arm.inverse_dynamics_of_floating_base(*joints)
-    with pytest.raises(ValueError, match=words):
-        arm.code("floating_mass_matrix")
+        arm.code(functions=["floating_mass_matrix"])
 
 
 def test_a_matrix_that_is_no_pose_is_refused():

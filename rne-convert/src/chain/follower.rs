@@ -61,8 +61,11 @@ impl Walk<'_> {
                     Some(format!("{} follows {}", quoted(&joint.name), quoted(&lost.joint)))
                 };
                 let pairs: Vec<String> = free.filter_map(pair).collect();
-                let s = if pairs.len() == 1 { "" } else { "s" };
-                error(format!("the joint{s} {}, but the file has no such joint{s}", some(pairs)))
+                error(if pairs.len() > 1 {
+                    format!("joints follow others that the file has not: {}", some(pairs))
+                } else {
+                    format!("the joint {}, but the file has no such joint", some(pairs))
+                })
             })?;
             mimics.push(mimic);
             if mimics.len() > joints.len() {

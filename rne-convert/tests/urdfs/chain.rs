@@ -116,7 +116,7 @@ fn what_no_row_can_say_is_refused_with_a_reason() {
     let mimic = refused(&with("continuous", "<mimic joint=\"a\"/>"), &Options::default());
     assert!(
         mimic.contains("the joint `b` on the chain follows `a`")
-            && mimic.contains("lock this joint; LockJoint { joint: \"b\" }"),
+            && mimic.contains("or import the whole robot; WholeOrLock { joint: \"b\" }"),
         "{mimic}"
     );
     let unknown = Urdf::read("arm.urdf", &with("helical", "")).unwrap_err().to_string();
