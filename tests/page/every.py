@@ -129,15 +129,20 @@ BEFORE = BOXES + """
   const [index, done] = arguments;
   const of = window.names[index];
   of.scrollIntoView({ block: "nearest" });
-  // what comes into sight is laid out with the next frame
-  requestAnimationFrame(() => requestAnimationFrame(() => {
+  // what comes into sight is laid out frames later, and may bring more into sight
+  const settled = (last, same, then) => requestAnimationFrame(() => {
+    const now = boxes();
+    const again = differing(last, now).length ? 0 : same + 1;
+    again < 4 ? settled(now, again, then) : then();
+  });
+  settled(boxes(), 0, () => {
     const box = of.getClientRects()[0];
     const at = [box.x + box.width / 2, box.y + box.height / 2];
     const hit = document.elementFromPoint(...at);
     Object.assign(window, { hit, rest: boxes(), boxes, differing });
     // what a later line or the edge of its panel hides is not pointed at
     done(hit && of.contains(hit) ? at : null);
-  }));
+  });
 """
 AFTER = """
   const done = arguments[1];
