@@ -20,8 +20,8 @@ const DOTTED: [(char, char, usize); 8] = [
 const SPELLINGS: &str = "\
     α alpha β beta γ gamma Δ Delta δ delta ε epsilon θ theta Θ Theta λ lambda μ mu π pi ρ rho Σ sum σ sigma τ tau \
     φ phi ψ psi Ω Omega ω w ∂ d · * × x − - – - — - ─ - ± +- ≤ <= ≥ >= → -> √ sqrt ∫ int ½ 1/2 ₀ 0 ₁ 1 ₂ 2 ₃ 3 ₖ k \
-    … ... ’ ' ‘ ' “ \" ” \" ä a à a á a â a å a ç c è e é e ê e ë e ï i í i ñ n ö o ó o ô o ø o ü u ú u û u Ä A É E Ö O \
-    Ü U ß ss";
+    … ... ’ ' ‘ ' “ \" ” \" ä a à a á a â a å a ç c è e é e ê e ë e ï i í i ñ n ö o ó o ô o ø o ü u ú u û u Ä A É E \
+    Ö O Ü U ß ss";
 
 /// A text with every letter that is not ASCII written out: ω is `w`, ω̇ `dw` and q̈ `qdd` as in the code, so θ̈ is
 /// `thetadd`; × is `x`, ᵀ `^T`, s⁻² `s^-2`. What has no such spelling, as a letter of a title may, is `_`.

@@ -108,7 +108,7 @@ const SINES: &str = "
         let angle = f64::from_bits(line.unwrap().parse().unwrap());
         let (sine, cosine) = Scalar::sin_cos(angle);
         println!(\"{} {}\", sine.to_bits(), cosine.to_bits());
-        let ([sine, _], [cosine, _]) = Scalar::sin_cos_array([angle as f32, 0.0]);
+        let (sine, cosine) = Scalar::sin_cos(angle as f32);
         println!(\"{} {}\", sine.to_bits(), cosine.to_bits());
     }
 ";
