@@ -11,15 +11,18 @@ use std::process::{Command, Output, Stdio};
 use crate::call::{ROOT, folder};
 
 /// The documents whose commands a reader types.
-const DOCUMENTS: [&str; 27] = [
+const DOCUMENTS: [&str; 32] = [
     "README.md",
     "CONTRIBUTING.md",
+    "docs/assurance.md",
     "docs/c-library.md",
+    "docs/closed-loops.md",
     "docs/command-line.md",
     "docs/firmware.md",
     "docs/fmi.md",
     "docs/identify.md",
     "docs/inspection.md",
+    "docs/jax.md",
     "docs/lecture/README.md",
     "docs/lecture/errata.md",
     "docs/lecture/answers.md",
@@ -34,9 +37,11 @@ const DOCUMENTS: [&str; 27] = [
     "docs/logs.md",
     "docs/operational-space.md",
     "docs/optimal-control.md",
+    "docs/python.md",
     "docs/robot-file.md",
     "docs/run-time.md",
     "docs/teaching.md",
+    "docs/urdf.md",
     "docs/watch.md",
     "robots/README.md",
 ];
@@ -68,6 +73,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     // with the flags of pkg-config, below the prefix that it was given
     ("export PKG_CONFIG_PATH=", "xtask/src/capi.rs", ".env(\"PKG_CONFIG_PATH\", library.join(\"pkgconfig\"))"),
     ("pip install ./doors/python", "xtask/src/python.rs", "pip install --quiet"),
+    ("pip install jax", "xtask/src/python.rs", "const JAX"),
     ("pip install casadi", "xtask/src/python.rs", "const CASADI"),
     ("cargo run --release --manifest-path examples/mpc/Cargo.toml", "examples/mpc/tests/reach.rs", "run(method)"),
     ("python examples/mpc/casadi_mpc.py", "doors/python/tests/test_casadi.py", "import casadi_mpc"),
@@ -95,6 +101,12 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     // it fetches Cyclone DDS, and measures for a minute
     ("cargo xtask ros2", "xtask/src/main.rs", "Ros2(ros2::Ros2)"),
     (".ci/run", ".ci/run", "#!/usr/bin/env bash"),
+    (
+        "python3 rne-certify/checker/check_c.py",
+        "rne-cli/tests/cli/certify.rs",
+        "Command::new(\"python3\").arg(checker)",
+    ),
+    ("sudo apt-get install --yes gcc-arm-none-eabi", "xtask/src/certificate.rs", "const OF_COMMAND_LINE"),
     // of an object that a compiler of the user has made
     ("arm-none-eabi-nm -u my_arm.o", "rne-cli/tests/cli/certify_trees.rs", "Command::new(\"arm-none-eabi-nm\")"),
     // in a firmware that rne has written
@@ -110,9 +122,9 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
 /// A copy of what commands read, in a folder that they may leave.
 pub(crate) fn copy(name: &str) -> PathBuf {
     let folder = folder(name).join("clone");
-    fs::create_dir(&folder).expect("a folder");
-    for part in ["robots", "docs", "docs/lecture", "docs/lecture/answers", "docs/lecture/class"] {
-        fs::create_dir(folder.join(part)).expect("a folder");
+    let of_documents = ["robots", "docs", "docs/lecture", "docs/lecture/answers", "docs/lecture/class"];
+    for part in of_documents.into_iter().chain(["benches/trees/loops"]) {
+        fs::create_dir_all(folder.join(part)).expect("a folder");
         for entry in fs::read_dir(Path::new(ROOT).join(part)).expect("a folder") {
             let path = entry.expect("an entry").path();
             if path.extension().is_some_and(|extension| extension == "yaml" || extension == "csv") {
@@ -173,10 +185,12 @@ fn of_rne(command: &str) -> Option<String> {
     Some(format!("rne {arguments}").replace("NAME", "puma560"))
 }
 
-/// Whether words stand for others: `FILE…`, `[--joint I]`, `COMMAND`.
+/// Whether words stand for others: `FILE…`, `[--joint I]`, `COMMAND`; or no robot is named, so that the words name an option:
+/// `rne emit --tests`.
 fn is_pattern(command: &str) -> bool {
     command.contains(['…', '['])
-        || ["COMMAND", "FILE", "TOPIC", "SHELL", "ROBOT"].iter().any(|word| command.contains(word))
+        || ["COMMAND", "DIR", "FILE", "LINK", "TOPIC", "SHELL", "ROBOT"].iter().any(|word| command.contains(word))
+        || command.starts_with("rne ") && command.split(' ').nth(2).is_some_and(|word| word.starts_with("--"))
 }
 
 /// The file of a test that `cargo test … --test NAME` asks for.
