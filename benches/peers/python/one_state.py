@@ -3,8 +3,8 @@ the same one; `cargo xtask performance python_calls` writes the table.
 
 Arguments are plain arrays of float64, as a controller has them. The arm and the robot on a floating base are read from the
 URDFs of example-robot-data, which Pinocchio reads too; a robot with contacts and a closed loop are files of this repository.
-Times are medians of 101 calls, the smallest of some rounds in which rne and Pinocchio alternate. On a busy machine compare
-the last column, the time beside that of `inverse_dynamics`. `--above 10` leaves out what takes less than 10 microseconds.
+Of these the table has what the first two do not compute. Times are medians of 101 calls, the smallest of some rounds in which
+rne and Pinocchio alternate. On a busy machine compare the last column, the time beside that of `inverse_dynamics` of the arm.
 """
 
 import argparse
@@ -98,25 +98,28 @@ def median(call, count):
 
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("--above", type=float, default=0.0)
+    arguments.add_argument("--all", action="store_true", help="with each argument that may be given besides")
+    arguments.add_argument("--above", type=float, default=0.0, help="leave out what takes less, microseconds")
     arguments.add_argument("--rounds", type=int, default=5)
     given = arguments.parse_args()
     robots, peers = loaded()
     rows = [(robot, name, what, call, peers.get(robot, {}).get(name) if not what else None)
-            for robot, name, what, call in one_state_calls.all_calls(robots)]
+            for robot, name, what, call in one_state_calls.all_calls(robots) if given.all or not what]
     best = {}
     for _ in range(given.rounds):
         for at, (*_, call, peer) in enumerate(rows):
             for column, one in enumerate((call, peer)):
                 if one:
                     best[at, column] = min(best.get((at, column), np.inf), median(one, 101))
-    one = {robot: best[at, 0] for at, (robot, name, what, *_) in enumerate(rows) if (name, what) == ("inverse_dynamics", "")}
+    one = next(best[at, 0] for at, (_, name, what, *_) in enumerate(rows) if (name, what) == ("inverse_dynamics", ""))
     print(f"{'robot':<9} {'function':<58} {'rne':>7} {'pinocchio':>9} {'/ inverse_dynamics':>18}")
+    shown = set()
     for at, (robot, name, what, _, peer) in enumerate(rows):
-        if best[at, 0] > given.above:
+        is_new = given.all or robot in URDFS or (name, what) not in shown
+        shown.add((name, what))
+        if best[at, 0] > given.above and is_new:
             theirs = f"{best[at, 1]:9.1f}" if peer else " " * 9
-            ratio = best[at, 0] / one.get(robot, one["panda"])
-            print(f"{robot:<9} {f'{name} {what}':<58} {best[at, 0]:7.1f} {theirs} {ratio:18.1f}")
+            print(f"{robot:<9} {f'{name} {what}':<58} {best[at, 0]:7.1f} {theirs} {best[at, 0] / one:18.1f}")
 
 
 if __name__ == "__main__":
