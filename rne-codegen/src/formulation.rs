@@ -22,6 +22,12 @@ impl Formulation {
         Self::on(Builder::traced(policy, Embedding::default(), function), robot, function)
     }
 
+    /// The seven steps with joints near the arm, which no table needs to have there.
+    pub(crate) fn near(robot: &Robot, function: Function) -> Self {
+        let builder = Builder::traced(Policy::Structure, Embedding::default(), function);
+        Self::on(builder.moving_origins(), robot, function)
+    }
+
     /// The seven steps with the formulas as they are before anything folds.
     pub(crate) fn explained(robot: &Robot, function: Function) -> Self {
         Self::on(Builder::explained(Policy::Structure, Embedding::default(), function), robot, function)

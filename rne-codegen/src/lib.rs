@@ -75,6 +75,24 @@ use crate::formulation::Formulation;
 use crate::pipeline::{LARGEST, seven_steps_within};
 use crate::plan::PlanSet;
 use crate::prove::Reference;
+use crate::reduced::near_origins;
+
+/// Whether frames of the table stand so far from the arm that code of the seven steps loses digits.
+#[must_use]
+pub fn has_far_frames(robot: &Robot) -> bool {
+    near_origins(robot).is_some()
+}
+
+/// A program of a robot with what it loses in single precision. What is proved is measured already.
+#[must_use]
+pub fn measured(robot: &Robot, program: Program) -> Program {
+    if program.proof.is_some() {
+        return program;
+    }
+    // what cannot be compared is not measured
+    let loss = prove::loss_of_seven_steps(robot, &program).unwrap_or_default();
+    Program { loss, ..program }
+}
 
 /// Compiles the functions of one robot.
 ///
@@ -143,6 +161,11 @@ impl<'r> Compiler<'r> {
     /// when the code would be too large for any compiler, or when a plan of a plan file does not fit the robot or
     /// cannot be proved.
     pub fn compile(&self, function: Function, form: Form) -> Result<Program, CompileError> {
+        let program = self.compile_unmeasured(function, form)?;
+        Ok(if has_far_frames(self.robot) { measured(self.robot, program) } else { program })
+    }
+
+    fn compile_unmeasured(&self, function: Function, form: Form) -> Result<Program, CompileError> {
         let robot = self.robot;
         if let Some(joint) = robot.joints.iter().find(|joint| joint.coupling.is_some())
             && function.is_of_every_link()
@@ -239,7 +262,8 @@ impl<'r> Compiler<'r> {
         match Formulation::numbered(self.robot, function).proved(function, self.target, &reference) {
             Ok(numbered) => {
                 let operations = numbered.operations().total();
-                if operations <= of_seven_steps {
+                // digits are worth more than operations
+                if operations <= of_seven_steps || reference.is_near() {
                     return Program { refusals, ..numbered };
                 }
                 // a value that is found where it is not used otherwise costs what it takes there

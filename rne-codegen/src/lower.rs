@@ -98,6 +98,7 @@ pub(crate) fn lower(
         scales: Vec::new(),
         choices: Vec::new(),
         proof: None,
+        loss: None,
         refusals: Vec::new(),
     };
     let mut program = program.in_written_order();

@@ -52,7 +52,8 @@ impl Formulation {
         let (program, exactly) = self.lowered(reference.robot(), function)?;
         let mut program = target.arranged(&program);
         program.scales = scales;
-        program.proof = Some(prove::prove(reference, &program, &exactly, embedding)?);
+        let (proof, loss) = prove::prove(reference, &program, &exactly, embedding)?;
+        (program.proof, program.loss) = (Some(proof), loss);
         Ok(program)
     }
 }
@@ -63,7 +64,20 @@ impl<'r> Reference<'r> {
     /// # Errors
     /// When they cannot be compiled.
     pub fn of(robot: &'r Robot, function: Function) -> Result<Self, CompileError> {
-        Self::new(robot, function, |function| seven_steps_within(LARGEST, robot, function, &[], false))
+        Self::to(robot, seven_steps_within(LARGEST, robot, function, &[], false)?)
+    }
+
+    /// As [`Reference::of`]; the program is that of the seven steps.
+    ///
+    /// # Errors
+    /// When what it is compared with cannot be compiled.
+    pub(crate) fn to(robot: &'r Robot, seven_steps: Program) -> Result<Self, CompileError> {
+        let compiled = |function| {
+            let heading = Heading { robot, function, form: Form::SevenSteps };
+            let Formulation { names, traced, .. } = Formulation::near(robot, function);
+            Ok(lower(&heading, traced, &names)?.0)
+        };
+        Self::new(robot, seven_steps, compiled)
     }
 
     /// The evidence that a formulation, arranged as a build arranges it, is that of the seven steps.

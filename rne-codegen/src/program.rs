@@ -81,6 +81,10 @@ pub struct Program {
     pub choices: Vec<String>,
     /// Why a program that is not the seven steps gives their numbers.
     pub proof: Option<Proof>,
+    /// The largest error in single precision at random states, in parts of the largest number that it returns at any of
+    /// them, where that is above 1e-4 (1e-2 if the function solves by the mass matrix). Of the seven steps it is known
+    /// if frames of the table stand far from the arm, or after [`measured`](crate::measured).
+    pub loss: Option<f64>,
     /// The reduced forms that were tried before this one and refused, in order.
     pub refusals: Vec<Refusal>,
 }

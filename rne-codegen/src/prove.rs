@@ -11,7 +11,8 @@ use crate::function::Function;
 use crate::interpret::{Arguments, Interpreter, Real};
 use crate::ir::{Axis, Embedding, Exactly, Input, Name, Quantity, Residue, SamplePoint, composed, operators};
 use crate::program::{Program, Proof};
-use crate::refusal::largest_rounding;
+use crate::reduced::near_origins;
+use crate::refusal::{largest_loss, largest_rounding};
 use crate::{CompileError, Suspect};
 
 /// Number of random points in each field at which torques are compared.
@@ -35,28 +36,38 @@ const LEAST_SCALE: f64 = 1e-2;
 pub struct Reference<'r> {
     robot: &'r Robot,
     faithful: Program,
+    /// The same with joints near the arm, where the table has them far away: numbers are compared with its numbers.
+    near: Option<Program>,
     /// The torques of motion, of which what the function returns are parts.
     motion: Option<Program>,
 }
 
 impl<'r> Reference<'r> {
-    /// `seven_steps` compiles a function of the robot by them.
+    /// `compiled` compiles a function of the robot by the seven steps, with joints near the arm.
     ///
     /// # Errors
     /// When they cannot be compiled.
     pub(crate) fn new(
         robot: &'r Robot,
-        function: Function,
-        seven_steps: impl Fn(Function) -> Result<Program, CompileError>,
+        faithful: Program,
+        compiled: impl Fn(Function) -> Result<Program, CompileError>,
     ) -> Result<Self, CompileError> {
+        let function = faithful.function;
         let of_motion =
             if function.is_of_closed_loops() { Function::InverseDynamicsOfLoops } else { Function::InverseDynamics };
-        let motion = if function.entry().is_of_motion { Some(seven_steps(of_motion)?) } else { None };
-        Ok(Self { robot, faithful: seven_steps(function)?, motion })
+        let motion = if function.entry().is_of_motion { Some(compiled(of_motion)?) } else { None };
+        let is_far = near_origins(robot).is_some() && !function.is_of_table_points();
+        let near = if is_far { Some(compiled(function)?) } else { None };
+        Ok(Self { robot, faithful, near, motion })
     }
 
     pub(crate) const fn robot(&self) -> &'r Robot {
         self.robot
+    }
+
+    /// Whether the table has joints far from the arm, and other code than the seven steps has not.
+    pub(crate) const fn is_near(&self) -> bool {
+        self.near.is_some()
     }
 
     /// The function by the seven steps.
@@ -70,7 +81,7 @@ impl<'r> Reference<'r> {
     }
 }
 
-/// Compares a program with the seven steps.
+/// Compares a program with the seven steps; then what it loses in single precision, if that is too much.
 ///
 /// # Errors
 /// When it is another function, or rounds too badly.
@@ -79,12 +90,13 @@ pub(crate) fn prove(
     program: &Program,
     constants: &Exactly,
     embedding: Embedding,
-) -> Result<Proof, CompileError> {
+) -> Result<(Proof, Option<f64>), CompileError> {
     program.check_names()?;
     identical(reference.robot, program, constants, embedding)?;
-    let proof = rounding(reference, program);
+    let errors = errors(reference, program, STATES);
+    let proof = rounding(reference, &errors);
     if proof.rounding <= largest_rounding(program.function) {
-        Ok(proof)
+        Ok((proof, loss(program.function, &errors)))
     } else {
         Err(CompileError::Imprecise {
             function: program.function,
@@ -228,8 +240,25 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Sam
     Some(outputs.into_iter().map(|output| output.number).collect())
 }
 
-/// Measures a program and the seven steps in floating point.
-fn rounding(reference: &Reference<'_>, program: &Program) -> Proof {
+/// The error of a program of the seven steps in single precision, if that is too much.
+///
+/// # Errors
+/// When what it is compared with cannot be compiled.
+pub(crate) fn loss_of_seven_steps(robot: &Robot, program: &Program) -> Result<Option<f64>, CompileError> {
+    let reference = Reference::to(robot, program.clone())?;
+    Ok(loss(program.function, &errors(&reference, program, STATES)))
+}
+
+/// The largest error in single precision, in parts of the largest number that the function returns at any of the
+/// states, if that is too much.
+fn loss(function: Function, errors: &[Errors]) -> Option<f64> {
+    let largest = |of: fn(&Errors) -> f64| errors.iter().map(of).fold(0.0, larger);
+    let error = largest(|errors| errors.single * errors.scale) / largest(|errors| errors.scale);
+    (!errors.is_empty() && (error.is_nan() || error > largest_loss(function))).then_some(error)
+}
+
+/// The program and the seven steps in floating point.
+fn rounding(reference: &Reference<'_>, errors: &[Errors]) -> Proof {
     let mut proof = Proof {
         points: usize::try_from(POINTS).unwrap_or_default(),
         states: 0,
@@ -238,7 +267,7 @@ fn rounding(reference: &Reference<'_>, program: &Program) -> Proof {
         single_of_seven_steps: 0.0,
         before: reference.faithful.fold_report.before(),
     };
-    for errors in errors(reference, program, STATES) {
+    for errors in errors.iter().filter(|errors| errors.is_regular) {
         proof.states += 1;
         proof.rounding = larger(proof.rounding, errors.double);
         proof.single = larger(proof.single, errors.single);
@@ -251,7 +280,7 @@ fn rounding(reference: &Reference<'_>, program: &Program) -> Proof {
 /// largest error depends on which rare states one meets.
 pub(crate) fn loss_of_precision(reference: &Reference<'_>, program: &Program, states: usize) -> f64 {
     let errors = errors(reference, program, states);
-    let sum = |error: fn(&Errors) -> f64| errors.iter().map(error).sum::<f64>();
+    let sum = |error: fn(&Errors) -> f64| errors.iter().filter(|errors| errors.is_regular).map(error).sum::<f64>();
     let (found, expected) = (sum(|errors| errors.single), sum(|errors| errors.single_of_seven_steps));
     if found == 0.0 { 0.0 } else { found / expected }
 }
@@ -261,6 +290,10 @@ struct Errors {
     double: f64,
     single: f64,
     single_of_seven_steps: f64,
+    /// The largest torque.
+    scale: f64,
+    /// Whether accelerations mean something: the mass matrix is not singular but for rounding.
+    is_regular: bool,
 }
 
 /// The range of the positions of a joint at which programs are compared: within ±3 where the limits allow it.
@@ -272,9 +305,12 @@ fn positions(limits: Option<(f64, f64)>) -> (f64, f64) {
 /// Runs a program and the seven steps in floating point at random states: positions within the limits of the joints, ±3
 /// without limits, |q̇| ≤ 2, |q̈| ≤ 4. Closed loops are at positions that close them.
 #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
-fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Program, states: usize) -> Vec<Errors> {
+fn errors(reference: &Reference<'_>, program: &Program, states: usize) -> Vec<Errors> {
+    let Reference { robot, faithful, near, motion } = reference;
     let mut all = Vec::with_capacity(states);
     let steps = Interpreter::new(faithful);
+    let precise = near.as_ref().map(Interpreter::new);
+    let precise = precise.as_ref().unwrap_or(&steps);
     let motion = motion.as_ref().map(Interpreter::new);
     let reduced = Interpreter::new(program);
     // as they stand in the file, and rounded
@@ -303,7 +339,7 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
         let wrenches = at_tips(robot, wrench);
         let arguments = state([&q, &passive, &qd, &qdd], wrench, &wrenches, PAYLOAD, &parameters);
         let [expected, found] =
-            [&steps, &reduced].map(|code| code.run(&arguments, |x| x, f64::sin_cos).unwrap_or_default());
+            [precise, &reduced].map(|code| code.run(&arguments, |x| x, f64::sin_cos).unwrap_or_default());
         let largest = |torques: &[f64]| torques.iter().fold(0.0_f64, |largest, torque| largest.max(torque.abs()));
         let torques = motion.as_ref().and_then(|motion| motion.run(&arguments, |x| x, f64::sin_cos));
         let scale = largest(&expected).max(LEAST_SCALE * torques.map_or(0.0, |torques| largest(&torques)));
@@ -325,16 +361,12 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
             let torques = code.run(&arguments, |x| x as f32, f32::sin_cos).unwrap_or_default();
             torques.into_iter().map(f64::from).collect::<Vec<f64>>()
         };
-        let errors = Errors {
-            double: error(&found),
-            single: error(&single(&reduced)),
-            single_of_seven_steps: error(&single(&steps)),
-        };
+        let [single, single_of_seven_steps] = [&reduced, &steps].map(|code| error(&single(code)));
+        // far from the arm, the seven steps alone say nothing
+        let least = if near.is_some() { single.min(single_of_seven_steps) } else { single_of_seven_steps };
         // nor has one that is singular but for rounding
-        let is_regular = errors.single_of_seven_steps < SINGULAR;
-        if is_regular || !program.function.returns_accelerations() {
-            all.push(errors);
-        }
+        let is_regular = least < SINGULAR || !program.function.returns_accelerations();
+        all.push(Errors { double: error(&found), single, single_of_seven_steps, scale, is_regular });
     }
     all
 }

@@ -18,6 +18,11 @@ pub(crate) const fn largest_rounding(function: Function) -> f64 {
     if function.inverts_mass() { LARGEST_ROUNDING_OF_ACCELERATIONS } else { LARGEST_ROUNDING }
 }
 
+/// The largest error in single precision, in parts of the largest number that a function returns, that needs no words.
+pub(crate) const fn largest_loss(function: Function) -> f64 {
+    if function.inverts_mass() { 1e-2 } else { 1e-4 }
+}
+
 /// A reduced form of a function that was refused, so that the function has another one, or the seven steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {

@@ -530,6 +530,17 @@ pub(crate) fn remarks(robot: &Robot, table: &Table) -> Vec<String> {
             remarks.push(format!("row {row} has d = {d:.0} m and a = {a:.0} m{why}"));
         }
     }
+    for (row, joint) in robot.joints.iter().enumerate() {
+        let distance = joint.row.link.com.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if distance > FAR {
+            remarks.push(format!(
+                "the centre of mass of link {} is {distance:.0} m from the origin of its link frame: single precision \
+                 loses digits there, except in code of the form `reduced`; a joint with the key `at` (format 2) needs \
+                 no such frame",
+                row + 1
+            ));
+        }
+    }
     let has_mass = |joint: &Joint| {
         let link = joint.row.link;
         link.mass != 0.0 || link.inertia != Inertia::default() || link.has_first_moment()

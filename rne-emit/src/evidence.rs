@@ -67,3 +67,23 @@ pub fn refusals(program: &Program) -> Vec<String> {
     let heading = format!("Not every reduced form of {} could be taken; {form}. Refused:", program.function);
     std::iter::once(heading).chain(program.refusals.iter().map(|refusal| format!("  {refusal}"))).collect()
 }
+
+/// The functions for which single precision is not enough, with their errors. No line where it is enough for all.
+#[must_use]
+pub fn losses(programs: &[Program]) -> Vec<String> {
+    let lossy: Vec<_> = programs.iter().filter_map(|program| Some((program, program.loss?))).collect();
+    if lossy.is_empty() {
+        return Vec::new();
+    }
+    let heading = "Single precision (float, f32) is not enough for these functions. At random states, their largest \
+                   errors in parts of the largest number that they return are more than 1e-4, or more than 1e-2 where \
+                   they solve by the mass matrix:";
+    let error = |error: f64| if error.is_finite() { format!("{error:.1e}") } else { "not finite".to_owned() };
+    let errors = lossy.iter().map(|(program, loss)| format!("  {}, {}: {}", program.name, program.form, error(*loss)));
+    let advice = if lossy.iter().any(|(program, _)| program.form == Form::SevenSteps) {
+        "Compute them in double precision, or try the form reduced."
+    } else {
+        "Compute them in double precision."
+    };
+    std::iter::once(heading.to_owned()).chain(errors).chain([advice.to_owned()]).collect()
+}

@@ -36,7 +36,7 @@ pub use c::{
 };
 pub use cuda::cuda;
 pub use emitted_sine::sin_cos_f32;
-pub use evidence::{evidence, refusals};
+pub use evidence::{evidence, losses, refusals};
 pub use fmi::{FmiVersion, Fmu, FmuCausality, with_inertial_parameters};
 pub use formula::Formula;
 pub use heading::{GENERATED, Heading};

@@ -8,7 +8,7 @@ use rne_codegen::{ArgumentArray, Layout, Name, Program, Quantity, SineCosine};
 use rne_model::{JointIdentifier, Robot};
 
 use super::annotated::Annotated;
-use super::evidence::{evidence, refusals};
+use super::evidence::{evidence, losses, refusals};
 use super::expression::line;
 use super::heading::Heading;
 use super::inert::{markdown, verbatim};
@@ -158,8 +158,8 @@ fn header(robot: &Robot, programs: &[Program], sin_cos: SinCos) -> String {
     if let Some((program, proof)) = programs.iter().find_map(|program| Some((program, program.proof.as_ref()?))) {
         let _ = writeln!(text, "{}\n", verbatim(&evidence(program, proof).join("\n")));
     }
-    for refusals in programs.iter().map(refusals).filter(|refusals| !refusals.is_empty()) {
-        let _ = writeln!(text, "{}\n", verbatim(&refusals.join("\n")));
+    for lines in programs.iter().map(refusals).chain([losses(programs)]).filter(|lines| !lines.is_empty()) {
+        let _ = writeln!(text, "{}\n", verbatim(&lines.join("\n")));
     }
     text.push_str("Operations of one call, of the recursion -> of the code below:\n\n");
     text.push_str(&operations_table(programs));

@@ -18,11 +18,12 @@ pub(crate) fn operations(programs: &[Program]) -> String {
     format!("Straight-line code. Operations of one call, of the unfolded recursion -> of this code:\n\n{table}")
 }
 
-/// Why a form that is not the seven steps can be trusted, and which ones could not.
+/// Why a form that is not the seven steps can be trusted, which ones could not, and what single precision loses.
 pub(crate) fn evidence(programs: &[Program]) -> Vec<String> {
     let proved = programs.iter().find_map(|program| Some(rne_emit::evidence(program, program.proof.as_ref()?)));
-    let refusals = programs.iter().map(rne_emit::refusals).filter(|refusals| !refusals.is_empty());
-    proved.into_iter().chain(refusals).map(|lines| rne_emit::verbatim(&lines.join("\n"))).collect()
+    let others = programs.iter().map(rne_emit::refusals).chain([rne_emit::losses(programs)]);
+    let others = others.filter(|lines| !lines.is_empty());
+    proved.into_iter().chain(others).map(|lines| rne_emit::verbatim(&lines.join("\n"))).collect()
 }
 
 /// The documentation of one method: its cost, its steps, and links. `of_trait` is the trait's path.

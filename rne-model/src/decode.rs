@@ -42,7 +42,7 @@ pub(crate) const fn is_required(rule: &str) -> bool {
 /// The state that every reader needs: the text, the names of the numbers, and where mistakes go.
 pub(crate) struct Context<'t> {
     pub(crate) text: &'t str,
-    problems: &'t Problems,
+    pub(crate) problems: &'t Problems,
     /// The named constants; in the order of their names, so that suggestions do not depend on chance.
     pub(crate) parameters: RefCell<BTreeMap<String, Parameter>>,
     /// The parameters that stay free until run time, and what is found to depend on them.

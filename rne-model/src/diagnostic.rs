@@ -245,6 +245,13 @@ impl Problems {
         }
     }
 
+    /// Gives what has a label another one, and another help.
+    pub(crate) fn relabel(&self, label: &str, new: &str, help: &str) {
+        for found in self.found.borrow_mut().iter_mut().flatten().filter(|one| one.label.as_deref() == Some(label)) {
+            (found.label, found.help) = (Some(new.to_owned()), Some(help.to_owned()));
+        }
+    }
+
     /// Enters `steps` of work, for [`Report::work`].
     pub(crate) fn count(&self, steps: usize) {
         self.work.set(self.work.get().saturating_add(steps));

@@ -28,6 +28,10 @@ const FARTHEST: f64 = 5.0;
 const WIDEST_GYRATION: f64 = 2.0;
 /// No arm has a heavier link, kg.
 const HEAVIEST: f64 = 2000.0;
+/// The sine of the angle between two axes below which their common normal may be far away.
+const NEARLY_PARALLEL: f64 = 0.05;
+/// Beside a length that is probably in millimetres.
+const MILLIMETRES: &str = "millimetres?";
 /// The range of the acceleration of gravity on Earth, generously, m/s².
 const GRAVITY: RangeInclusive<f64> = 8.0..=11.0;
 /// Four turns; more in a revolute joint's limits are degrees.
@@ -133,7 +137,7 @@ pub(crate) fn centre_of_mass(cx: &Context, node: &Node, value: f64) {
             "the centre of mass lies {} m from the origin of the link frame, over {FARTHEST} m",
             cx.shown(node, value)
         );
-        cx.report(Diagnostic::lint(node.span.clone(), message).label("millimetres?").help("lengths are in metres"));
+        cx.report(Diagnostic::lint(node.span.clone(), message).label(MILLIMETRES).help("lengths are in metres"));
     }
 }
 
@@ -141,8 +145,30 @@ pub(crate) fn centre_of_mass(cx: &Context, node: &Node, value: f64) {
 pub(crate) fn length(cx: &Context, node: &Node, value: f64) {
     if value.abs() > LONGEST {
         let message = format!("the length {} m is over {LONGEST} m", cx.shown(node, value));
-        cx.report(Diagnostic::lint(node.span.clone(), message).label("millimetres?").help("lengths are in metres"));
+        cx.report(Diagnostic::lint(node.span.clone(), message).label(MILLIMETRES).help("lengths are in metres"));
     }
+}
+
+/// Frames that are far away because axes are nearly parallel, and not because lengths are in millimetres: then common
+/// normals are short.
+pub(crate) fn nearly_parallel(cx: &Context, joints: &[Joint]) {
+    let is_tilted = |joint: &Joint| (1e-15..NEARLY_PARALLEL).contains(&joint.row.dh.alpha.sin.abs());
+    if !joints.iter().any(is_tilted) || joints.iter().any(|joint| joint.row.dh.a.abs() > LONGEST) {
+        return;
+    }
+    let far = joints.iter().enumerate().filter_map(|(index, joint)| {
+        let [x, y, z] = joint.row.link.com;
+        let distance = libm::hypot(libm::hypot(x, y), z);
+        (distance > FARTHEST)
+            .then(|| format!(" The centre of mass of link {} is {} m away.", index + 1, short(distance)))
+    });
+    let help = format!(
+        "axes are nearly parallel, so that their common normal is far from the arm.{} Such frames lose digits in \
+         single precision (f32), except in code of the form `reduced`. The key `at` (format 2) places a joint where it \
+         is, without a common normal",
+        far.collect::<String>()
+    );
+    cx.problems.relabel(MILLIMETRES, "far from the arm", &help);
 }
 
 /// Grams taken for kilograms.

@@ -87,6 +87,7 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
     if !cx.has_errors() {
         without_effect(cx);
         lint::inertias(cx, node, convention, &joints, &of_loops);
+        lint::nearly_parallel(cx, &joints);
         lint::placeholders(cx, node, &joints);
         lint::missing_friction(cx, node);
         mirror::twins(cx, node, &joints);

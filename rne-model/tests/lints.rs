@@ -465,3 +465,34 @@ fn a_joint_with_the_name_of_frame_0_is_told() {
         }
     }
 }
+
+/// Frames that are far away because axes are nearly parallel have no lengths in millimetres.
+#[test]
+fn frames_of_nearly_parallel_axes_are_told_as_such() {
+    let arm = |convention: &str, tilt: &str, a: f64| {
+        let joint = |d: f64, com: f64, alpha: &str| {
+            format!(
+                "  - type: revolute\n    dh: {{theta: 0, d: {d}, a: {a}, alpha: {alpha}}}\n    link: {{mass: 2, com: \
+                 [0.1, 0, {com}], inertia: {{xx: 0.01, yy: 0.01, zz: 0.01}}}}\n"
+            )
+        };
+        let head =
+            format!("format: 1\nname: x\nsource: own\nconvention: {convention}\ngravity: [0, 0, -9.81]\njoints:\n");
+        found(&(head + &joint(0.1, 0.0, "pi/2") + &joint(536.0, -536.0, tilt) + &joint(-536.0, 0.0, tilt)))
+    };
+    for convention in ["standard", "modified"] {
+        let said = arm(convention, "0.0004", 0.3);
+        let told: Vec<_> =
+            said.diagnostics.iter().filter(|one| one.label.as_deref() == Some("far from the arm")).collect();
+        // d of joints 2 and 3, the centre of mass of link 2
+        assert_eq!(told.len(), 3, "{said}");
+        assert!(told.iter().all(|one| one.severity == Severity::Warning), "{said}");
+        let help = told[0].help.as_ref().expect("a help");
+        assert!(help.contains("The centre of mass of link 2 is 536 m away."), "{help}");
+        assert!(!said.to_string().contains("millimetres"), "{said}");
+    }
+    // a long common normal, or no tilt
+    for said in [arm("standard", "0.0004", 300.0), arm("modified", "0", 0.3), arm("modified", "pi/2", 0.3)] {
+        assert!(said.to_string().contains("millimetres?") && !said.to_string().contains("far from"), "{said}");
+    }
+}

@@ -5,6 +5,7 @@ mod arm;
 #[path = "../random/arms.rs"]
 mod arms;
 mod base_states;
+mod calibrated;
 mod case;
 mod centre_of_mass;
 mod check;

@@ -1,9 +1,10 @@
 //! A function of an arm over numpy's arrays.
 
+use std::ffi::CString;
 use std::ops::Range;
 
 use numpy::{Element, PyArrayDyn, PyArrayMethods};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PySlice, PyTuple};
 use rne::compiled::{Arguments, CompiledArm, Destination, EvaluationError, Function, Number};
@@ -85,6 +86,7 @@ pub(crate) fn evaluate<'py>(
     out: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     if are_single(given) {
+        warn_of_loss(py, arm, function)?;
         evaluate_in::<f32>(py, arm, function, given, out, "float32")
     } else {
         evaluate_in::<f64>(py, arm, function, given, out, "float64")
@@ -103,6 +105,18 @@ pub(crate) fn run<T: Number>(
         return arm.run_one(function, arguments, numbers);
     }
     arm.run(function, count, arguments, Destination::Rows(numbers))
+}
+
+/// Warns where single precision is not enough for a function. What cannot be compiled is told by who computes it.
+pub(crate) fn warn_of_loss(py: Python<'_>, arm: &CompiledArm, function: Function) -> PyResult<()> {
+    let Some(loss) = py.detach(|| arm.function(function)).ok().and_then(|compiled| compiled.program().loss) else {
+        return Ok(());
+    };
+    let text = format!(
+        "float32 is not enough for {function}: at random states, its errors are up to {loss:.1e} of the largest number \
+         that it returns; pass arrays of float64"
+    );
+    PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(text)?, 1)
 }
 
 fn evaluate_in<'py, T: Element + Number>(

@@ -12,6 +12,7 @@ use rne_gpu::{Device, GpuError, GpuRollout, Order, Precision};
 
 use crate::arm::{Arm, name};
 use crate::errors::of_evaluation;
+use crate::functions::warn_of_loss;
 use crate::xla::results;
 
 /// The cards that are open: their context is kept as long as the process lives, as other libraries do it.
@@ -76,6 +77,9 @@ impl GpuArm {
     fn prepare(&self, py: Python<'_>, function: &str, is_double: bool, is_rollout: bool) -> PyResult<()> {
         let function: Function = name(function)?;
         let precision = if is_double { Precision::Double } else { Precision::Single };
+        if !is_double {
+            warn_of_loss(py, self.arm.arm(), function)?;
+        }
         py.detach(|| self.arm.prepare(function, precision, is_rollout)).map_err(|error| of_gpu(&error))
     }
 

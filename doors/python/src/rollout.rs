@@ -7,12 +7,13 @@ use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyTuple};
 use rne::compiled::{CompiledArm, FrictionWidth, Number, Rollout, RolloutLimits};
+use rne_codegen::Function;
 use rne_model::Robot;
 
 use crate::arm::Arm;
 use crate::arrays::{self, Axes, Given, Held, Value, are_single, memory, room, shape_in_words, states, writable};
 use crate::errors::of_evaluation;
-use crate::functions::arguments;
+use crate::functions::{arguments, warn_of_loss};
 
 #[pymethods]
 impl Arm {
@@ -90,6 +91,7 @@ impl Arm {
         let rollout = Rollout { friction, limits, ..Rollout::new(steps, step) };
         warn_of_nothing(py, self.robot(), &rollout)?;
         if is_single {
+            warn_of_loss(py, &self.arm, Function::ForwardDynamics)?;
             roll_out::<f32>(py, &self.arm, &rollout, &given, out, "float32")
         } else {
             roll_out::<f64>(py, &self.arm, &rollout, &given, out, "float64")

@@ -75,15 +75,20 @@ impl Subject<'_> {
     /// How the function was compared with the recursive Newton-Euler algorithm.
     pub(super) fn proof(&self) -> Vec<String> {
         match self {
-            Self::Program(program) | Self::Observer(program, _) => program.proof.as_ref().map_or_else(
-                || {
-                    vec![
-                        "The code is the seven steps of recursive Newton-Euler, so there is no other form to compare."
-                            .to_owned(),
-                    ]
-                },
-                |proof| rne_emit::evidence(program, proof),
-            ),
+            Self::Program(program) | Self::Observer(program, _) => {
+                let mut lines = program.proof.as_ref().map_or_else(
+                    || {
+                        vec![
+                            "The code is the seven steps of recursive Newton-Euler, so there is no other form to \
+                             compare."
+                                .to_owned(),
+                        ]
+                    },
+                    |proof| rne_emit::evidence(program, proof),
+                );
+                lines.extend(rne_emit::losses(std::slice::from_ref(program)));
+                lines
+            }
             Self::Joints(function) => {
                 let other = match function {
                     JointFunction::Friction(_) => "`actuator_torques_smooth` of its runtime library",

@@ -133,16 +133,19 @@ fn refusals(path: &Path, robot: &Robot) -> Result<Vec<String>, Failure> {
         return Ok(Vec::new());
     }
     let compiler = Compiler::new(path, robot);
-    let mut notes = Vec::new();
+    let mut programs = Vec::new();
     for function in choice::functions_of(robot) {
         // what does not compile is an error of the commands that write code
         let Ok(program) = compiler.compiled(function, Form::Reduced)? else { continue };
-        let lines = rne_emit::refusals(&program);
-        if !lines.is_empty() {
-            notes.push(format!("{QUIET}note{QUIET:#}: {}", lines.join("\n")));
+        let is_reduced = program.form == Form::Reduced;
+        programs.push(program);
+        if is_reduced && rne_codegen::has_far_frames(robot) {
+            programs.extend(compiler.compiled(function, Form::SevenSteps)?.ok());
         }
     }
-    Ok(notes)
+    let notes = programs.iter().map(rne_emit::refusals).chain([rne_emit::losses(&programs)]);
+    let notes = notes.filter(|lines| !lines.is_empty());
+    Ok(notes.map(|lines| format!("{QUIET}note{QUIET:#}: {}", lines.join("\n"))).collect())
 }
 
 /// A golden file that the tests of a derive would not find.

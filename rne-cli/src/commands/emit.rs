@@ -16,7 +16,7 @@ use crate::files::output_file::{self, Existing, is_standard_output};
 use crate::files::plan_file::Compiler;
 use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::{Failure, Outcome};
-use crate::palette::{GOOD, TITLE, TYPED};
+use crate::palette::{GOOD, TITLE, TYPED, WARNING};
 use crate::values::choice;
 use crate::values::choice::FunctionOrAll;
 
@@ -224,8 +224,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut outcome = emitted(arguments, &robot, &programs, &bytes, out, header)?;
     outcome.remark += &not_for_casadi(arguments, &programs);
     outcome.remark += &arguments.rotors.note(&robot);
+    outcome.remark += &losses(arguments, &programs);
     outcome.remark += &robot_file::lint_remark(&checked.lints, &arguments.file);
     Ok(outcome)
+}
+
+/// What code loses in single precision, unless it computes in double precision alone.
+fn losses(arguments: &Arguments, programs: &[Program]) -> String {
+    let lines = rne_emit::losses(programs);
+    if lines.is_empty() || arguments.casadi || arguments.real == Some(Real::Double) {
+        return String::new();
+    }
+    format!("{WARNING}warning{WARNING:#}: {}\n", lines.join("\n"))
 }
 
 /// The code in files or on standard output, or the check of files.

@@ -220,7 +220,11 @@ impl<'a> Compiler<'a> {
     }
 
     pub(crate) fn compile(&self, function: Function, form: Form) -> Result<Program, Failure> {
-        self.compiled(function, form)?.map_err(|error| self.failure(function, form, &error))
+        let program = self.compiled(function, form)?.map_err(|error| self.failure(function, form, &error));
+        // where the mass matrix is badly conditioned, frames near the arm lose digits, too; that of a base without mass
+        // is always singular
+        let is_measured = function.inverts_mass() && !function.is_of_floating_base();
+        program.map(|program| if is_measured { codegen::measured(self.robot, program) } else { program })
     }
 
     /// How the constants of a program in the reduced form are computed from the numbers of the robot file.

@@ -322,3 +322,49 @@ fn a_frame_of_a_urdf_needs_no_import() {
     let code = emit(&[]);
     assert!(code.contains("_jacobian(") && !code.contains("_jacobian_of_"), "{code}");
 }
+
+/// Two axes are 5e-5 rad off parallel: their common normal is kilometres away, which is no matter of
+/// millimetres. Code of the seven steps loses digits there and says so at every door; that of the form `reduced` loses
+/// none.
+#[test]
+fn single_precision_of_a_calibrated_arm_is_kept_or_said_to_be_lost() {
+    let folder = folder("import_calibrated");
+    let joint = |index: usize, origin: &str| {
+        format!(
+            "<joint name=\"j{0}\" type=\"revolute\"><parent link=\"l{index}\"/><child link=\"l{0}\"/><origin {origin}/>\
+             <axis xyz=\"0 0 1\"/><limit lower=\"-3\" upper=\"3\" effort=\"9\" velocity=\"2\"/></joint><link \
+             name=\"l{0}\"><inertial><origin xyz=\"0.1 0.02 0.05\"/><mass value=\"2\"/><inertia ixx=\"0.004\" \
+             iyy=\"0.02\" izz=\"0.02\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>",
+            index + 1
+        )
+    };
+    let urdf =
+        ["xyz=\"0 0 0.15\"", "xyz=\"0 0.1 0\" rpy=\"1.5712 0 0\"", "xyz=\"0.24 0 0.1\" rpy=\"0.00004 0.00003 0\""];
+    let joints: String = urdf.iter().enumerate().map(|(index, origin)| joint(index, origin)).collect();
+    let path = folder.join("calibrated.urdf");
+    fs::write(&path, format!("<robot name=\"calibrated\"><link name=\"l0\"/>{joints}</robot>"))
+        .expect("a writable file");
+    let file = folder.join("calibrated.yaml");
+    let (path, file) = (path.to_str().expect("UTF-8"), file.to_str().expect("UTF-8"));
+    let imported = rne(&["import", path, "--no-snap", "-o", file]);
+    let said = format!("{} {}", imported.out, imported.err);
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    for words in ["the centre of mass of link 2 is ", "axes are nearly parallel"] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    assert!(!said.contains("millimetres"), "{said}");
+    let checked = fine(&["check", file]);
+    assert!(checked.contains("Single precision (float, f32) is not enough"), "{checked}");
+    assert!(checked.contains("  gravity_torques, seven_steps: "), "{checked}");
+    assert!(!checked.contains(", reduced: ") && !checked.contains("millimetres"), "{checked}");
+    for (language, form, is_lost) in
+        [("c", "reduced", false), ("c", "seven_steps", true), ("rust", "seven_steps", true)]
+    {
+        let emitted = rne(&["emit", file, "--lang", language, "--form", form, "--function", "gravity_torques"]);
+        for said in [&emitted.out, &emitted.err] {
+            assert_eq!(said.contains("Single precision (float, f32) is not"), is_lost, "{language}, {form}: {said}");
+        }
+    }
+    let double = rne(&["emit", file, "--lang", "c", "--real", "double", "--form", "seven_steps"]);
+    assert!(!double.err.contains("Single precision"), "{}", double.err);
+}

@@ -27,6 +27,7 @@ use crate::coordinates::Coordinates;
 use crate::formulate::Spin;
 use crate::function::Argument;
 use crate::ir::{Axis, Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
+use crate::reduced::near_origins;
 
 /// Where a joint, or the tip frame, is mounted on its parent link: the constants between a link and what it carries.
 #[derive(Clone, Copy)]
@@ -99,26 +100,15 @@ impl<'s> Arm<'s> {
         let joints = robot.joints.len();
         let zero = || builder.constant(0.0, Cause::Arithmetic);
         let number = |entry: Entry, value: f64| number(builder, robot, entry, value);
-        let frame = builder.function.frame(robot);
-        let tips = match frame {
-            Some(frame) => vec![robot.fixed_frame(frame)],
-            None if builder.function.has_tips() => robot.wrench_frames(),
-            None => vec![robot.tip()],
-        };
-        let placed = |(tip, FixedFrame { on, placement }): (usize, &FixedFrame)| {
-            let entry = |axis| match frame {
-                Some(FrameId::Named(frame)) => Entry::FrameXyz(frame, axis),
-                None if builder.function.has_tips() => robot.tip_entry(tip, axis),
-                // the placement of a link frame is no entry, and zero
-                _ => Entry::ToolXyz(axis),
-            };
-            (*on, Placement::new(builder, robot, placement, entry))
-        };
-        let placed: Vec<_> = tips.iter().enumerate().map(placed).collect();
+        let placed = placed_tips(builder, robot);
         let rows: Vec<Row> = robot.joints.iter().map(Joint::row_with_offset).collect();
         let twists: Vec<_> =
             rows.iter().enumerate().map(|(index, row)| turn_about_x(builder, robot, index, &row.dh.alpha)).collect();
         let floating_base = floating_base(builder, robot);
+        let near =
+            if builder.moves_origins && !builder.function.is_of_table_points() { near_origins(robot) } else { None };
+        // where joints are near the arm: from there to the link frame of the table
+        let mut ends: Vec<Vector<'s>> = Vec::new();
         let mut links: Vec<Link<'s>> = Vec::with_capacity(joints);
         for (index, row) in rows.iter().enumerate() {
             let (joint, parent) = (index + 1, robot.parent(index));
@@ -135,6 +125,11 @@ impl<'s> Arm<'s> {
                     (it.rotation * twists[index], it.rotation * length() + it.translation)
                 }
             };
+            let end = parent.and_then(|parent| ends.get(parent));
+            let lever = end.map_or(lever, |end| *end + lever);
+            let along =
+                near.as_ref().map(|near| Vector([zero(), zero(), builder.constant(near[index], Cause::Arithmetic)]));
+            let lever = along.map_or(lever, |along| lever + rotation * along);
             let is_first = links.iter().all(|link| link.parent != parent);
             let label = if is_first { 0 } else { joint };
             let r = from_com(builder, (&links, floating_base.as_ref()), parent, (label, lever));
@@ -149,6 +144,14 @@ impl<'s> Arm<'s> {
             let varying_turn = varying(builder, robot, [Entry::ThetaSine(index), Entry::ThetaCosine(index)]);
             let offset = Vector([length, zero(), number(Entry::D(index), row.dh.d)]);
             let com = table_axes.map_or(com, |axes| axes * com);
+            let (offset, com) = match along {
+                Some(along) => {
+                    let end = offset - along;
+                    ends.push(end);
+                    (builder.zeros(Cause::Arithmetic), end + com)
+                }
+                None => (offset, com),
+            };
             let written_axes = table_axes.unwrap_or_else(|| identity(builder));
             let (mass, rotor) = (mass(builder, robot, index), rotor(builder, robot, index));
             let inertia = table_axes.map_or(inertia, |axes| (axes * inertia) * axes.transpose());
@@ -173,7 +176,7 @@ impl<'s> Arm<'s> {
                 rotor,
             });
         }
-        let tips = mounted((builder, robot), (&links, floating_base.as_ref()), &twists, placed);
+        let tips = mounted((builder, robot), (&links, floating_base.as_ref()), (&twists, &ends), placed);
         let (tip_link, tip) = tips[0];
         let spins = Spin::all(builder, robot, &twists);
         Self {
@@ -221,11 +224,31 @@ impl<'s> Arm<'s> {
     }
 }
 
+/// The tips, or the frame in their place, in the link frames of the table.
+fn placed_tips<'s>(builder: &'s Builder, robot: &Robot) -> Vec<(Option<usize>, Placement<'s>)> {
+    let frame = builder.function.frame(robot);
+    let tips = match frame {
+        Some(frame) => vec![robot.fixed_frame(frame)],
+        None if builder.function.has_tips() => robot.wrench_frames(),
+        None => vec![robot.tip()],
+    };
+    let placed = |(tip, FixedFrame { on, placement }): (usize, &FixedFrame)| {
+        let entry = |axis| match frame {
+            Some(FrameId::Named(frame)) => Entry::FrameXyz(frame, axis),
+            None if builder.function.has_tips() => robot.tip_entry(tip, axis),
+            // the placement of a link frame is no entry, and zero
+            _ => Entry::ToolXyz(axis),
+        };
+        (*on, Placement::new(builder, robot, placement, entry))
+    };
+    tips.iter().enumerate().map(placed).collect()
+}
+
 /// Where tips are mounted on their links. Of a frame in the place of the tip there is one.
 fn mounted<'s>(
     (builder, robot): (&'s Builder, &Robot),
     (links, floating_base): (&[Link<'s>], Option<&Body<'s>>),
-    twists: &[Matrix<'s>],
+    (twists, ends): (&[Matrix<'s>], &[Vector<'s>]),
     placed: Vec<(Option<usize>, Placement<'s>)>,
 ) -> Vec<(Option<usize>, Mount<'s>)> {
     let frame = builder.function.frame(robot);
@@ -235,6 +258,7 @@ fn mounted<'s>(
             (Convention::Standard, Some(&twist)) => (twist * at.rotation, twist * at.translation),
             _ => (at.rotation, at.translation),
         };
+        let lever = link.and_then(|link| ends.get(link)).map_or(lever, |end| *end + lever);
         let tip = links.len() + 1 + index;
         let is_first = links.iter().all(|other| other.parent != link) && tips.iter().all(|(on, _)| *on != link);
         let label = if is_first { 0 } else { tip };

@@ -246,6 +246,12 @@ impl Function {
         matches!(self, Self::Regressor | Self::FloatingRegressor)
     }
 
+    /// Whether what it returns is about the points where the table has its joints and frames.
+    #[must_use]
+    pub const fn is_of_table_points(self) -> bool {
+        matches!(self, Self::LinkPoses | Self::Regressor | Self::FloatingRegressor | Self::JointWrenches)
+    }
+
     /// Whether it has a reduced form, whose graph can be rewritten.
     #[must_use]
     pub const fn can_be_rewritten(self) -> bool {

@@ -30,6 +30,8 @@ pub(crate) struct Builder {
     trace: Option<RefCell<Trace>>,
     /// The function that is being written. Arguments that this function does not have are zero.
     pub(crate) function: Function,
+    /// Whether joints may be taken to be at other points of their axes than the table has them.
+    pub(crate) moves_origins: bool,
     /// The variable of the derivatives that are being written.
     by: Cell<Option<WithRespectTo>>,
     /// The motion of the joints in the formulas that are being written.
@@ -61,12 +63,19 @@ impl Builder {
             graph: RefCell::new(Graph::new(policy, embedding)),
             trace: None,
             function,
+            // the seven steps have the joints where the table has them
+            moves_origins: policy != Policy::Structure,
             by: Cell::new(None),
             moving: Cell::default(),
             is_unnamed: Cell::default(),
             of_loops: RefCell::default(),
             solved: RefCell::default(),
         }
+    }
+
+    /// Joints may be taken to be at other points of their axes.
+    pub(crate) fn moving_origins(self) -> Self {
+        Self { moves_origins: true, ..self }
     }
 
     /// Whether names are kept.

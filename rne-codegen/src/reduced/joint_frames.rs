@@ -15,6 +15,25 @@ use crate::reduced::gyrostats::{Carrier, put_rotors};
 use crate::reduced::link_parameters::{about_x, about_z, apply, compose, transpose};
 use crate::reduced::{Gyrostat, IDENTITY, PseudoInertia, Square, Triple};
 
+/// Frames stand far from the arm if one is farther from it than this, in parts of the longest way within the arm: second
+/// moments then lose more than two digits.
+const FAR: f64 = 10.0;
+
+/// How far along its axis a point near the arm is from where the table has each joint; `None` where the frames of the
+/// table stand near the arm. Any point of its axis serves a joint; the common normal of nearly parallel axes, where a
+/// table has one, may be hundreds of metres away.
+pub(crate) fn near_origins(robot: &Robot) -> Option<Vec<f64>> {
+    // who has none has no such normal, and waits for nothing
+    let is_tilted = |joint: &Joint| joint.row.dh.alpha.right.is_none() && joint.row.dh.alpha.sin.abs() < 1.0 / FAR;
+    if !robot.joints.iter().any(is_tilted) {
+        return None;
+    }
+    let written = JointFrames::as_written(robot, false, Embedding::default())?;
+    let (_, farthest, reach) = written.near(0.0);
+    // finer points leave numbers that are zero but for rounding
+    (farthest > FAR * reach && farthest.is_finite()).then(|| written.near(reach / 64.0).0)
+}
+
 /// One joint and the link that it moves.
 #[derive(Clone, Debug)]
 pub(crate) struct JointFrame {
@@ -196,6 +215,9 @@ impl JointFrames {
 
     fn read(robot: &Robot, frames: FrameChoice, embedding: Embedding) -> Option<Self> {
         let mut joint_frames = Self::as_written(robot, frames.floating, embedding)?;
+        if let Some(near) = near_origins(robot) {
+            joint_frames.move_origins(&near);
+        }
         joint_frames.straighten();
         joint_frames.turn_carriers();
         if !frames.floating {
@@ -287,6 +309,52 @@ impl JointFrames {
         let gravity = rows.iter().map(of_base).collect();
         let coordinates = Coordinates::of(robot);
         Some(Self { rows, coordinates, gravity, tips, rotors, coupled, embedding, known, base })
+    }
+
+    /// Moves the origin of each frame to a point that is so far along its axis from where the row has its joint.
+    fn move_origins(&mut self, near: &[f64]) {
+        // from there to the origin of the table
+        let near: Vec<Number> = near.iter().map(|&along| self.embedding.decimal(along)).collect();
+        let ends: Vec<Number> = self.rows.iter().zip(&near).map(|(row, &along)| row.d - along).collect();
+        let along_z = |z: Number, [x, y, before]: Triple| [x, y, before + z];
+        for (index, row) in self.rows.iter_mut().enumerate() {
+            let offset = row.parent.map_or(row.offset, |parent| along_z(ends[parent], row.offset));
+            let moved = row.along_axis(near[index]);
+            row.offset = [0, 1, 2].map(|axis| offset[axis] + moved[axis]);
+            row.d = Number::ZERO;
+            row.matter = row.matter.moved([Number::ZERO, Number::ZERO, ends[index]]);
+        }
+        for tip in &mut self.tips {
+            tip.translation = along_z(ends[tip.on], tip.translation);
+        }
+    }
+
+    /// How far along each axis a point near the arm is: of a joint on a link, the foot of the perpendicular from the
+    /// point of the link's own joint; of a joint on the base, that from the origin of frame 0. They are multiples of
+    /// `step`, unless that is 0. Then the longest such way to a point of the table, and the longest way within the arm.
+    fn near(&self, step: f64) -> (Vec<f64>, f64, f64) {
+        let raised = |v: Triple, by: f64| [v[0].to_f64(), v[1].to_f64(), v[2].to_f64() + by];
+        let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let norm = |v: [f64; 3]| dot(v, v).sqrt();
+        let (mut near, mut farthest, mut reach) = (Vec::new(), 0.0_f64, 0.0_f64);
+        // from the points to the origins of the table
+        let mut ends: Vec<f64> = Vec::new();
+        for row in &self.rows {
+            let point = raised(row.offset, row.parent.map_or(0.0, |parent| ends[parent]));
+            let axis = raised(row.along_axis(Number::ONE), 0.0);
+            let along = -dot(point, axis);
+            let along = if step == 0.0 { along } else { (along / step).round() * step };
+            let (mass, end) = (row.matter.mass.to_f64(), row.d.to_f64() - along);
+            farthest = farthest.max(along.abs()).max(end.abs());
+            reach = reach.max(norm([0, 1, 2].map(|i| point[i] + along * axis[i])));
+            if mass != 0.0 {
+                reach = reach.max(norm(raised(row.matter.h, mass * end)) / mass.abs());
+            }
+            near.push(along);
+            ends.push(end);
+        }
+        reach = self.tips.iter().map(|tip| norm(raised(tip.translation, ends[tip.on]))).fold(reach, f64::max);
+        (near, farthest, reach)
     }
 
     /// α = ±π becomes 0: from there on all turns count the other way round, until the next such row.

@@ -35,7 +35,7 @@ pub(crate) use crba::Composite;
 pub(crate) use forward::{Arm, Gradient, Motion, Moved, ScaledTwist, Twist};
 pub(crate) use gyrostats::{Carrier, Gyrostat};
 pub(crate) use inward::{Body, FirstMoment, Inward, Outward, Symmetric, Turned};
-pub(crate) use joint_frames::{FrameChoice, JointFrame, JointFrames};
+pub(crate) use joint_frames::{FrameChoice, JointFrame, JointFrames, near_origins};
 pub(crate) use joint_motion::JointMotion;
 pub(crate) use link_parameters::{Entry, IDENTITY, PseudoInertia, Square, Triple};
 pub(crate) use payload::Load;

@@ -7,7 +7,7 @@ use rne_model::{Joint, JointIdentifier};
 
 use super::signature::{fields, head, parameters_type, record_type, records};
 use super::{ConstantTooLarge, File, comment, joint_functions, motors, observer, runge_kutta};
-use crate::evidence::{evidence, refusals};
+use crate::evidence::{evidence, losses, refusals};
 use crate::heading::Heading;
 use crate::parameters::{self, Parameter};
 use crate::syntax::Precision;
@@ -294,8 +294,8 @@ pub(crate) fn robot(file: &File) -> String {
     }
     let proved = file.programs.iter().find_map(|program| Some((program, program.proof.as_ref()?)));
     let evidence = proved.map(|(program, proof)| evidence(program, proof));
-    let refusals = file.programs.iter().map(refusals).filter(|refusals| !refusals.is_empty());
-    for lines in evidence.into_iter().chain(refusals) {
+    let others = file.programs.iter().map(refusals).chain([losses(file.programs)]).filter(|lines| !lines.is_empty());
+    for lines in evidence.into_iter().chain(others) {
         text.push_str("//\n");
         for line in lines {
             // a number stays on its line
