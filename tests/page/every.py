@@ -128,12 +128,14 @@ NAMES = """
 BEFORE = BOXES + """
   const [index, done] = arguments;
   const of = window.names[index];
+  const high = of.getBoundingClientRect().top;
   of.scrollIntoView({ block: "nearest" });
+  const frames = of.getBoundingClientRect().top === high ? 1 : 4;
   // what comes into sight is laid out frames later, and may bring more into sight
   const settled = (last, same, then) => requestAnimationFrame(() => {
     const now = boxes();
     const again = differing(last, now).length ? 0 : same + 1;
-    again < 4 ? settled(now, again, then) : then();
+    again < frames ? settled(now, again, then) : then();
   });
   settled(boxes(), 0, () => {
     const box = of.getClientRects()[0];
