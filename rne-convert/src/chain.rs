@@ -6,10 +6,11 @@ mod follower;
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
-use rne_model::{Coupling, Limits, Motor, Remedy, Report, one_line, six_digits};
+use rne_model::{Coupling, Limits, Motor, Remedy, Report, Transform, one_line, six_digits};
 
 use self::follower::Coupled;
 use crate::body::Body;
+use crate::frames::transform;
 use crate::geometry::{Pose, Rotation, Vector, decimal};
 use crate::remark::{Remark, Remarks};
 use crate::selection::{End, Selection, link, locks, path, refuse_value, tip};
@@ -171,12 +172,12 @@ pub(crate) fn extract(
         frames: Vec::new(),
         loops: Vec::new(),
     };
+    walk.look_at_floating(floats.then_some(chain.base));
     if floats {
         // it has no place in the world, and gravity is that of the world
         chain.base = Pose::identity();
     }
     chain.gravity = chain.base.rotation.transpose() * chain.gravity;
-    walk.look_at_floating(floats);
     if selection.whole {
         walk.whole(base, tip, &mut chain)?;
         walk.couple(&mut chain);
@@ -269,13 +270,26 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Tells whether the link that floats in the file is a floating base.
-    fn look_at_floating(&mut self, floats: bool) {
+    /// Tells whether the link that floats in the file is a floating base, whose joint is at `placement` in the world.
+    fn look_at_floating(&mut self, placement: Option<Pose>) {
         let Some(link) = self.urdf.floats else { return };
         let name = quoted(&self.urdf.links[link].name);
+        let floats = placement.is_some();
         let then = if floats { "so the robot has a floating base" } else { "and rne fixes it where the file has it" };
         self.told.remarks.push(format!("the link {name} floats in the file, {then}"));
         self.told.floats = Some(floats);
+        // the free joint of an MJCF file counts from the world, wherever its body is in the file
+        if let Some(placement) = placement.map(transform).filter(|it| *it != Transform::IDENTITY)
+            && self.urdf.gravity.is_none()
+        {
+            let Transform { xyz, rpy: [roll, pitch, yaw] } = placement;
+            let rpy = [roll.radians, pitch.radians, yaw.radians];
+            self.told.remarks.push(format!(
+                "the floating joint of {name} has the placement xyz {xyz:?} m, rpy {rpy:?} rad in the world; rne takes \
+                 the pose of the base in the world: it is this placement times the position of the joint, such as q of \
+                 Pinocchio"
+            ));
+        }
     }
 
     /// World → base: the joints up to there are held.

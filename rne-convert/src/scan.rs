@@ -22,6 +22,11 @@ const MAX_ELEMENTS: usize = 20_000;
 /// No number of an arm is larger, in SI units.
 pub(crate) const LARGEST: f64 = 1e9;
 
+/// A limit of a joint, infinite if there is none: for this, programs write their largest number, such as 1.8e308.
+pub(crate) fn end_of_range(value: f64) -> f64 {
+    if value.abs() < LARGEST { value } else { f64::INFINITY.copysign(value) }
+}
+
 /// More kinds of unknown elements and attributes than any description has.
 const MAX_UNKNOWN: usize = 1000;
 

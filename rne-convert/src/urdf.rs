@@ -9,7 +9,7 @@ use rne_model::{Cut, Inertia, Limits, Report};
 use crate::closed_loop::Loop;
 use crate::mjcf;
 use crate::remark::Remarks;
-use crate::scan::{Seen, root_name, scan};
+use crate::scan::{Seen, end_of_range, root_name, scan};
 use crate::source::{Source, names, quoted};
 use crate::transmission::{self, Transmission};
 
@@ -392,10 +392,14 @@ impl Urdf {
             ));
         }
         self.root = root;
-        // a root with mass is a body of its own, and no world
-        let floating = |joint: &&Joint| joint.kind == Kind::Floating && joint.parent == root;
-        let floating = self.joints.iter().filter(floating).filter(|_| !self.links[root].has_mass());
-        self.find_floating(&floating.map(|joint| joint.child).collect::<Vec<_>>());
+        // links with mass are bodies of their own, and no world
+        let is_world = |link: usize| !self.links[link].has_mass();
+        let is_placed = |&joint: &usize| self.joints[joint].kind == Kind::Fixed && is_world(self.joints[joint].parent);
+        let floating = |joint: &&Joint| {
+            joint.kind == Kind::Floating && is_world(joint.parent) && self.to_root(joint.parent).iter().all(is_placed)
+        };
+        let floating: Vec<usize> = self.joints.iter().filter(floating).map(|joint| joint.child).collect();
+        self.find_floating(&floating);
         if let Some(joint) = self.floats.and_then(|link| self.links[link].parent) {
             self.joints[joint].kind = Kind::Fixed;
         }
@@ -533,7 +537,8 @@ impl Joint {
     fn of(seen: &Seen, parent: usize, child: usize) -> Self {
         let kind = seen.text("joint", "type").and_then(Kind::of).unwrap_or(Kind::Fixed);
         let number = |element, attribute| seen.number(element, attribute).unwrap_or(0.0);
-        let (lower, upper) = (number("limit", "lower"), number("limit", "upper"));
+        let limit = |attribute| end_of_range(number("limit", attribute));
+        let (lower, upper) = (limit("lower"), limit("upper"));
         let both = lower.is_finite() && upper.is_finite() && lower < upper;
         // zero stands where nothing was measured
         let positive = |limit: f64| (limit > 0.0 && limit.is_finite()).then_some(limit);
@@ -561,8 +566,8 @@ impl Joint {
             axis: seen.vector("axis", "xyz").unwrap_or([1.0, 0.0, 0.0]),
             limits: Limits {
                 position: (both && kind != Kind::Continuous).then_some((lower, upper)),
-                velocity: positive(number("limit", "velocity")),
-                effort: positive(number("limit", "effort")),
+                velocity: positive(limit("velocity")),
+                effort: positive(limit("effort")),
             },
             friction: [number("dynamics", "damping"), number("dynamics", "friction")],
             has_motor: seen.text("joint", "independent").map(|word| word == "true"),

@@ -1,4 +1,4 @@
-//! States of floating bases in the vectors of other tools, which `xtask/conventions.py` got from these tools.
+//! States of floating bases in the vectors of other tools, which `tests/reference/conventions.py` got from these tools.
 
 use rne::{BaseMotion, BaseTwist, Pose, Quaternion, Wrench};
 use serde_json::Value;

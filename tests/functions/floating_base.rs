@@ -1,6 +1,6 @@
 //! Robots on floating bases: real ones beside Pinocchio, operations of the reduced form, and laws of mechanics.
 //!
-//! `xtask/floating.py` made the robot files and the values: `rne import --whole --floating` read the URDF, and so did
+//! `tests/reference/floating.py` made the robot files and the values: `rne import --whole --floating` read the URDF, and so did
 //! Pinocchio, whose states have a quaternion and spatial vectors.
 
 use nalgebra::Vector3;

@@ -1,7 +1,7 @@
 //! Real robots with branches, their bases held: functions beside Pinocchio, and operations of the reduced form.
 //!
 //! Six robot files and their golden files are by `trees/from_urdf.py`; both programs got the same snapped numbers. The
-//! others are by `xtask/trees.py`: `rne import --whole` made the robot file, and Pinocchio read the URDF.
+//! others are by `tests/reference/trees.py`: `rne import --whole` made the robot file, and Pinocchio read the URDF.
 
 use rne_codegen::{Compiler, Form, Function};
 use rne_model::{GoldenFile, Robot};
@@ -67,7 +67,7 @@ fn torques_of_real_trees_are_those_of_pinocchio() {
     }
 }
 
-/// The golden files of `xtask/trees.py`: names of the robots.
+/// The golden files of `tests/reference/trees.py`: names of the robots.
 fn imported() -> Vec<String> {
     let folder = format!("{ROOT}/{FOLDER}");
     let files = std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{folder}: {error}"));

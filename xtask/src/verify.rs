@@ -216,6 +216,13 @@ const STEPS: &[Step] = &[
         needs: Needs::Time,
     },
     Step {
+        name: "corpora",
+        about: "whole robots of packages through every door of the Python wheel, beside Pinocchio and MuJoCo",
+        variables: &[],
+        command: &["cargo", "xtask", "urdf", "--install", "--corpora"],
+        needs: Needs::Time,
+    },
+    Step {
         name: "no_std",
         about: "the facade, the runtime and the plain types of the table without `std`",
         variables: &[],

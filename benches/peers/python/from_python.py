@@ -24,7 +24,7 @@ import numpy as np
 import rne
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path += [str(HERE), str(HERE.parents[2] / "xtask")]
+sys.path += [str(HERE), str(HERE.parents[2] / "tests/reference")]
 warnings.filterwarnings("ignore")
 
 # below the packages' folder; what of the URDF is the arm

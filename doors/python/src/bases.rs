@@ -2,15 +2,12 @@
 //! and its derivatives as their matrices: docs/conventions.md has the table of these conventions.
 
 use numpy::PyUntypedArrayMethods;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use rne::{BaseMotion, Pose};
 
 use crate::arrays::{array_of, in_order, readable, shape_in_words, taken};
-
-/// Gravity where z points up, m/s².
-const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
 /// An argument whose last axes are those of one state.
 struct Numbers {
@@ -19,11 +16,19 @@ struct Numbers {
     elements: Vec<f64>,
     /// How many of the axes are those of one state.
     axes: usize,
+    /// The first element of a vector that counts.
+    begin: usize,
 }
 
 impl Numbers {
     /// Vectors of at least `least` elements, or matrices with at least as many columns.
     fn of(name: &'static str, value: &Bound<'_, PyAny>, axes: usize, least: usize) -> PyResult<Self> {
+        Self::after(0, name, value, axes, least)
+    }
+
+    /// The same, of which the elements from `begin` on count.
+    fn after(begin: usize, name: &'static str, value: &Bound<'_, PyAny>, axes: usize, least: usize) -> PyResult<Self> {
+        let least = begin + least;
         let array = in_order(taken::<f64>(value.py(), name, value, "float64", &(0..0))?)?;
         let shape = array.shape().to_vec();
         if shape.len() < axes || shape.last().is_none_or(|&columns| columns < least) {
@@ -34,7 +39,7 @@ impl Numbers {
             return Err(PyValueError::new_err(message));
         }
         let elements = readable(name, &array)?.as_slice()?.to_vec();
-        Ok(Self { name, shape, elements, axes })
+        Ok(Self { name, shape, elements, axes, begin })
     }
 
     /// The axes of the states.
@@ -50,7 +55,7 @@ impl Numbers {
     }
 
     fn first<const N: usize>(&self, state: usize) -> [f64; N] {
-        std::array::from_fn(|index| self.at(state)[index])
+        std::array::from_fn(|index| self.at(state)[self.begin + index])
     }
 }
 
@@ -92,10 +97,26 @@ fn told<'py>(
     Ok(told)
 }
 
-/// Gravity in the world; without an argument it points along -z.
-fn gravity_of(gravity: Option<&Bound<'_, PyAny>>) -> PyResult<Numbers> {
-    let own = || Numbers { name: "gravity", shape: vec![3], elements: GRAVITY.to_vec(), axes: 1 };
-    gravity.map_or_else(|| Ok(own()), |gravity| Numbers::of("gravity", gravity, 1, 3))
+/// Gravity in the axes in which the tool has the orientation of the base, and where the base begins in positions and in
+/// velocities. The function `base_of` of the module `rne.models` reads them from the model of the tool.
+fn base_of(
+    py: Python<'_>,
+    base_of: &str,
+    model: Option<&Bound<'_, PyAny>>,
+    gravity: Option<&Bound<'_, PyAny>>,
+) -> PyResult<(Numbers, [usize; 2])> {
+    match (model, gravity) {
+        (None, Some(gravity)) => Ok((Numbers::of("gravity", gravity, 1, 3)?, [0; 2])),
+        (Some(model), None) => {
+            let found = py.import("rne.models")?.call_method1(base_of, (model,))?;
+            let (gravity, position, velocity): (Bound<'_, PyAny>, usize, usize) = found.extract()?;
+            Ok((Numbers::of("gravity", &gravity, 1, 3)?, [position, velocity]))
+        }
+        _ => Err(PyTypeError::new_err(
+            "give either `model`, the model of these vectors, or `gravity`, such as gravity=(0, 0, -9.81); without \
+             them the direction of gravity is not known",
+        )),
+    }
 }
 
 /// The base whose inertial measurement unit reads these values.
@@ -137,47 +158,59 @@ pub(crate) fn base_from_imu<'py>(
     })
 }
 
-/// The base of a Pinocchio model with a free flyer, which is its first joint.
+/// The base of a Pinocchio model: what a free flyer moves that carries all other joints.
 ///
-/// q, v, a: the vectors of `pinocchio.rnea`, of shape (nq,), (nv,), (nv,) or (N, …). Only the first 7, 6 and 6 elements
-/// count. `a` is Pinocchio's spatial acceleration.
-/// gravity: in the world, m/s²; None is (0, 0, -9.81).
+/// q, v, a: the vectors of `pinocchio.rnea`, of shape (nq,), (nv,), (nv,) or (N, …). `a` is Pinocchio's spatial
+/// acceleration.
+/// model: the `pinocchio.Model`. It says which elements of the vectors are those of the base, its gravity, and where it
+/// places the free flyer: q has the orientation of the base from there.
+/// gravity: instead of the model, m/s², in the axes in which q has the orientation of the base: those of the world,
+/// unless the model places its free flyer elsewhere. The first 7, 6 and 6 elements of the vectors are then the base.
 ///
 /// Returns a dict of `base_omega`, `base_omega_dot`, `base_acceleration` and `base_gravity`, in axes of the base.
+///
+/// Raises TypeError without model and gravity, ValueError where no free flyer of the model carries all other joints.
 #[pyfunction]
-#[pyo3(signature = (q, v, a, *, gravity=None))]
+#[pyo3(signature = (q, v, a, model=None, *, gravity=None))]
 pub(crate) fn base_from_pinocchio<'py>(
     py: Python<'py>,
     q: &Bound<'py, PyAny>,
     v: &Bound<'py, PyAny>,
     a: &Bound<'py, PyAny>,
+    model: Option<&Bound<'py, PyAny>>,
     gravity: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (q, gravity) = (Numbers::of("q", q, 1, 7)?, gravity_of(gravity)?);
-    let (v, a) = (Numbers::of("v", v, 1, 6)?, Numbers::of("a", a, 1, 6)?);
+    let (gravity, [position, velocity]) = base_of(py, "base_of_pinocchio", model, gravity)?;
+    let q = Numbers::after(position, "q", q, 1, 7)?;
+    let (v, a) = (Numbers::after(velocity, "v", v, 1, 6)?, Numbers::after(velocity, "a", a, 1, 6)?);
     told(py, &[&q, &v, &a, &gravity], |state| {
         BaseMotion::from_pinocchio(&q.first(state), &v.first(state), &a.first(state), gravity.first(state))
     })
 }
 
-/// The base of a MuJoCo model with a free joint, which is its first joint.
+/// The base of a MuJoCo model: the body with a free joint that carries all other joints.
 ///
-/// qpos, qvel, qacc: the vectors of `MjData`, of shape (nq,), (nv,), (nv,) or (N, …). Only the first 7, 6 and 6 elements
-/// count.
-/// gravity: in the world, m/s²: `model.opt.gravity`; None is (0, 0, -9.81).
+/// qpos, qvel, qacc: the vectors of `MjData`, of shape (nq,), (nv,), (nv,) or (N, …).
+/// model: the `mujoco.MjModel`. It says which elements of the vectors are those of the base, and its gravity, which is
+/// zero if its flag `gravity` is off.
+/// gravity: instead of the model, m/s², in the world. The first 7, 6 and 6 elements of the vectors are then the base.
 ///
 /// Returns a dict of `base_omega`, `base_omega_dot`, `base_acceleration` and `base_gravity`, in axes of the base.
+///
+/// Raises TypeError without model and gravity, ValueError where no free joint of the model carries all other joints.
 #[pyfunction]
-#[pyo3(signature = (qpos, qvel, qacc, *, gravity=None))]
+#[pyo3(signature = (qpos, qvel, qacc, model=None, *, gravity=None))]
 pub(crate) fn base_from_mujoco<'py>(
     py: Python<'py>,
     qpos: &Bound<'py, PyAny>,
     qvel: &Bound<'py, PyAny>,
     qacc: &Bound<'py, PyAny>,
+    model: Option<&Bound<'py, PyAny>>,
     gravity: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (q, gravity) = (Numbers::of("qpos", qpos, 1, 7)?, gravity_of(gravity)?);
-    let (v, a) = (Numbers::of("qvel", qvel, 1, 6)?, Numbers::of("qacc", qacc, 1, 6)?);
+    let (gravity, [position, velocity]) = base_of(py, "base_of_mujoco", model, gravity)?;
+    let q = Numbers::after(position, "qpos", qpos, 1, 7)?;
+    let (v, a) = (Numbers::after(velocity, "qvel", qvel, 1, 6)?, Numbers::after(velocity, "qacc", qacc, 1, 6)?);
     told(py, &[&q, &v, &a, &gravity], |state| {
         BaseMotion::from_mujoco(&q.first(state), &v.first(state), &a.first(state), gravity.first(state))
     })
@@ -187,30 +220,32 @@ pub(crate) fn base_from_mujoco<'py>(
 ///
 /// derivatives: what `Arm.floating_inverse_dynamics_derivatives` returns for the base of `base_from_pinocchio`.
 /// mass: `Arm.floating_mass_matrix` at the same positions, of shape (6 + n, 6 + n) or (N, 6 + n, 6 + n).
-/// q, v: the vectors of Pinocchio, of which the first 7 and 6 elements count.
-/// gravity: in the world, m/s²; None is (0, 0, -9.81).
+/// q, v: the vectors of Pinocchio.
+/// model, gravity: one of them, as in `base_from_pinocchio`.
 ///
 /// Returns two matrices of this shape. Rows are force, moment and torques. Columns are those of Pinocchio's tangent
 /// space, in axes of the base: translation and rotation of the base, or its linear and angular velocity, then the
 /// joints in the order of the arm.
 #[pyfunction]
-#[pyo3(signature = (derivatives, mass, q, v, *, gravity=None))]
+#[pyo3(signature = (derivatives, mass, q, v, model=None, *, gravity=None))]
 pub(crate) fn derivatives_to_pinocchio<'py>(
     py: Python<'py>,
     derivatives: &Bound<'py, PyAny>,
     mass: &Bound<'py, PyAny>,
     q: &Bound<'py, PyAny>,
     v: &Bound<'py, PyAny>,
+    model: Option<&Bound<'py, PyAny>>,
     gravity: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyTuple>> {
+    let (gravity, [position, velocity]) = base_of(py, "base_of_pinocchio", model, gravity)?;
     let mut parts = derivatives.try_iter()?;
     let mut part = |name| {
         let missing = || PyValueError::new_err("`derivatives` has three matrices: dq, dqd and domega");
         Numbers::of(name, &parts.next().ok_or_else(missing)??, 2, if name == "domega" { 3 } else { 1 })
     };
     let (dq, dqd, domega) = (part("dq")?, part("dqd")?, part("domega")?);
-    let (mass, gravity) = (Numbers::of("mass", mass, 2, 6)?, gravity_of(gravity)?);
-    let (q, v) = (Numbers::of("q", q, 1, 7)?, Numbers::of("v", v, 1, 6)?);
+    let mass = Numbers::of("mass", mass, 2, 6)?;
+    let (q, v) = (Numbers::after(position, "q", q, 1, 7)?, Numbers::after(velocity, "v", v, 1, 6)?);
     let size = *mass.shape.last().unwrap_or(&6);
     for (matrix, columns) in [(&dq, size - 6), (&dqd, size - 6), (&domega, 3), (&mass, size)] {
         if matrix.shape[matrix.leading().len()..] != [size, columns] {

@@ -68,9 +68,9 @@ def of_package():
     matrices = [random.normal(size=(18, columns)) for columns in (12, 12, 3)]
     calls = {
         "base_from_imu": [(readings, {}), (readings, {"rotation": np.eye(3)})],
-        "base_from_mujoco": [((q, v, a), {}), ((q, v, a), {"gravity": gravity})],
-        "base_from_pinocchio": [((q, v, a), {}), ((q, v, a), {"gravity": gravity})],
-        "derivatives_to_pinocchio": [((matrices, np.eye(18), q, v), {})],
+        "base_from_mujoco": [((q, v, a), {"gravity": gravity})],
+        "base_from_pinocchio": [((q, v, a), {"gravity": gravity})],
+        "derivatives_to_pinocchio": [((matrices, np.eye(18), q, v), {"gravity": gravity})],
         "payload": [((0.5,), {}), ((0.5, np.zeros(3), np.eye(3)), {})],
         "pose_log": [((np.eye(4),), {})],
     }

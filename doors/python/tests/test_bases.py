@@ -1,4 +1,4 @@
-"""Motions of floating bases in the vectors of other tools, which `xtask/conventions.py` got from these tools."""
+"""Motions of floating bases in the vectors of other tools, which `tests/reference/conventions.py` got from these tools."""
 
 import json
 import pathlib
@@ -45,7 +45,19 @@ def test_a_satellite_takes_them():
     """The wrench of a base turns with the world: what Pinocchio's state and MuJoCo's state of one motion give."""
     arm = rne.load(pathlib.Path(__file__).parents[3] / "docs/satellite.yaml")
     state = ([0.3, -0.8], [0.2, 0.4], [1.0, -2.0])
-    of_pinocchio = rne.base_from_pinocchio(*(PARTS["pinocchio"][key] for key in "qva"))
-    of_mujoco = rne.base_from_mujoco(*(PARTS["mujoco"][key] for key in "qva"))
+    gravity = {"gravity": [0, 0, -9.81]}
+    of_pinocchio = rne.base_from_pinocchio(*(PARTS["pinocchio"][key] for key in "qva"), **gravity)
+    of_mujoco = rne.base_from_mujoco(*(PARTS["mujoco"][key] for key in "qva"), **gravity)
     for one, other in zip(*(arm.inverse_dynamics_of_floating_base(*state, **told) for told in (of_pinocchio, of_mujoco))):
         np.testing.assert_allclose(one, other, rtol=1e-12)
+
+
+def test_gravity_is_not_guessed():
+    """A model may have another gravity, or a base that is turned."""
+    vectors = np.zeros(7), np.zeros(6), np.zeros(6)
+    converts = [rne.base_from_pinocchio, rne.base_from_mujoco]
+    converts.append(lambda *_, **given: rne.derivatives_to_pinocchio(np.zeros((3, 6, 3)), np.eye(6), *vectors[:2], **given))
+    for convert in converts:
+        for given in ({}, {"model": object(), "gravity": [0, 0, -9.81]}):
+            with pytest.raises(TypeError, match="either `model`, .* or `gravity`"):
+                convert(*vectors, **given)

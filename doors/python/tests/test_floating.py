@@ -75,7 +75,8 @@ def test_derivatives_are_those_of_pinocchio_by_the_tangent():
     derivatives = arm.floating_inverse_dynamics_derivatives(
         state["q"], state["qd"], state["qdd"], state["wrenches"].reshape(-1, 6), **base)
     full, v = np.array([0, 0, 0, *axis, w]), np.concatenate([state["velocity"], state["omega"]])
-    found = rne.derivatives_to_pinocchio(derivatives, arm.floating_mass_matrix(state["q"]), full, v)
+    mass = arm.floating_mass_matrix(state["q"])
+    found = rne.derivatives_to_pinocchio(derivatives, mass, full, v, gravity=[0, 0, -9.81])
     close(np.concatenate([part.ravel() for part in found]), state["derivatives_of_pinocchio"])
 
 

@@ -154,7 +154,7 @@ def test_mujoco_floats():
     qvel, qacc = qvel[:-1], qacc[:-1]
     tau = mujoco_torques(mujoco, model, qpos, qvel, qacc)
     tau[:3] = of_turned(qpos[3:7], tau[:3])
-    base = rne.base_from_mujoco(qpos, qvel, qacc, gravity=model.opt.gravity)
+    base = rne.base_from_mujoco(qpos, qvel, qacc, model)
     close(of_base(arm, (qpos[7:], qvel[6:], qacc[6:]), base), tau)
     assert any("floats in the file, so the robot has a floating base" in note for note in arm.notes)
     fixed = rne.from_mujoco(model, floating=False)
@@ -162,6 +162,39 @@ def test_mujoco_floats():
     # where it stands in the file, it has the same torques
     qpos, qvel, qacc = np.concatenate([model.qpos0[:7], qpos[7:]]), qvel * 0, qacc * 0
     close(fixed.inverse_dynamics(qpos[7:], qvel[6:], qacc[6:]), mujoco_torques(mujoco, model, qpos, qvel, qacc)[6:])
+
+
+FREE = """<body name="b" pos="1 2 3" quat="0 1 0 0"><freejoint/><inertial pos="0.1 0.02 0.03" mass="2"
+diaginertia="0.1 0.12 0.15"/><body name="l" pos="0 0 0.2"><joint name="j" axis="1 0 0"/><inertial pos="0.1 0.2 0"
+mass="1" diaginertia="0.01 0.02 0.02"/></body></body>"""
+OTHER = '<body name="ball" pos="4 5 6"><freejoint/><inertial pos="0 0 0" mass="5" diaginertia="1 1 1"/></body>'
+
+
+@pytest.mark.parametrize("first", ["", OTHER])
+@pytest.mark.parametrize("option", ['<option gravity="1 2 -9"/>', '<option><flag gravity="disable"/></option>'])
+def test_the_model_says_its_gravity_and_where_its_base_is(first, option):
+    mujoco = pytest.importorskip("mujoco")
+    model = mujoco.MjModel.from_xml_string(f"<mujoco>{option}<worldbody>{first}{FREE}</worldbody></mujoco>")
+    arm = rne.from_mujoco(model)
+    qpos, qvel, qacc = model.qpos0.copy(), *np.random.default_rng(4).uniform(-1, 1, (2, model.nv))
+    qpos[-8:-4], qpos[-1] = [0.1, 0.2, 0.3, 0.5], 0.4
+    qpos[-5:-1] = [0.5, -0.5, 0.1, 0.7]
+    qpos[-5:-1] /= np.linalg.norm(qpos[-5:-1])
+    qvel[:-7] = qacc[:-7] = 0
+    expected = mujoco_torques(mujoco, model, qpos, qvel, qacc)[-7:]
+    expected[:3] = of_turned(qpos[-5:-1], expected[:3])
+    base = rne.base_from_mujoco(qpos, qvel, qacc, model)
+    close(of_base(arm, ([qpos[-1]], [qvel[-1]], [qacc[-1]]), base), expected)
+    many = rne.base_from_mujoco(*(np.tile(vector, (3, 1)) for vector in (qpos, qvel, qacc)), model)
+    assert all((many[name] == base[name]).all() for name in base)
+
+
+def test_a_model_without_a_floating_base_is_refused():
+    mujoco = pytest.importorskip("mujoco")
+    two = FREE + FREE.replace('"b"', '"b2"').replace('"l"', '"l2"').replace('"j"', '"j2"')
+    model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody>{two}</worldbody></mujoco>")
+    with pytest.raises(ValueError, match="no free joint of the model carries all other joints"):
+        rne.base_from_mujoco(model.qpos0, np.zeros(model.nv), np.zeros(model.nv), model)
 
 
 def test_mujoco_couples():
@@ -232,23 +265,131 @@ def test_pinocchio(mimic):
     close(arm.inverse_dynamics(q, qd, qdd), pinocchio_torques(pin, model, q, qd, qdd))
 
 
-def test_pinocchio_is_refused():
+AXIS = np.array([0.36, -0.48, 0.8])
+MADE = {"HelicalUnaligned": (AXIS, 0.1), "Universal": (AXIS, np.array([0.8, 0.6, 0.0])), "Ellipsoid": (1.0, 2.0, 3.0)}
+
+
+def three_joints(pin, kind, leader=None):
+    """A model in which a joint of this type stands between two revolute ones, and follows the first one, if that has
+    the type `leader`."""
+    given = MADE.get(kind, (AXIS,) if kind.endswith("Unaligned") else (0.1,) if kind[0] == "H" else ())
+    middle = getattr(pin, f"JointModel{kind}")(*given)
+    if kind == "Composite":
+        middle.addJoint(pin.JointModelRX())
+    if leader:
+        middle = pin.JointModel(middle)
+        middle.setIndexes(1, 0, 0)
+        middle = pin.JointModelMimic(middle, -1.5, 0.3)
+    model = pin.Model()
+    random = np.random.default_rng(6)
+    for index, joint in enumerate([getattr(pin, f"JointModel{leader or 'RX'}")(), middle, pin.JointModelRZ()]):
+        place = pin.SE3(pin.Quaternion(random.normal(size=4)).normalized().matrix(), random.normal(size=3))
+        index = model.addJoint(index, joint, place, f"j{index}")
+        model.appendBodyToJoint(index, pin.Inertia(2.0, random.normal(size=3), np.diag([2.0, 2.5, 3.0])), place)
+    return model
+
+
+def types(pin):
+    return [name.removeprefix("JointModel") for name in dir(pin) if name.startswith("JointModel") and len(name) > 10]
+
+
+@pytest.mark.filterwarnings("error:.*degrees")
+def test_every_type_of_joint_is_right_or_refused_by_name():
+    """No limit is a number in degrees, either: Pinocchio's largest number is none."""
+    pin = pytest.importorskip("pinocchio")
+    read = []
+    for kind in sorted(set(types(pin)) - {"Mimic"}):
+        for leader in (None, "RX", "RUBX"):
+            try:
+                model = three_joints(pin, kind, leader)
+            except Exception:  # a joint of several freedoms cannot follow
+                assert leader, kind
+                continue
+            try:
+                arm = rne.from_pinocchio(model)
+            except ValueError as refusal:
+                of = f"JointModelMimic of a JointModel{kind}" if leader else f"JointModel{kind}"
+                assert f"the joint 'j1' is a {of}" in str(refusal), refusal
+                continue
+            read.append((kind, leader))
+            q, qd, qdd = states(arm)
+            close(arm.inverse_dynamics(q, qd, qdd), pinocchio_torques(pin, model, q, qd, qdd))
+    kinds = [kind + axis for kind in ("P", "R") for axis in "XYZ"] + ["PrismaticUnaligned", "RevoluteUnaligned"]
+    unbounded = ["RUBX", "RUBY", "RUBZ", "RevoluteUnboundedUnaligned"]
+    followers = [(kind, "RX") for kind in kinds] + [(kind, "RUBX") for kind in unbounded]
+    assert set(read) == {*((kind, None) for kind in kinds + unbounded), *followers}
+
+
+def test_a_root_that_is_no_free_flyer_is_refused():
     pin = pytest.importorskip("pinocchio")
     text = URDF.format(links="".join(LINK.format(i) for i in range(1, 6)))
+    model = pin.buildModelFromXML(text, pin.JointModelPlanar())
     with pytest.raises(ValueError, match="'root_joint' is a JointModelPlanar"):
-        rne.from_pinocchio(pin.buildModelFromXML(text, pin.JointModelPlanar()))
+        rne.from_pinocchio(model)
+    with pytest.raises(ValueError, match="no free flyer of the model carries all other joints"):
+        rne.base_from_pinocchio(np.zeros(model.nq), np.zeros(model.nv), np.zeros(model.nv), model)
 
 
-def test_pinocchio_floats():
-    """A free-flyer gives a floating base, and `floating=False` fixes it."""
+PLACED = '<origin xyz="0.1 0.2 0.3" rpy="1.5707963267948966 0.2 -0.4"/>'
+
+
+@pytest.mark.parametrize("placed", ["", "by the model", "by the file"])
+def test_pinocchio_floats(placed):
+    """A free-flyer gives a floating base, also in a frame that is turned, and `floating=False` fixes it."""
     pin = pytest.importorskip("pinocchio")
     text = URDF.format(links="".join(LINK.format(i) for i in range(1, 6)))
     text = text.replace('<link name="base"/>', LINK.format(6).replace("l6", "base"))
-    model = pin.buildModelFromXML(text, pin.JointModelFreeFlyer())
-    arm = rne.from_pinocchio(model, tip="hand")
+    if placed == "by the file":
+        root = f'<joint name="root" type="floating">{PLACED}<parent link="world"/><child link="base"/></joint>'
+        text = text.replace('<robot name="r">', f'<robot name="r"><link name="world"/>{root}')
+        model = pin.buildModelFromXML(text)
+        arms = [rne.from_pinocchio(model, tip="hand"), rne.load(text, whole=True, tip="hand", snap=False)]
+        note = "the floating joint of `base` has the placement xyz [0.1, 0.2, 0.3] m, rpy [1.57"
+        assert any(note in remark for remark in arms[1].notes), arms[1].notes
+    else:
+        model = pin.buildModelFromXML(text, pin.JointModelFreeFlyer())
+        if placed:
+            model.jointPlacements[1] = pin.SE3(pin.rpy.rpyToMatrix(0.3, -1.0, 2.0), np.array([1.0, 2.0, 3.0]))
+            model.gravity.linear = np.array([1.0, 2.0, -9.0])
+        arms = [rne.from_pinocchio(model, tip="hand")]
+    # held where the model has it
+    held = rne.from_pinocchio(model, tip="hand", floating=False)
+    full = pin.neutral(model)
+    full[7:] = pin.integrate(model, full, np.concatenate([np.zeros(6), states(held)[0]]))[7:]
+    zero = np.zeros(model.nv)
+    close(held.gravity_torques(states(held)[0]), pin.rnea(model, model.createData(), full, zero, zero)[6:])
+    for arm in arms:
+        floats(pin, model, arm)
+
+
+def test_a_free_flyer_is_found_behind_another():
+    pin = pytest.importorskip("pinocchio")
+    model = pin.Model()
+    box = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "box")
+    model.appendBodyToJoint(box, pin.Inertia.FromBox(3.0, 1.0, 2.0, 3.0), pin.SE3.Identity())
+    base = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3(pin.rpy.rpyToMatrix(1.0, 2.0, 3.0), np.ones(3)), "base")
+    hinge = model.addJoint(base, pin.JointModelRX(), pin.SE3(np.eye(3), np.ones(3)), "hinge")
+    for joint in (base, hinge):
+        model.appendBodyToJoint(joint, pin.Inertia.FromBox(2.0, 1.0, 2.0, 3.0), pin.SE3(np.eye(3), np.ones(3)))
+    arm = rne.from_pinocchio(model)
+    random = np.random.default_rng(7)
+    q = pin.integrate(model, pin.neutral(model), random.normal(size=model.nv))
+    v, a = random.normal(size=(2, model.nv))
+    found = of_base(arm, (q[14:], v[12:], a[12:]), rne.base_from_pinocchio(q, v, a, model))
+    close(found, pin.rnea(model, model.createData(), q, v, a)[6:])
+
+
+def floats(pin, model, arm):
     state = q, qd, qdd = states(arm)
     full = pin.integrate(model, pin.neutral(model), np.concatenate([[0.4, 0.5, 0.6, 0.7, 0.8, 0.9], q]))
     v, a = np.concatenate([[0.1, -0.2, 0.3, -0.4, 0.5, 0.6], qd]), np.concatenate([[1, 2, -3, 4, -5, 6], qdd])
-    base = rne.base_from_pinocchio(full, v, a, gravity=model.gravity.linear)
+    base = rne.base_from_pinocchio(full, v, a, model)
     close(of_base(arm, state, base), pin.rnea(model, model.createData(), full, v, a))
     assert "floating_base" not in rne.from_pinocchio(model, tip="hand", floating=False).yaml
+    # its derivatives turn with the same gravity
+    data = model.createData()  # in which the matrices live
+    by = pin.computeRNEADerivatives(model, data, full, v, a)
+    derivatives = arm.floating_inverse_dynamics_derivatives(*state, **base)
+    found = rne.derivatives_to_pinocchio(derivatives, arm.floating_mass_matrix(q), full, v, model)
+    for one, other in zip(found, by):
+        close(one, other)

@@ -10,7 +10,7 @@ import pytest
 import rne
 
 pytest.importorskip("pinocchio")
-sys.path.insert(0, str(pathlib.Path(__file__).parents[3] / "xtask"))
+sys.path.insert(0, str(pathlib.Path(__file__).parents[3] / "tests/reference"))
 urdf = pytest.importorskip("urdf")
 
 N = 20

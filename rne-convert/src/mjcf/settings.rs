@@ -7,7 +7,7 @@ use rne_model::{LARGEST_ANGLE, Report, did_you_mean};
 use super::compiler::Compiler;
 use super::element::{Element, within};
 use crate::geometry::Rotation;
-use crate::scan::LARGEST;
+use crate::scan::{LARGEST, end_of_range};
 use crate::source::{Source, names, quoted};
 
 /// Actuators that share the values of a class, whatever their element is.
@@ -190,7 +190,7 @@ impl<'a> Classed<'a> {
 
     /// Two limits, where `limited` says so, or both are there and say so by themselves.
     pub(super) fn range(self, range: &str, limited: &str) -> Result<Option<(f64, f64)>, Report> {
-        let ends = self.vector(range)?.map(|[low, high]: [f64; 2]| (low, high));
+        let ends = self.vector(range)?.map(|[low, high]| (end_of_range(low), end_of_range(high)));
         let is_limited = self.flag(limited)?.unwrap_or(self.settings.compiler.autolimits);
         Ok(ends.filter(|(low, high)| is_limited && low < high))
     }

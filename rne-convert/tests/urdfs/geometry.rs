@@ -15,6 +15,29 @@ fn a_pendulum_has_its_closed_form() {
     }
 }
 
+/// Programs write their largest number where a joint has no limit; it is none in degrees, and no warning says so.
+#[test]
+fn the_largest_number_is_no_limit() {
+    let none = |text: String| {
+        let Imported { robot, account, .. } = plain(&text);
+        let limits = robot.joints[0].limits;
+        assert_eq!((limits.position, limits.velocity, limits.effort), (None, None, None), "{text}");
+        assert!(!account.lints.to_string().contains("degrees"), "{}", account.lints);
+    };
+    for largest in ["1.7976931348623157e308", "1e9"] {
+        let limit = format!("lower='-{largest}' upper='{largest}' effort='{largest}' velocity='{largest}'");
+        none(pendulum(&format!("<limit {limit}/>")).replace("\"continuous\"", "\"revolute\""));
+        none(pendulum(&format!("<limit {}/>", limit.replace(&format!("-{largest}"), "-1"))));
+        for angle in ["degree", "radian"] {
+            none(format!(
+                "<mujoco><compiler angle='{angle}'/><worldbody><body><joint range='-{largest} {largest}' limited='true' \
+                 actuatorfrcrange='-{largest} {largest}' actuatorfrclimited='true'/>\
+                 <inertial pos='0 0 1' mass='1' diaginertia='1 1 1'/></body></worldbody></mujoco>"
+            ));
+        }
+    }
+}
+
 /// Pitfalls 9: the default axis is x, and its length is none of its meaning.
 #[test]
 fn the_axis_is_x_unless_given_and_of_any_length() {

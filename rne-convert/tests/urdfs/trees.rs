@@ -230,3 +230,63 @@ fn a_floating_joint_makes_the_base_float() {
     assert!(said.contains("joints with more than one freedom") && said.contains("`f`"), "{said}");
     assert!(import(&alone, None).unwrap().robot.floating_base.is_none());
 }
+
+/// The placement of a floating joint, behind a fixed one or not, is part of the pose of the base: the account tells it,
+/// and the robot whose base is fixed there has the torques of the one that floats there.
+#[test]
+fn the_placement_of_a_floating_joint_is_told() {
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let body = "<inertial><origin xyz='0.1 0.02 0.03'/><mass value='2'/>
+<inertia ixx='0.1' iyy='0.12' izz='0.15' ixy='0' ixz='0' iyz='0'/></inertial>";
+    let text = |between: &str, parent: &str, origin: &str| {
+        format!(
+            "<robot name='r'><link name='world'/>{between}
+<joint name='f' type='floating'>{origin}<parent link='{parent}'/><child link='trunk'/></joint>
+<link name='trunk'>{body}</link><joint name='j' type='continuous'><origin xyz='0 0 0.2'/><parent link='trunk'/>
+<child link='leg'/><axis xyz='1 2 3'/></joint><link name='leg'>{body}</link></robot>"
+        )
+    };
+    let origin = |roll: f64, yaw: f64| format!("<origin xyz='1 0 0' rpy='{roll} 0 {yaw}'/>");
+    let mount = format!(
+        "<joint name='m' type='fixed'>{}<parent link='world'/><child link='mount'/></joint><link name='mount'/>",
+        origin(quarter, 0.0)
+    );
+    let cases = [
+        (text("", "world", ""), None, [0.0, 0.0, -9.81]),
+        (text("", "world", &origin(quarter, 0.0)), Some("[1.0, 0.0, 0.0] m, rpy [1.57"), [0.0, -9.81, 0.0]),
+        (text(&mount, "mount", &origin(0.0, quarter)), Some("[2.0, 0.0, 0.0] m, rpy [0.0, -1.57"), [-9.81, 0.0, 0.0]),
+        (text(&mount, "mount", "<origin xyz='-1 0 0'/>"), Some("[0.0, 0.0, 0.0] m, rpy [1.57"), [0.0, -9.81, 0.0]),
+    ];
+    for (text, told, gravity) in cases {
+        let import = |floating| {
+            let selection = Selection { floating, whole: true, ..Selection::default() };
+            let options = Options { selection, convention: Convention::Modified, ..Options::default() };
+            Urdf::read("r.urdf", &text).and_then(|urdf| urdf.import(&options)).unwrap()
+        };
+        let floating = import(None);
+        let remark =
+            floating.account.remarks.iter().find(|remark| remark.text.contains("the floating joint of `trunk`"));
+        assert_eq!(remark.is_some(), told.is_some(), "{:?}", floating.account.remarks);
+        if let (Some(remark), Some(told)) = (remark, told) {
+            assert!(remark.text.contains(told) && floating.text.contains("Pinocchio"), "{told}: {remark}");
+        }
+        let arm = DynArm::from_robot(&floating.robot);
+        let (q, free) = ([0.4], vec![Wrench::zero(); arm.tips().len()]);
+        let base = BaseMotion { gravity, ..BaseMotion::default() };
+        let (wrench, tau) = arm.inverse_dynamics_of_floating_base(&q, &[0.0], &[0.0], &base, &free).unwrap();
+        for (force, gravity) in wrench.force.iter().zip(gravity) {
+            assert!(f64::abs(force + 4.0 * gravity) < 1e-13, "the weight of 4 kg: {force} {gravity}");
+        }
+        let fixed = DynArm::from_robot(&import(Some(false)).robot).gravity_torques(&q).unwrap();
+        assert!(f64::abs(tau[0] - fixed[0]) < 1e-13, "{tau:?} {fixed:?}");
+    }
+    // what moves or has mass before it is no world
+    let heavy = mount.replace("<link name='mount'/>", &format!("<link name='mount'>{body}</link>"));
+    for mount in [heavy, mount.replace("'fixed'", "'continuous'")] {
+        let selection = Selection { whole: true, ..Selection::default() };
+        let options = Options { selection, convention: Convention::Modified, ..Options::default() };
+        let urdf = Urdf::read("r.urdf", &text(&mount, "mount", "")).unwrap();
+        let said = urdf.import(&options).unwrap_err().to_string();
+        assert!(said.contains("joints with more than one freedom") && said.contains("`f`"), "{said}");
+    }
+}

@@ -565,14 +565,17 @@ def base_from_imu(
     rotation: ArrayLike | None = ..., position: ArrayLike = ...,
 ) -> dict[str, Floats]:
     """The base whose inertial measurement unit reads these values."""
-def base_from_pinocchio(q: ArrayLike, v: ArrayLike, a: ArrayLike, *, gravity: ArrayLike = ...) -> dict[str, Floats]:
-    """The base of a Pinocchio model with a free flyer, which is its first joint."""
-def base_from_mujoco(
-    qpos: ArrayLike, qvel: ArrayLike, qacc: ArrayLike, *, gravity: ArrayLike = ...,
+def base_from_pinocchio(
+    q: ArrayLike, v: ArrayLike, a: ArrayLike, model: Any = ..., *, gravity: ArrayLike | None = ...,
 ) -> dict[str, Floats]:
-    """The base of a MuJoCo model with a free joint, which is its first joint."""
+    """The base of a Pinocchio model: what a free flyer moves that carries all other joints."""
+def base_from_mujoco(
+    qpos: ArrayLike, qvel: ArrayLike, qacc: ArrayLike, model: Any = ..., *, gravity: ArrayLike | None = ...,
+) -> dict[str, Floats]:
+    """The base of a MuJoCo model: the body with a free joint that carries all other joints."""
 def derivatives_to_pinocchio(
-    derivatives: Sequence[ArrayLike], mass: ArrayLike, q: ArrayLike, v: ArrayLike, *, gravity: ArrayLike = ...,
+    derivatives: Sequence[ArrayLike], mass: ArrayLike, q: ArrayLike, v: ArrayLike, model: Any = ..., *,
+    gravity: ArrayLike | None = ...,
 ) -> tuple[Floats, Floats]:
     """The matrices ∂τ/∂q and ∂τ/∂v of Pinocchio's derivatives of `rnea` with a free flyer."""
 

@@ -20,12 +20,13 @@ def from_mujoco(model, **options):
     says what the arm has not, such as springs and tendons.
 
     A body with a free joint that carries all other joints is the floating base, whose motion `rne.base_from_mujoco`
-    makes of `qpos`, `qvel` and `qacc`; `floating=False` fixes it.
+    makes of `qpos`, `qvel`, `qacc` and the model; `floating=False` fixes it.
 
     model: the compiled model, without joints that turn as balls.
     options: those of `rne.load`; here `whole` is true and `snap` is false by default.
 
-    Raises `RobotFileError` where a robot file cannot describe the model, such as a closed loop.
+    Raises `RobotFileError` where a robot file cannot describe the model, ValueError at an equality of other elements
+    than joints, such as one that closes a loop.
     """
     import mujoco
 
@@ -102,10 +103,8 @@ def from_mujoco(model, **options):
             values |= {"ctrlrange": model.actuator_ctrlrange[i], "ctrllimited": "true"}
         actuators.append(_tag("motor" if is_motor else "general", **values))
 
-    weightless = model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY)
-    gravity = np.zeros(3) if weightless else model.opt.gravity
     name = model.names[: model.names.index(b"\0")].decode() or "mujoco"
-    option = {"gravity": gravity, "density": model.opt.density, "viscosity": model.opt.viscosity}
+    option = {"gravity": _gravity_of_mujoco(model), "density": model.opt.density, "viscosity": model.opt.viscosity}
     sections = {"equality": equalities, "tendon": tendons, "actuator": actuators}
     return _load(name, option, bodies[0], sections, options)
 
@@ -120,12 +119,13 @@ def from_pinocchio(model, **options):
     one has its torque at that one, and no place in q.
 
     A free-flyer that carries all other joints is the floating base, whose motion `rne.base_from_pinocchio` makes of
-    Pinocchio's vectors; `floating=False` fixes it.
+    Pinocchio's vectors and the model; `floating=False` fixes it. A function of rne that takes the pose of the base
+    takes that in the world, `data.oMi[1]`.
 
     model: joints that turn about one axis or slide along it, after a free-flyer or not.
     options: those of `rne.load`; here `whole` is true and `snap` is false by default.
 
-    Raises ValueError where another joint has more than one freedom.
+    Raises ValueError at a joint of another type, such as a helical or a spherical one.
     """
     bodies = [_Body("universe", np.zeros(3), _IDENTITY)]
     equalities, has_armature = [], bool(np.any(model.armature))
@@ -139,14 +139,24 @@ def from_pinocchio(model, **options):
         moments = inertia.inertia[(0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)]
         body.add("inertial", pos=inertia.lever, mass=inertia.mass, fullinertia=moments)
         kind = joint.shortname()
-        if "FreeFlyer" in kind and model.parents[i] == 0:
+        if kind == "JointModelFreeFlyer" and model.parents[i] == 0:
             body.add("freejoint", name=name)
             continue
-        motion = np.asarray(joint.createData().S, dtype=float).reshape(6, -1)
-        if motion.shape[1] != 1:
-            raise ValueError(f"the joint {name!r} is a {kind}: a robot file has joints of one freedom")
+        follows = re.search(r"Mimicking joint type: (\w+)", str(joint.extract())) if i in mimics else None
+        if follows:
+            leader = model.joints[mimics[i]]
+            kind = f"{kind} of a {follows[1]}"
+            # the position of one is an angle, of the other cosine and sine: Pinocchio mixes them
+            if bool(re.search("RUB|Unbounded", kind)) != (leader.nq == 2):
+                kind += f" that follows a {leader.shortname()}"
+        if not _READ.fullmatch(kind):
+            raise ValueError(
+                f"the joint {name!r} is a {kind}; rne reads joints that turn about one axis or slide along it, and a "
+                "free-flyer on the universe. Fix this joint with `pinocchio.buildReducedModel`, or put such joints in "
+                "its place"
+            )
         values = {}
-        motion = motion[:, 0]
+        motion = np.asarray(joint.createData().S, dtype=float).reshape(6)
         if i in mimics:
             follower = joint.extract()
             motion = motion / follower.scaling
@@ -179,6 +189,43 @@ def from_pinocchio(model, **options):
     return _load(model.name or "pinocchio", {"gravity": model.gravity.linear}, bodies[0], {"equality": equalities}, options)
 
 
+def base_of_pinocchio(model):
+    """Gravity in the axes in which q has the orientation of the base, and where q and v have the base."""
+    roots = [joint for joint, parent in enumerate(model.parents) if parent == 0][1:]
+    flyers = [joint for joint in roots if model.joints[joint].shortname() == "JointModelFreeFlyer"]
+    others = set(range(1, model.njoints)).difference(flyers)
+    base = _found(next((flyer for flyer in flyers if others.issubset(model.subtrees[flyer])), None), "free flyer")
+    joint = model.joints[base]
+    return model.jointPlacements[base].rotation.T @ model.gravity.linear, joint.idx_q, joint.idx_v
+
+
+def base_of_mujoco(model):
+    """Gravity in the world, and where qpos and qvel have the base."""
+    root = model.body_rootid[model.jnt_bodyid]
+    # 0 is a free joint, 1 a ball
+    others = root[model.jnt_type > 1]
+    free = np.flatnonzero(model.jnt_type == 0)
+    base = _found(next((joint for joint in free if (others == root[joint]).all()), None), "free joint")
+    return _gravity_of_mujoco(model), int(model.jnt_qposadr[base]), int(model.jnt_dofadr[base])
+
+
+def _found(base, kind):
+    if base is None:
+        raise ValueError(f"no {kind} of the model carries all other joints, so the model has no floating base")
+    return base
+
+
+def _gravity_of_mujoco(model):
+    """The acceleration of gravity, of which a model has none if its flag is off."""
+    import mujoco
+
+    return np.array(model.opt.gravity) * (not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY))
+
+
+# The types of joints of Pinocchio that are read.
+_READ = re.compile(
+    r"(JointModelMimic of a )?JointModel((R|P|RUB)[XYZ]|(Revolute|Prismatic|RevoluteUnbounded)Unaligned)"
+)
 # The kinds of joints, in the order of `mujoco.mjtJoint`.
 _KINDS = ("free", "ball", "slide", "hinge")
 _IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])

@@ -401,7 +401,7 @@ def evaluated(rne, file, function, options):
 
 def main():
     rne, folder = sys.argv[1], pathlib.Path(sys.argv[2])
-    write = pathlib.Path(__file__).parent.parent / "tests/functions/floating" if "--write" in sys.argv else None
+    write = pathlib.Path(__file__).parent.parent / "functions/floating" if "--write" in sys.argv else None
     failed = []
     with tempfile.TemporaryDirectory() as temporary:
         for name, licence, tips, kind in ROBOTS:

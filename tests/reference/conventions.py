@@ -180,7 +180,7 @@ def main():
         base = {"rotation": turn.tolist(), "position": list(position), "velocity": list(velocity), "omega": list(omega),
                 "acceleration": list(acceleration), "omega_dot": list(omega_dot), "gravity": list(GRAVITY),
                 "force": list(force), "moment": list(moment)}
-        file = pathlib.Path(__file__).parent.parent / "tests/functions/floating/conventions.json"
+        file = pathlib.Path(__file__).parent.parent / "functions/floating/conventions.json"
         parts = {"base": base, "imu": IMU, **golden}
         parts = {name: {key: np.asarray(x, float).tolist() for key, x in part.items()} for name, part in parts.items()}
         file.write_text(json.dumps(parts, indent=1) + "\n")

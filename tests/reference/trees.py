@@ -152,7 +152,7 @@ def golden(reference, state, licence):
 def main():
     rne, folder = sys.argv[1], pathlib.Path(sys.argv[2])
     names = [name for name in sys.argv[3:] if not name.startswith("--")]
-    write = pathlib.Path(__file__).parent.parent / "tests/functions/trees" if "--write" in sys.argv else None
+    write = pathlib.Path(__file__).parent.parent / "functions/trees" if "--write" in sys.argv else None
     failed, seen = [], 0
     with tempfile.TemporaryDirectory() as temporary:
         for name, words, licence in TREES:

@@ -19,17 +19,20 @@ import numpy as np
 STATES = 3
 
 
-class Model:
-    """An MJCF file as MuJoCo has it."""
+def read(path):
+    """An MJCF file."""
+    text = path.read_text()
+    if re.search(r"<mesh [^>]*file=", text):  # which are not here, and matter to no inertia
+        text = re.sub(r'<geom [^>]*type="mesh"[^>]*/>|<mesh [^>]*/>', "", text)
+        return Model(mujoco.MjModel.from_xml_string(text))
+    return Model(mujoco.MjModel.from_xml_path(str(path)))
 
-    def __init__(self, path):
-        text = path.read_text()
-        if re.search(r"<mesh [^>]*file=", text):  # which are not here, and matter to no inertia
-            text = re.sub(r'<geom [^>]*type="mesh"[^>]*/>|<mesh [^>]*/>', "", text)
-            self.model = model = mujoco.MjModel.from_xml_string(text)
-        else:
-            self.model = model = mujoco.MjModel.from_xml_path(str(path))
-        self.data = mujoco.MjData(model)
+
+class Model:
+    """A model of MuJoCo, whose joints follow others by its equalities."""
+
+    def __init__(self, model):
+        self.model, self.data = model, mujoco.MjData(model)
         kinds = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
         moves = [i for i in range(model.njnt) if int(model.jnt_type[i]) in kinds]
         # Each joint's position is that of a leader times a ratio and an offset; `None` has no leader.
@@ -55,16 +58,10 @@ class Model:
         for _ in range(number):
             yield [random.uniform(-size, size, len(self.free)) for size in (1.0, 2.0, 5.0)]
 
-    def torques(self, q, qd, qdd, base=None):
-        """Torques; of a base that moves, with ω, ω̇, acceleration and rotation, its force and moment first."""
+    def put(self, q, qd, qdd):
+        """Puts the state of the joints into the data; what floats stands still where the model has it."""
         model, data = self.model, self.data
         data.qpos[:], data.qvel[:], data.qacc[:] = model.qpos0, 0, 0
-        if base:
-            omega, omega_dot, acceleration, turn = base
-            mujoco.mju_mat2Quat(data.qpos[3:7], turn.flatten())
-            # the velocity of the origin is no matter
-            data.qvel[:6] = [0.3, -0.2, 0.1, *omega]
-            data.qacc[:6] = [*(turn @ acceleration), *omega_dot]
         place = {joint: k for k, joint in enumerate(self.free)}
         for joint, (leader, ratio, offset) in self.follows.items():
             at, dof = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
@@ -73,6 +70,11 @@ class Model:
                 k = place[leader]
                 data.qpos[at] += ratio * q[k]
                 data.qvel[dof], data.qacc[dof] = ratio * qd[k], ratio * qdd[k]
+        return data
+
+    def torques_of_data(self):
+        """All generalised forces, and those of the joints that follow none, at the state in the data."""
+        model, data = self.model, self.data
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_comVel(model, data)
@@ -87,7 +89,19 @@ class Model:
         result = np.zeros(len(self.free))
         for joint, (leader, ratio, _) in self.follows.items():
             if leader is not None:
-                result[place[leader]] += ratio * tau[model.jnt_dofadr[joint]]
+                result[self.free.index(leader)] += ratio * tau[model.jnt_dofadr[joint]]
+        return tau, result
+
+    def torques(self, q, qd, qdd, base=None):
+        """Torques; of a base that moves, with ω, ω̇, acceleration and rotation, its force and moment first."""
+        data = self.put(q, qd, qdd)
+        if base:
+            omega, omega_dot, acceleration, turn = base
+            mujoco.mju_mat2Quat(data.qpos[3:7], turn.flatten())
+            # the velocity of the origin is no matter
+            data.qvel[:6] = [0.3, -0.2, 0.1, *omega]
+            data.qacc[:6] = [*(turn @ acceleration), *omega_dot]
+        tau, result = self.torques_of_data()
         return np.concatenate([base[3].T @ tau[:3], tau[3:6], result]) if base else result
 
 
@@ -108,7 +122,7 @@ def floating(model):
 
 def golden(path):
     """Writes names, states and torques beside an MJCF file."""
-    model = Model(path)
+    model = read(path)
     if model.model.njnt and int(model.model.jnt_type[0]) == int(mujoco.mjtJoint.mjJNT_FREE):
         path.with_suffix(".floating.csv").write_text("\n".join([",".join(model.names), *floating(model)]) + "\n")
     lines = [",".join(model.names)]
@@ -127,7 +141,7 @@ def save(path, target):
         text = re.sub(r"(<robot\b[^>]*>)", rf"\1<mujoco><compiler {options}/></mujoco>", text, count=1)
         model = mujoco.MjModel.from_xml_string(text)
     else:
-        model = Model(path).model
+        model = read(path).model
     result = target / f"{path.stem}.xml"
     mujoco.mj_saveLastXML(str(result), model)
     return result
