@@ -22,8 +22,8 @@ use crate::urdf::{Joint, Urdf};
 const MAX_JOINTS: usize = 64;
 
 /// The help against a joint that no row of a table can describe.
-const SEVERAL: &str = "a row of the table is one revolute or prismatic joint: write the joint as several of them, such as \
-                       a ball as three hinges about x, y and z";
+const SEVERAL: &str = "a row of the table is one revolute or prismatic joint: write the joint as several of them, such \
+                       as a ball as three hinges about x, y and z";
 
 /// A serial arm, or a whole tree: joints with bodies between them.
 #[derive(Clone, Debug)]

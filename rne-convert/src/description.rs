@@ -72,7 +72,8 @@ impl fmt::Display for OpenError {
             }
             Self::Usd { path } => write!(
                 f,
-                "{} is a USD file (Universal Scene Description), which rne does not read; export the robot as URDF or MJCF",
+                "{} is a USD file (Universal Scene Description), which rne does not read; export the robot as URDF or \
+                 MJCF",
                 path.display()
             ),
             Self::Unreadable { path, error } if error.kind() == ErrorKind::IsADirectory => {

@@ -57,8 +57,8 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 /// form : {"reduced", "seven_steps"}
 ///     Fewest operations, or every intermediate of the lecture in its bits.
 /// rotors : bool, optional
-///     Whether the rotors of the motors belong to the arm. The default is True for an MJCF file, whose `armature` MuJoCo
-///     counts, too, and False for others.
+///     Whether the rotors of the motors belong to the arm. The default is True for an MJCF file, whose `armature`
+///     MuJoCo counts, too, and False for others.
 ///
 /// Raises
 /// ------
@@ -71,8 +71,9 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 /// -----
 /// RobotFileWarning
 ///     For numbers that are allowed but probably wrong, such as an arm without mass or with placeholder inertias.
-///     For a URDF, also for limits that the import ignores, and angles of more than a turn in an `rpy`. For an MJCF file,
-///     for what MuJoCo's torques have and the arm has not, such as springs. `arm.notes` has these and all other remarks.
+///     For a URDF, also for limits that the import ignores, and angles of more than a turn in an `rpy`. For an MJCF
+///     file, for what MuJoCo's torques have and the arm has not, such as springs. `arm.notes` has these and all other
+///     remarks.
 #[pyfunction]
 #[pyo3(signature = (source, *, tip=None, base=None, whole=false, floating=None, lock=None, lock_others=false,
     convention=None, snap=true, keep_unphysical=false, run_time=Vec::new(), settings=None, form="reduced",

@@ -53,8 +53,8 @@ def test_mujoco_is_refused():
     with pytest.raises(rne.RobotFileError, match="leave no joint that moves"):
         rne.from_mujoco(mujoco.MjModel.from_xml_string(text))
     # the element has its name, and no line of a text that nobody has written is shown
-    text = PENDULUM.format(joint="", body="", more='<tendon><fixed name="t"><joint joint="j" coef="1"/></fixed></tendon>'
-                           '<equality><tendon name="c" tendon1="t"/></equality>')
+    more = OF_TENDON.format("") + '<equality><tendon name="c" tendon1="t"/></equality>'
+    text = PENDULUM.format(joint="", body="", more=more)
     with pytest.raises(rne.RobotFileError, match="the equality `c` is of the kind `tendon`") as refusal:
         rne.from_mujoco(mujoco.MjModel.from_xml_string(text))
     assert "-->" not in str(refusal.value) and "^" not in str(refusal.value) and "<" not in str(refusal.value)
@@ -82,7 +82,7 @@ ON_MOCAP = PENDULUM.replace("<worldbody>", '<worldbody><body name="hand" mocap="
     ("", 'gravcomp="0.5"', "", "forces that compensate gravity", True),
     ("", "", '<actuator><motor name="m" joint="j" damping="2"/></actuator>', "forces that damp actuators", True),
     ("", "", '<equality><joint name="e" joint1="j" joint2="k" active="false"/></equality>', "not active", False),
-    ("", "", '<equality><weld name="w" body1="hand" body2="b"/></equality>', "a motion capture moves are left out", False),
+    ("", "", '<equality><weld name="w" body1="hand" body2="b"/></equality>', "capture moves are left out", False),
 ])
 def test_remarks_and_torques_of_mujoco(joint, body, more, part, differs):
     """A file and its model have the same remarks. Torques are those of `mj_inverse`, or a warning says why not."""
@@ -118,9 +118,11 @@ def test_loops_of_mujoco():
     mujoco = pytest.importorskip("mujoco")
     text = """<mujoco><worldbody>
     <body name="a"><joint name="p" axis="0 1 0"/><inertial pos="0 0 .5" mass="1" diaginertia="1 1 1"/>
-    <body name="c" pos="0 0 1"><joint name="r" axis="0 1 0"/><inertial pos=".5 0 0" mass="1" diaginertia="1 1 1"/></body>
+    <body name="c" pos="0 0 1"><joint name="r" axis="0 1 0"/>
+    <inertial pos=".5 0 0" mass="1" diaginertia="1 1 1"/></body>
     </body>
-    <body name="b" pos="1 0 0"><joint name="s" axis="0 1 0"/><inertial pos="0 0 .5" mass="1" diaginertia="1 1 1"/></body>
+    <body name="b" pos="1 0 0"><joint name="s" axis="0 1 0"/>
+    <inertial pos="0 0 .5" mass="1" diaginertia="1 1 1"/></body>
     </worldbody><actuator><motor joint="p"/></actuator>
     <equality><connect name="pin" body1="c" body2="b" anchor="1 0 0"/></equality></mujoco>"""
     file, model = rne.load(text, whole=True, snap=False), rne.from_mujoco(mujoco.MjModel.from_xml_string(text))

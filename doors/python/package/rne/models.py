@@ -61,8 +61,8 @@ def from_mujoco(model, **options):
             bodies[model.site_bodyid[i]].add("site", name=sites[i], pos=model.site_pos[i], quat=model.site_quat[i])
 
     equalities, kinds = [], mujoco.mjtEq
-    words = {kinds.mjEQ_CONNECT: "connect", kinds.mjEQ_WELD: "weld", kinds.mjEQ_JOINT: "joint", kinds.mjEQ_TENDON: "tendon"}
-    words = {int(kind): word for kind, word in words.items()}
+    words = [(kinds.mjEQ_CONNECT, "connect"), (kinds.mjEQ_WELD, "weld")]
+    words = {int(kind): word for kind, word in [*words, (kinds.mjEQ_JOINT, "joint"), (kinds.mjEQ_TENDON, "tendon")]}
     joints = [model.joint(i).name or f"joint_{i}" for i in range(model.njnt)]
     for i in range(model.neq):
         word, data = words.get(int(model.eq_type[i]), "flex"), model.eq_data[i]
@@ -186,7 +186,8 @@ def from_pinocchio(model, **options):
             turn = _quaternion(place.rotation)
             bodies[frame.parentJoint].add("site", name=frame.name, pos=place.translation, quat=turn)
     options = {"rotors": has_armature, **options}
-    return _load(model.name or "pinocchio", {"gravity": model.gravity.linear}, bodies[0], {"equality": equalities}, options)
+    option, sections = {"gravity": model.gravity.linear}, {"equality": equalities}
+    return _load(model.name or "pinocchio", option, bodies[0], sections, options)
 
 
 def base_of_pinocchio(model):
@@ -278,7 +279,8 @@ def _quaternion(rotation):
 
 def _terms(model, name, index):
     """A coefficient, and those of higher degree, which MuJoCo has since 4.0."""
-    return np.append(getattr(model, name)[index], getattr(model, f"{name}poly")[index] if hasattr(model, f"{name}poly") else [])
+    higher = getattr(model, f"{name}poly")[index] if hasattr(model, f"{name}poly") else []
+    return np.append(getattr(model, name)[index], higher)
 
 
 def _load(name, option, world, sections, options):
