@@ -342,6 +342,7 @@ def test_pinocchio_floats(placed):
     text = URDF.format(links="".join(LINK.format(i) for i in range(1, 6)))
     text = text.replace('<link name="base"/>', LINK.format(6).replace("l6", "base"))
     if placed == "by the file":
+        text = re.sub("<mimic.*?/>", "", text)  # which Pinocchio and rne count differently
         root = f'<joint name="root" type="floating">{PLACED}<parent link="world"/><child link="base"/></joint>'
         text = text.replace('<robot name="r">', f'<robot name="r"><link name="world"/>{root}')
         model = pin.buildModelFromXML(text)
