@@ -58,7 +58,7 @@ WALK = """
   }
   window.dispatchEvent(new Event("beforeprint"));
   return { first, code: [...found.code], why: [...found.why], vectors: document.querySelectorAll("#vectors p").length,
-           rows: document.querySelectorAll("#table tbody tr").length, joints: rne.torques().length };
+           rows: document.querySelectorAll("#table tbody tr").length, joints: document.querySelectorAll("#sliders tbody tr").length };
 """
 
 
