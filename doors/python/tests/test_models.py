@@ -1,5 +1,6 @@
 """Arms of models in memory: torques of MuJoCo and Pinocchio."""
 
+import re
 import warnings
 from pathlib import Path
 
