@@ -293,33 +293,35 @@ impl Urdf {
         }
     }
 
-    /// Bodies of which the inertia has a negative eigenvalue.
+    /// Bodies of which the inertia has a negative eigenvalue, by more than the digits of the file explain.
     fn refuse_unphysical(&self, robot: &Robot, told: &Extracted) -> Result<(), Report> {
-        if let Some(FloatingBase { link, .. }) = &robot.floating_base
-            && !link.is_physical(&link.inertia)
-        {
-            let base = self.links.iter().find(|link| link.name == told.base);
-            let span = base.map_or(0..0, |link| link.span.clone());
+        if let Some(FloatingBase { link, .. }) = &robot.floating_base {
             let name = format!("the base {}", quoted(&told.base));
-            return Err(self.unphysical(&span, &name, link, ""));
+            self.refuse_negative(&(0..0), &name, link, std::slice::from_ref(&told.base))?;
         }
         for ((joint, span), lumped) in robot.joints.iter().zip(&told.spans).zip(&told.lumped) {
-            if joint.is_physical() {
-                continue;
-            }
-            let several = if lumped.len() > 1 { format!(" (lumped of {})", names(lumped)) } else { String::new() };
             let name = format!("the link that the joint {} moves", quoted(&joint.name));
-            return Err(self.unphysical(span, &name, &joint.row.link, &several));
+            self.refuse_negative(span, &name, &joint.row.link, lumped)?;
         }
         Ok(())
     }
 
-    fn unphysical(&self, span: &Range<usize>, name: &str, link: &Link, several: &str) -> Report {
-        let moment = link.inertia.principal_moments().map_or(f64::NAN, |moments| moments[0]);
+    /// Refuses a link that is made of the links `lumped`, at the inertia of the worst of them.
+    fn refuse_negative(&self, joint: &Range<usize>, name: &str, link: &Link, lumped: &[String]) -> Result<(), Report> {
+        let least = |inertia: &Inertia| inertia.principal_moments().map_or(f64::NAN, |moments| moments[0]);
+        let parts = || self.links.iter().filter(|link| lumped.contains(&link.name));
+        let (moment, rounding) = (least(&link.inertia), parts().map(|part| part.inertia.rounding()).sum::<f64>());
+        if link.is_physical(&link.inertia) || moment >= -rounding {
+            return Ok(());
+        }
+        let worst = parts().min_by(|a, b| least(&a.inertia).total_cmp(&least(&b.inertia)));
+        let span = worst.map_or(joint, |part| &part.span_of_inertia);
         let message =
             format!("{name} has the principal moment of inertia {moment:.3e} kg m²; no body has a negative one");
+        let several =
+            if lumped.len() > 1 { format!(" (lumped of {})", names(lumped)) } else { String::new() };
         let help = format!("correct the inertia{several}, or keep it");
-        self.source.error_with(span, message, help, &Remedy::KeepUnphysical)
+        Err(self.source.error_with(span, message, help, &Remedy::KeepUnphysical))
     }
 }
 
@@ -453,23 +455,23 @@ impl Urdf {
         remarks
     }
 
-    /// Links with inertias that no body has, where the body that they are lumped into hides this from the lints of the
-    /// robot file.
+    /// Links with inertias that no body has, with the place of each. The robot file may hide them: it has one body of
+    /// links that are fixed to each other.
     fn impossible_parts(&self, told: &Extracted) -> Vec<String> {
-        let lumped = told.lumped.iter().filter(|links| links.len() > 1).flatten();
-        let links = lumped.filter_map(|name| self.links.iter().find(|link| link.name == *name));
-        let remark = |name: &str, [a, b, c]: [f64; 3]| {
+        let links = told.lumped.iter().flatten().chain([&told.base]);
+        let links = links.filter_map(|name| self.links.iter().find(|link| link.name == *name));
+        let remark = |link: &crate::urdf::Link, [a, b, c]: [f64; 3]| {
+            let report = self.source.error(&link.span_of_inertia, "", None);
+            let place = report.diagnostics.first().map(|found| format!("line {}, column {}", found.line, found.column));
             format!(
-                "no body can have the inertia of {}: its largest principal moment is {c:.3e} kg m², the sum of the two \
-                 others is {:.3e} kg m²",
-                quoted(name),
+                "no body can have the inertia of {} ({}): its largest principal moment is {c:.3e} kg m², the sum of \
+                 the two others is {:.3e} kg m²; is one number wrong by a power of ten?",
+                quoted(&link.name),
+                place.unwrap_or_default(),
                 a + b
             )
         };
-        // URDFs round their numbers, and a plate has no room for that
-        let shows = |[a, b, c]: &[f64; 3]| c - (a + b) > 1e-3 * c;
-        let moments = |inertia: &Inertia| inertia.impossible_moments().filter(shows);
-        links.filter_map(|link| Some(remark(&link.name, moments(&link.inertia)?))).collect()
+        links.filter_map(|link| Some(remark(link, link.inertia.impossible_moments()?))).collect()
     }
 }
 

@@ -3,7 +3,7 @@
 //! Links, inertias and joints are read; everything else, such as meshes, is passed over. Every value has been checked
 //! when it is here: a number is a number, and what is required is there.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::Range;
 
 use quick_xml::Reader;
@@ -50,8 +50,8 @@ pub(crate) struct Scanned {
 pub(crate) struct Seen {
     /// The place of its tag.
     pub(crate) span: Range<usize>,
-    /// The elements in it that matter, at any depth.
-    pub(crate) elements: BTreeSet<&'static str>,
+    /// The elements in it that matter, at any depth, and the places of their tags.
+    pub(crate) elements: BTreeMap<&'static str, Range<usize>>,
     /// The values of their attributes, by element and attribute.
     values: HashMap<(&'static str, &'static str), String>,
     /// Unknown names in it, as indices of [`Scanned::unknown`].
@@ -282,7 +282,7 @@ impl Scanner<'_> {
                     parent.children.push(element.name);
                 }
             }
-            self.owner(element).elements.insert(element.name);
+            self.owner(element).elements.insert(element.name, place.clone());
             self.take(element, tag, &place)?;
         }
         if !is_empty {

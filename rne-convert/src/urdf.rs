@@ -47,6 +47,8 @@ pub struct Urdf {
 pub(crate) struct Link {
     pub(crate) name: String,
     pub(crate) span: Range<usize>,
+    /// The place of its inertia.
+    pub(crate) span_of_inertia: Range<usize>,
     /// Unknown names in it.
     pub(crate) unknown: BTreeSet<usize>,
     /// Mass, kg; 0 where there is no `inertial`.
@@ -269,7 +271,7 @@ impl Urdf {
                 let message = format!("the link {} is already defined in line {}", quoted(name), self.line(first));
                 return Err(self.source.error(span, message, "names of links must differ".to_owned()));
             }
-            let is_there = |part: &str| !seen.elements.contains("inertial") || seen.elements.contains(part);
+            let is_there = |part: &str| !seen.elements.contains_key("inertial") || seen.elements.contains_key(part);
             if let Some(part) = ["mass", "inertia"].into_iter().find(|part| !is_there(part)) {
                 let message = format!("the `inertial` of the link {} has no element `{part}`", quoted(name));
                 let help = "write both `mass` and `inertia`, or leave `inertial` out: the link has no mass then";
@@ -294,6 +296,7 @@ impl Urdf {
                     xz: inertia("ixz"),
                     yz: inertia("iyz"),
                 },
+                span_of_inertia: seen.elements.get("inertia").unwrap_or(span).clone(),
                 ..Link::new(name.to_owned(), span.clone())
             });
         }
@@ -489,6 +492,7 @@ impl Link {
     pub(crate) fn new(name: String, span: Range<usize>) -> Self {
         Self {
             name,
+            span_of_inertia: span.clone(),
             span,
             unknown: BTreeSet::new(),
             mass: 0.0,
@@ -551,7 +555,7 @@ impl Joint {
         Self {
             name: seen.text("joint", "name").unwrap_or_default().to_owned(),
             unknown: seen.unknown.clone(),
-            has_axis: seen.elements.contains("axis"),
+            has_axis: seen.elements.contains_key("axis"),
             negative: ["effort", "velocity"]
                 .into_iter()
                 .map(|limit| (limit, number("limit", limit)))

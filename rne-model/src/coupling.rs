@@ -258,7 +258,9 @@ pub(crate) fn refuse(cx: &Context, root: &Node, joints: &[Joint], drives: &[Driv
     if !drives.is_empty() {
         let place = root.get("motors").unwrap_or(root).head();
         let message = "the robot has a list `motors`, which is not supported here";
-        let help = "the section Motors of docs/robot-file.md lists the commands, derives and types that take it";
+        let help = "the section Motors of docs/robot-file.md lists the commands, derives and types that take it; \
+                    elsewhere, delete the list and give joints a `motor: {inertia: …, gear_ratio: …}`, which leaves \
+                    out that the rotor turns with the link that carries it";
         cx.report(Diagnostic::error(place, message).label("motors").help(help));
     }
 }

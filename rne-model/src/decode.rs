@@ -60,6 +60,8 @@ pub(crate) struct Context<'t> {
 /// A named constant of the file.
 pub(crate) struct Parameter {
     pub(crate) span: Range<usize>,
+    /// The place of its expression.
+    pub(crate) value: Range<usize>,
     pub(crate) meaning: Meaning,
     pub(crate) used: Cell<bool>,
 }
@@ -227,7 +229,9 @@ impl<'d> Fields<'d> {
                 }
                 continue;
             }
-            let meant = cx.did_you_mean(key, missing.iter().copied());
+            let synonym = SYNONYMS.iter().find(|(word, meant)| word == key && missing.contains(meant));
+            let meant = synonym.map(|(_, meant)| *meant);
+            let meant = meant.or_else(|| cx.did_you_mean(key, missing.iter().copied()));
             misspelt.extend(meant);
             let message = format!("unknown key {}; {what} has the keys {}", quoted(key), allowed.join(", "));
             let help = meant.map(|meant| format!("did you mean `{meant}`?")).or_else(|| place_of(key, &allowed));
@@ -297,14 +301,22 @@ fn how_to_write(key: &str) -> Option<&'static str> {
     })
 }
 
-/// `theta:0`, which YAML takes for a key without a value: the key that is meant, and what is wrong.
+/// `theta:0` or `theta 0`, which YAML takes for a key without a value: the key that is meant, and what is wrong.
 fn without_blank(entry: &Entry, missing: &[&'static str]) -> Option<(&'static str, Diagnostic)> {
-    let (key, value) = entry.key.split_once(':')?;
+    let at = entry.key.find([':', ' '])?;
+    let (key, value) = (entry.key.get(..at)?, entry.key.get(at + 1..)?);
+    let lacks = if entry.key.get(at..)?.starts_with(':') { "a blank" } else { "a colon" };
     let meant = missing.iter().copied().find(|missing| *missing == key)?;
-    let message = format!("a blank is missing between `{meant}:` and its value {}", quoted(value));
+    let key = entry.key.get(..=at)?.trim_end();
+    let message = format!("{lacks} is missing between `{key}` and its value {}", quoted(value));
     let help = format!("write `{meant}: {}`", one_line(value));
-    Some((meant, Diagnostic::error(entry.key_span.clone(), message).label("a blank is missing").help(help)))
+    let label = format!("{lacks} is missing");
+    Some((meant, Diagnostic::error(entry.key_span.clone(), message).label(label).help(help)))
 }
+
+/// Words that other formats and books have for keys.
+const SYNONYMS: [(&str, &str); 4] =
+    [("weight", "mass"), ("ratio", "gear_ratio"), ("cog", "com"), ("tensor", "inertia")];
 
 /// `{mass: 1,98}`, which YAML takes for the value 1 and a key `98`.
 fn decimals(cx: &Context, before: &Entry, entry: &Entry) -> Option<Diagnostic> {

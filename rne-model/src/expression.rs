@@ -222,7 +222,7 @@ impl Expression {
     pub(crate) fn evaluate(&self, text: &str, names: &impl Names) -> Result<Quantity, Option<Mistake>> {
         match &self.kind {
             Kind::Number(value) => Ok(Quantity::constant(*value)),
-            Kind::Name(name) => self.named(name, names),
+            Kind::Name(name) => self.named(name, text, names),
             Kind::Negate(operand) => Ok(-operand.evaluate(text, names)?),
             Kind::Binary(operator, a, b) => {
                 let a = a.evaluate(text, names)?;
@@ -234,7 +234,7 @@ impl Expression {
         }
     }
 
-    fn named(&self, name: &str, names: &impl Names) -> Result<Quantity, Option<Mistake>> {
+    fn named(&self, name: &str, text: &str, names: &impl Names) -> Result<Quantity, Option<Mistake>> {
         match names.meaning(name) {
             Meaning::Value(quantity) => Ok(quantity),
             Meaning::Faulty => Err(None),
@@ -245,7 +245,7 @@ impl Expression {
                         .help("a parameter may use only parameters that are defined above it under `parameters`"),
                 ))
             }
-            Meaning::Unknown => Err(Some(unknown_name(name, self.range.clone(), names))),
+            Meaning::Unknown => Err(Some(unknown_name(name, self.range.clone(), text, names))),
         }
     }
 
@@ -395,15 +395,16 @@ fn is_joint_variable(name: &str) -> bool {
     index.is_some_and(|index| index.trim_start_matches('_').chars().all(|c| c.is_ascii_digit() || c == 'i'))
 }
 
-fn unknown_name(name: &str, range: Range<usize>, names: &impl Names) -> Mistake {
+fn unknown_name(name: &str, range: Range<usize>, text: &str, names: &impl Names) -> Mistake {
     if ["nan", "inf", "infinity"].contains(&name.to_lowercase().as_str()) {
         return no_digits(name, range);
     }
-    if is_joint_variable(name) && names.similar(name).is_none() {
-        return Mistake::new(range, format!("unknown name {}", quoted(name))).help(
-            "if this is the joint variable, delete it: rne adds the joint variable; write only the constant part, such \
-             as 0",
-        );
+    if is_joint_variable(name) {
+        let constant = text.replace(name, "");
+        let constant = constant.trim_matches(|c: char| c == '+' || c.is_whitespace());
+        let constant = if Expression::parse(constant).is_ok() { constant } else { "0" };
+        let help = format!("the joint variable is added by itself: write only the constant part, such as `{constant}`");
+        return Mistake::new(range, format!("unknown name {}", quoted(name))).help(help);
     }
     let known = did_you_mean(name, ["pi"].into_iter().chain(Function::NAMES)).map(str::to_owned);
     let mistake = Mistake::new(range, format!("unknown name {}", quoted(name)));

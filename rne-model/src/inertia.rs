@@ -2,10 +2,17 @@
 
 use std::ops::{Add, Mul, Sub};
 
+use crate::double::decimal_digits;
+use crate::source::{exact_digits, half_of_last_digit};
 use crate::{Inertia, Link};
 
 /// Rounding that is forgiven, relative to the largest magnitude involved.
 const TOLERANCE: f64 = 1e-12;
+/// Rounding that is forgiven of a tensor whose numbers another program may have turned, and so have lost their digits:
+/// what six digits leave.
+const OF_SIX_DIGITS: f64 = 1e-6;
+/// The largest half of a last digit, in parts of the largest element: that of 1.00. Fewer digits may be exact.
+const OF_THREE_DIGITS: f64 = 0.005;
 
 /// Moves a tensor from the origin of the link frame to the centre of mass: I - m(|c|² 1 - c cᵀ).
 ///
@@ -48,11 +55,51 @@ impl Inertia {
         principal_moments(self)
     }
 
-    /// The principal moments, ascending, kg m², where the largest is more than the sum of the two others: no
-    /// distribution of mass has such moments.
+    /// The principal moments, ascending, kg m², where the largest is more than the sum of the two others by more than
+    /// rounding of the decimal digits explains: no distribution of mass has such moments. A moment alone is not among
+    /// them: it stands for a link whose other moments enter nothing.
     #[must_use]
     pub fn impossible_moments(&self) -> Option<[f64; 3]> {
-        self.principal_moments().filter(|[a, b, c]| c - (a + b) > TOLERANCE * c)
+        self.impossible_beyond(self.slack())
+    }
+
+    fn impossible_beyond(&self, slack: f64) -> Option<[f64; 3]> {
+        self.principal_moments().filter(|[a, b, c]| [*a, *b] != [0.0; 2] && c - (a + b) > slack)
+    }
+
+    /// The error of the tensor, as a norm, kg m², where each element is rounded to its last digit: no principal moment
+    /// is off by more.
+    #[must_use]
+    pub fn rounding(&self) -> f64 {
+        let rows = self.half_digits().map(|row| row.into_iter().sum::<f64>());
+        rows.into_iter().fold(OF_SIX_DIGITS * largest(self), f64::max)
+    }
+
+    /// How far c - (a + b) is off then: an error E of the tensor moves it by at most |tr E| + 2 ‖E‖.
+    fn slack(&self) -> f64 {
+        let half = self.half_digits();
+        half[0][0] + half[1][1] + half[2][2] + 2.0 * self.rounding()
+    }
+
+    /// Half of the last digit of each element. Files print all elements with as many decimals, or with as many
+    /// significant digits; zeros at the end are lost, so the longest element tells how many.
+    fn half_digits(&self) -> [[f64; 3]; 3] {
+        // digits after the first one, and the exponent of the last
+        let digits = |x: f64| {
+            let (digits, last) = decimal_digits(x.abs());
+            (i32::try_from(digits.checked_ilog10().unwrap_or(0)).unwrap_or(0), last)
+        };
+        let elements = self.rows().into_iter().flatten().filter(|x| *x != 0.0);
+        let (most, finest) =
+            elements.map(digits).fold((0, i32::MAX), |(most, finest), (more, last)| (most.max(more), finest.min(last)));
+        let coarsest = OF_THREE_DIGITS * largest(self);
+        self.rows().map(|row| {
+            row.map(|x| {
+                let (more, last) = digits(x);
+                let own = if x == 0.0 { finest } else { finest.max(last + more - most) };
+                (0.5 * 10_f64.powi(own)).min(coarsest)
+            })
+        })
     }
 }
 
@@ -61,9 +108,25 @@ impl Link {
     /// moment without mass: so it is with a body. `written` is the inertia as the file has it, about any point.
     #[must_use]
     pub fn is_physical(&self, written: &Inertia) -> bool {
-        let magnitude = largest_magnitude(written, self.mass, self.com);
         let moments = self.inertia.principal_moments();
-        !self.has_first_moment() && moments.is_some_and(|moments| moments[0] >= -TOLERANCE * magnitude)
+        !self.has_first_moment()
+            && moments.is_some_and(|moments| moments[0] >= -(written.rounding() + self.moved(written)))
+    }
+
+    /// [`Inertia::impossible_moments`] of a link whose inertia is `written` so, about any point.
+    pub(crate) fn impossible_moments(&self, written: &Inertia) -> Option<[f64; 3]> {
+        self.inertia.impossible_beyond(written.slack() + 5.0 * self.moved(written))
+    }
+
+    /// The error of the inertia about the centre of mass by rounding of mass and centre, if the inertia is `written`
+    /// about another point.
+    fn moved(&self, written: &Inertia) -> f64 {
+        if *written == self.inertia {
+            return 0.0;
+        }
+        let relative = |x: f64| if x == 0.0 { 0.0 } else { half_of_last_digit(&exact_digits(x)) / x.abs() };
+        let coarsest = self.com.into_iter().fold(relative(self.mass), |most, x| most.max(2.0 * relative(x)));
+        largest_magnitude(written, self.mass, self.com) * coarsest.clamp(TOLERANCE, OF_THREE_DIGITS)
     }
 }
 

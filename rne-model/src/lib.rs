@@ -175,7 +175,7 @@ pub use robot::{InertiaReference, Joint, Limits, Robot};
 #[cfg(feature = "std")]
 pub use run_time::{Entry, InertiaElement, RunTime};
 #[cfg(feature = "std")]
-pub use source::{exact_digits, is_control, one_line, six_digits};
+pub use source::{exact_digits, half_of_last_digit, is_control, one_line, six_digits};
 #[cfg(feature = "std")]
 pub use spelling::{did_you_mean, nearest_name, no_shipped_robot};
 #[cfg(feature = "std")]

@@ -8,7 +8,7 @@ use std::ops::{Range, RangeInclusive};
 
 use crate::angle::nearest_right_angle;
 use crate::decode::Context;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::document::{Content, Node};
 use crate::expression::Names as _;
 use crate::inertia::principal_moments;
@@ -16,7 +16,7 @@ use crate::loops::{listed, short};
 use crate::mobility::Remarks;
 use crate::resistance::{self, Unresisted};
 use crate::source::{is_invisible, quoted, six_digits};
-use crate::{Angle, ClosedLoop, Convention, Inertia, Joint, JointKind, Limits, Link, QuarterTurns, Transform};
+use crate::{Angle, ClosedLoop, Convention, Joint, JointKind, Limits, Link, QuarterTurns, Transform};
 
 /// How near a right angle an angle must lie to be taken for a rounded one, rad.
 const NEARLY: f64 = 2e-4;
@@ -133,19 +133,24 @@ pub(crate) fn gravity_upwards(cx: &Context, node: &Node, [x, y, z]: [f64; 3], ba
 /// Millimetres taken for metres, in a centre of mass.
 pub(crate) fn centre_of_mass(cx: &Context, node: &Node, value: f64) {
     if value.abs() > FARTHEST {
-        let message = format!(
-            "the centre of mass lies {} m from the origin of the link frame, over {FARTHEST} m",
-            cx.shown(node, value)
-        );
-        cx.report(Diagnostic::lint(node.span.clone(), message).label(MILLIMETRES).help("lengths are in metres"));
+        let shown = cx.shown(node, value);
+        let message = format!("the centre of mass lies {shown} m from the origin of the link frame, over {FARTHEST} m");
+        millimetres(cx, node, message);
     }
+}
+
+/// Warns of millimetres, where the parameter is defined if the number is one.
+fn millimetres(cx: &Context, node: &Node, message: String) {
+    let place = cx.parameters.borrow().get(cx.raw(node)).map_or(node.span.clone(), |it| it.value.clone());
+    let written = cx.text.get(place.clone()).filter(|text| text.parse::<f64>().is_ok());
+    let help = written.map_or_else(String::new, |number| format!(": if it is in millimetres, write `mm({number})`"));
+    cx.report(Diagnostic::lint(place, message).label(MILLIMETRES).help(format!("lengths are in metres{help}")));
 }
 
 /// Millimetres taken for metres.
 pub(crate) fn length(cx: &Context, node: &Node, value: f64) {
     if value.abs() > LONGEST {
-        let message = format!("the length {} m is over {LONGEST} m", cx.shown(node, value));
-        cx.report(Diagnostic::lint(node.span.clone(), message).label(MILLIMETRES).help("lengths are in metres"));
+        millimetres(cx, node, format!("the length {} m is over {LONGEST} m", cx.shown(node, value)));
     }
 }
 
@@ -179,9 +184,13 @@ pub(crate) fn mass(cx: &Context, node: &Node, value: f64) {
     }
 }
 
+/// The part of the largest moment by which numbers of three digits may violate what holds of bodies, after the import
+/// has turned them, too.
+const ROUNDED: f64 = 0.02;
+
 /// An inertia that no distribution of mass has.
-pub(crate) fn triangle_inequality(cx: &Context, place: Range<usize>, inertia: &Inertia) {
-    if let Some([a, b, c]) = inertia.impossible_moments() {
+pub(crate) fn triangle_inequality(cx: &Context, place: Range<usize>, moments: Option<[f64; 3]>, physical: bool) {
+    if let Some([a, b, c]) = moments {
         let message = format!(
             "no body can have this inertia: of the principal moments {}, {} and {} kg m², the largest is more than the \
              sum of the two others",
@@ -189,10 +198,16 @@ pub(crate) fn triangle_inequality(cx: &Context, place: Range<usize>, inertia: &I
             six_digits(b),
             six_digits(c)
         );
-        cx.report(Diagnostic::note(place, message).label("violates the triangle inequality").help(
-            "some published tables contain such tensors, and rne computes with them; if the numbers are your own, \
-             check them",
-        ));
+        let is_known = !physical || c - (a + b) <= ROUNDED * c;
+        let severity = if is_known { Severity::Note } else { Severity::Warning };
+        let help = if physical {
+            "is one number wrong by a power of ten, or are two exchanged? Correct it; to keep the numbers of a published \
+             table, with which rne computes, write `physical: false`"
+        } else {
+            "rne computes with these numbers, as `physical: false` allows"
+        };
+        let lint = Diagnostic::lint(place, message).label("violates the triangle inequality").help(help);
+        cx.report(Diagnostic { severity, ..lint });
     }
 }
 
@@ -207,16 +222,19 @@ pub(crate) fn first_moment_without_mass(cx: &Context, moment: &Node) {
 }
 
 /// A negative principal moment in a file that knows it.
-pub(crate) fn unphysical(cx: &Context, place: Range<usize>, [smallest, ..]: [f64; 3]) {
+pub(crate) fn unphysical(cx: &Context, place: Range<usize>, [smallest, _, largest]: [f64; 3]) {
     let message = format!(
         "the inertia is not positive semidefinite, as `physical: false` allows: its smallest eigenvalue about the \
          centre of mass is {} kg m²",
         six_digits(smallest)
     );
-    cx.report(Diagnostic::lint(place, message).label("not the inertia of a body").help(
+    let lint = Diagnostic::lint(place, message).label("not the inertia of a body").help(
         "inverse dynamics accepts this inertia; if the mass matrix is not positive definite, forward dynamics cannot \
          be computed",
-    ));
+    );
+    // the inertia of a rod, say, of few digits
+    let severity = if -smallest <= ROUNDED * largest { Severity::Note } else { Severity::Warning };
+    cx.report(Diagnostic { severity, ..lint });
 }
 
 /// Grams or millimetres in an inertia: no link has its mass so far out.

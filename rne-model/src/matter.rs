@@ -107,7 +107,7 @@ pub(crate) fn checked(
             }
         }));
     }
-    lint::triangle_inequality(cx, place.clone(), &link.inertia);
+    lint::triangle_inequality(cx, place.clone(), link.impossible_moments(&written), physical);
     lint::radius_of_gyration(cx, place, link.mass, moments);
     Some(link)
 }

@@ -205,7 +205,8 @@ fn parameters(cx: &Context, node: &Node) -> Option<Vec<(String, f64)>> {
     }
     let declared = |entry: &document::Entry| {
         let span = entry.key_span.clone();
-        (entry.key.clone(), Parameter { span, meaning: Meaning::Later, used: Cell::new(false) })
+        let value = entry.value.span.clone();
+        (entry.key.clone(), Parameter { span, value, meaning: Meaning::Later, used: Cell::new(false) })
     };
     // A repeated name, an error already, keeps its first value.
     *cx.parameters.borrow_mut() = entries.iter().rev().map(declared).collect();

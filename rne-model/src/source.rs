@@ -104,6 +104,21 @@ pub fn exact_digits(value: f64) -> String {
     shown.strip_suffix(".0").unwrap_or(&shown).to_owned()
 }
 
+/// Half of the last digit of a decimal number; zero for an expression, which has all of its digits.
+///
+/// ```
+/// assert_eq!(["14.5", "1e3", "0.10"].map(rne_model::half_of_last_digit), [0.05, 500.0, 0.005]);
+/// ```
+#[must_use]
+pub fn half_of_last_digit(number: &str) -> f64 {
+    let (mantissa, exponent) = number.trim().split_once(['e', 'E']).unwrap_or((number.trim(), "0"));
+    let plain = mantissa.chars().all(|c| c.is_ascii_digit() || "+-.".contains(c));
+    let (true, Ok(exponent)) = (plain, exponent.parse::<i32>()) else { return 0.0 };
+    // a whole number may be exact, and may be rounded
+    let behind = mantissa.split_once('.').map_or(0, |(_, digits)| i32::try_from(digits.len()).unwrap_or(i32::MAX));
+    0.5 * 10_f64.powi(exponent.saturating_sub(behind))
+}
+
 /// A number with six significant digits, for a message.
 #[must_use]
 pub fn six_digits(value: f64) -> String {

@@ -561,6 +561,30 @@ fn an_inertia_that_no_body_has_is_kept_where_the_file_says_so() {
     assert!(!checked.robot.joints.last().unwrap().is_physical());
 }
 
+/// What everybody writes once, and what to write instead.
+#[test]
+fn a_mistake_is_answered_with_what_to_write() {
+    for (old, new, help) in [
+        ("{theta: 0, d: 0.4", "{theta: pi/2 d: 0.4", "write a comma before `d`"),
+        ("{theta: 0, d: 0.4", "{theta: 0, d: 0.4 + 1 a: 0", "write a comma before `a`"),
+        ("mass: 2.5", "weight: 2.5", "did you mean `mass`?"),
+        ("gear_ratio: -62.6", "ratio: -62.6", "did you mean `gear_ratio`?"),
+        ("com: [0, 0, 0.3]", "cog: [0, 0, 0.3]", "did you mean `com`?"),
+        ("inertia: {xx: 0.1", "tensor: {xx: 0.1", "did you mean `inertia`?"),
+        ("{mass: r,", "{mass r,", "write `mass: r`"),
+        ("{theta: 0, d: 0.4", "{theta: q2 + pi/2, d: 0.4", "such as `pi/2`"),
+        ("{theta: 0, d: 0.4", "{theta: q_1, d: 0.4", "such as `0`"),
+        ("{theta: 0, d: 0.4", "{theta: pi - q1, d: 0.4", "write only the constant part"),
+    ] {
+        let report = found(&with(old, new));
+        let said = report.errors().filter_map(|found| found.help.as_deref()).any(|said| said.contains(help));
+        assert!(said, "{new}:\n{report}");
+    }
+    // also beside a parameter with nearly the same name
+    let report = found(&with("m: 1.5,", "m: 1.5, a2: 0.4,").replace("{theta: 0, d: 0.4", "{theta: q2 + pi/2, d: a2"));
+    assert!(report.to_string().contains("the joint variable is added by itself"), "{report}");
+}
+
 #[test]
 fn hostile_files() {
     let fill = |unit: &str| unit.repeat((1 << 20) / unit.len());

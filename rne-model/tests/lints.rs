@@ -289,20 +289,42 @@ fn invisible_characters() {
 /// What published tables have: seen by `rne check`, not repeated by each build.
 #[test]
 fn notes() {
-    let note = the_one("zz: 0.02", "zz: 0.23");
-    assert_eq!(note.severity, Severity::Note);
-    assert_eq!((note.line, note.column), (15, 16));
+    // of few digits: within what the last digit leaves it is a body
+    assert_eq!(found(&with("zz: 0.02", "zz: 0.221")).to_string(), "");
+    let impossible = the_one("zz: 0.02", "zz: 0.3");
+    assert_eq!(impossible.severity, Severity::Warning);
+    assert_eq!((impossible.line, impossible.column), (15, 16));
     assert!(
-        note.message.contains("principal moments 0.1, 0.12 and 0.23 kg m², the largest is more than"),
+        impossible.message.contains("principal moments 0.1, 0.12 and 0.3 kg m², the largest is more than"),
         "{}",
-        note.message
+        impossible.message
     );
+    // the file says that it is meant
+    let known = the_one("zz: 0.02}", "zz: 0.3}\n      physical: false");
+    assert_eq!((known.severity, &known.message), (Severity::Note, &impossible.message));
+    // only one moment, as in the table of a plane arm
+    assert_eq!(found(&with("{xx: 0.1, yy: 0.12, zz: 0.02}", "{zz: 0.3}")).to_string(), "");
     let text = with("link: {mass: r, inertia: {", "motor: {inertia: 1e-4}\n    link: {inertia: {xx: r/100, ");
     let report = found(&text);
     assert_eq!((report.warnings().count(), report.notes().count()), (0, 1), "{report}");
     let note = report.notes().next().unwrap();
     assert_eq!(note.message, "no link's inertia resists joint 2, only the rotor of its motor does");
     assert_eq!((note.line, note.column), (23, 11));
+}
+
+/// A length in millimetres is told where it is written, which may be a parameter.
+#[test]
+fn millimetres_are_told_at_the_number() {
+    for (text, line, column) in [
+        (with("a: 0, alpha: pi/2", "a: 400, alpha: pi/2"), 11, 32),
+        (with("r: 2*m", "r: 2*m, a2: 400").replace("a: 0, alpha: pi/2", "a: a2, alpha: pi/2"), 7, 33),
+        (with("com: [0, 0, 0.3]", "com: [0, 0, 400]"), 14, 19),
+    ] {
+        let report = found(&text);
+        let [lint] = &report.diagnostics[..] else { panic!("{report}") };
+        assert_eq!((lint.line, lint.column), (line, column), "{report}");
+        assert!(lint.help.as_deref().unwrap_or_default().contains("write `mm(400)`"), "{report}");
+    }
 }
 
 const PLANE: &str = "format: 1

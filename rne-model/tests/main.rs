@@ -17,5 +17,6 @@ mod mirror;
 mod motors;
 mod parallelogram;
 mod rendering;
+mod rods;
 mod run_time;
 mod run_time_properties;

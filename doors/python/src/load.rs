@@ -155,9 +155,10 @@ pub(crate) fn load(
     let notes = snapping.into_iter().chain(floats).chain(remarks).collect();
     let rotors = rotors.unwrap_or(imported.account.is_mjcf);
     let arm = Arm::of(py, Origin { robot: imported.text.clone(), held, notes, rotors, ..origin })?;
-    // nobody has written the lines of this robot file, and `snap` has decided on its angles
-    let is_rounded = |lint: &Diagnostic| lint.label.as_deref() == Some("rounded?");
-    warn_of(py, &imported.account.lints, |lint| (!is_rounded(lint)).then(|| name.clone()))?;
+    // nobody has written the lines of this robot file, and `snap` has decided on its angles; of inertias, the lines of
+    // the URDF say more
+    let said = [Some("rounded?"), Some("violates the triangle inequality")];
+    warn_of(py, &imported.account.lints, |lint| (!said.contains(&lint.label.as_deref())).then(|| name.clone()))?;
     warn(py, &name, warnings.into_iter().flatten().map(|text| format!("{name}: {text}")).collect())?;
     Ok(arm)
 }

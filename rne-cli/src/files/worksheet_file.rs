@@ -16,7 +16,6 @@ use crate::files::csv_table::{self, Cell, Mistakes, OPEN_QUOTE, quoted, text_of,
 use crate::files::input_file;
 use crate::files::worksheet_text::{COLUMNS, FORMAT};
 use crate::outcome::Failure;
-use crate::values::numbers::resolution;
 
 /// A worksheet of 64 joints has half a megabyte.
 const LONGEST: usize = 4 << 20;
@@ -357,7 +356,7 @@ impl Reading<'_> {
             return;
         }
         let text = with_point(&value_cell.text);
-        let resolution = if text.contains('.') { resolution(&text) } else { 0.0 };
+        let resolution = if text.contains('.') { rne_model::half_of_last_digit(&text) } else { 0.0 };
         self.values.push(GivenValue { joint, quantity, component, value, resolution });
     }
 

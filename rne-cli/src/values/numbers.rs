@@ -20,7 +20,9 @@ impl FromStr for List {
             if element.is_empty() {
                 return Err(format!("number {place} is missing; write numbers with commas between them"));
             }
-            rne_model::number(element).map_err(|mistake| {
+            // as the fields of the page take it
+            let in_degrees = element.strip_suffix("deg").map(|number| format!("deg({number})"));
+            rne_model::number(in_degrees.as_deref().unwrap_or(element)).map_err(|mistake| {
                 let hint = "write numbers or expressions with commas between them, such as 0.1,-pi/2";
                 let hint = mistake.help.as_deref().unwrap_or(hint);
                 match refused(element, &mistake.message) {
@@ -83,16 +85,6 @@ pub(crate) fn with_deviation(value: f64, deviation: f64) -> String {
     format!("{value} ± {deviation:.digits$}")
 }
 
-/// Half of the last digit of a decimal number; zero for an expression, which has all of its digits.
-pub(crate) fn resolution(number: &str) -> f64 {
-    let (mantissa, exponent) = number.trim().split_once(['e', 'E']).unwrap_or((number.trim(), "0"));
-    let plain = mantissa.chars().all(|c| c.is_ascii_digit() || "+-.".contains(c));
-    let (true, Ok(exponent)) = (plain, exponent.parse::<i32>()) else { return 0.0 };
-    // a whole number may be exact, and may be rounded
-    let behind = mantissa.split_once('.').map_or(0, |(_, digits)| i32::try_from(digits.len()).unwrap_or(i32::MAX));
-    0.5 * 10_f64.powi(exponent.saturating_sub(behind))
-}
-
 /// A parser of an argument: a number that `is_fine`, or else the message `allowed`.
 pub(crate) fn checked<T: FromStr>(
     is_fine: fn(&T) -> bool,
@@ -121,6 +113,7 @@ mod tests {
     #[test]
     fn lists() {
         assert_eq!("-0.1, 2e-3,3".parse(), Ok(List(vec![-0.1, 2e-3, 3.0])));
+        assert_eq!("90deg,-30 deg".parse(), "deg(90),-deg(30)".parse::<List>());
         assert_eq!("pi/2,-deg(90),2*(1+1)".parse(), Ok(List(vec![FRAC_PI_2, -FRAC_PI_2, 4.0])));
         for bad in ["", "1,,2", "1,", "m", "nan", "inf", "1e999", "--qd", "1/0"] {
             assert!(bad.parse::<List>().is_err(), "{bad}");

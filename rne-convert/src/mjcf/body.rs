@@ -143,6 +143,9 @@ impl<'a> Bodies<'a> {
         let inertial = inertial::read(self.settings, &name, (element, place), &contents)?;
         self.urdf.links[link] = Link { mass: inertial.mass, xyz: inertial.com, ..self.urdf.links[link].clone() };
         (self.urdf.links[link].rpy, self.urdf.links[link].inertia) = (inertial.rpy, inertial.inertia);
+        if let Some(written) = contents.iter().find(|content| content.element.name == "inertial") {
+            self.urdf.links[link].span_of_inertia = written.element.span.clone();
+        }
         self.below(link, &contents)
     }
 

@@ -44,6 +44,7 @@ fn bodies_that_are_none() {
     let flat = pendulum("").replace("ixx=\"0.05\"", "ixx=\"0.5\"");
     let imported = plain(&flat);
     assert!(imported.account.lints.to_string().contains("no body can have this inertia"), "{}", imported.account.lints);
+    assert_eq!(imported.account.lints.warnings().count(), 1);
     let negative = pendulum("").replace("izz=\"0.001\"", "izz=\"-0.0027\"");
     let message = refused(&negative, &Options::default());
     assert!(message.contains("the joint `hinge`") && message.contains("-2.700e-3 kg m²"), "{message}");
@@ -83,7 +84,7 @@ fn a_part_that_is_no_body_is_told() {
              izz=\"0.00019\"/></inertial></link>"
         )
     };
-    let remarks = |yz: &str| {
+    let said = |yz: &str| {
         let text = robot(&[
             bare(&["base"]),
             link("hand", 1.0, "0 0 0.1", [0.01, 0.01, 0.01]),
@@ -91,13 +92,82 @@ fn a_part_that_is_no_body_is_told() {
             joint("wrist", "continuous", ("base", "hand"), "", "<axis xyz=\"0 0 1\"/>"),
             joint("screws", "fixed", ("hand", "motor"), "", ""),
         ]);
-        let remarks = plain(&text).account.remarks.into_iter();
-        remarks.filter(|remark| remark.is_warning).map(|remark| remark.text).collect::<Vec<_>>()
+        warnings(&text)
     };
-    let told = "no body can have the inertia of `motor`: its largest principal moment is 2.319e-4 kg m², the sum of \
-                the two others is 2.261e-4 kg m²";
-    assert_eq!(remarks("0.000034"), [told]);
-    assert_eq!(remarks("0"), [""; 0]);
+    let told = "no body can have the inertia of `motor` (line 4, column 94): its largest principal moment is 2.319e-4 \
+                kg m², the sum of the two others is 2.261e-4 kg m²; is one number wrong by a power of ten?";
+    assert_eq!(said("0.000034"), [told]);
+    assert_eq!(said("0"), [""; 0]);
+}
+
+/// The warnings of the import of a URDF.
+fn warnings(text: &str) -> Vec<String> {
+    let remarks = plain(text).account.remarks.into_iter();
+    remarks.filter(|remark| remark.is_warning).map(|remark| remark.text).collect()
+}
+
+/// One element that is off by a thousand, as in published URDFs: a warning at the element `inertia`. A moment that is
+/// negative is refused there, and not at the joint.
+#[test]
+fn the_place_of_an_impossible_inertia_is_its_element() {
+    let text = |ixx: &str, ixy: &str, iyy: &str, izz: &str| {
+        let body = format!(
+            "<link name=\"body\"><inertial><origin xyz=\"0 0 0.05\"/><mass value=\"0.5\"/>\n<inertia ixx=\"{ixx}\" \
+             ixy=\"{ixy}\" ixz=\"0.0002\" iyy=\"{iyy}\" iyz=\"0\" izz=\"{izz}\"/></inertial></link>"
+        );
+        robot(&[bare(&["base"]), body, joint("j1", "continuous", ("base", "body"), "", "<axis xyz=\"0 0 1\"/>")])
+    };
+    let line = text("", "", "", "").lines().position(|line| line.starts_with("<inertia")).expect("a line") + 1;
+    for (ixx, iyy, izz) in [("0.002", "0.000002", "0.0002"), ("2", "1", "4"), ("0.002", "0", "0.0002")] {
+        let said = warnings(&text(ixx, "0", iyy, izz));
+        let [message] = &said[..] else { panic!("{ixx}: {said:?}") };
+        let place = format!("no body can have the inertia of `body` (line {line}, column 1): ");
+        assert!(message.starts_with(&place), "{message}");
+    }
+    assert_eq!(warnings(&text("0.002", "0", "0.002", "0.0002")), [""; 0]);
+    let report = refused(&text("0.70337", "0.70661", "-0.000139", "0.019169"), &Options::default());
+    assert!(report.contains("the joint `j1`") && report.contains(&format!(":{line}:1")), "{report}");
+}
+
+/// Rods of a URDF that is rounded to some digits: they are bodies, also where the import turns their tensors, and the
+/// robot file of the import can be read and has no warning.
+#[test]
+fn rounded_rods_are_imported() {
+    let mut state = 3_u64;
+    let mut random = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        f64::from(u32::try_from(state >> 33).expect("31 bits")) / f64::from(1_u32 << 31)
+    };
+    for index in 0..300 {
+        let u = [0; 3].map(|_| 2.0 * random() - 1.0);
+        let square = u.iter().map(|x| x * x).sum::<f64>() + 1e-3;
+        // a rod, or a plate
+        let sign = if index % 3 == 0 { 1.0 } else { -1.0 };
+        let size = 0.2 * random() + 0.02;
+        let decimals = 4 + index % 4;
+        let element = |i: usize, j: usize| {
+            let one = if i == j { u.iter().map(|x| x * x).sum::<f64>() } else { 0.0 };
+            format!("{:.decimals$}", size * (one + sign * u[i] * u[j]) / square)
+        };
+        let turn = format!("{:.3} {:.3} {:.3}", 3.0 * random(), random(), 3.0 * random());
+        let body = format!(
+            "<link name=\"body\"><inertial><origin xyz=\"0.1 0 0.05\" rpy=\"{turn}\"/><mass value=\"1\"/><inertia \
+             ixx=\"{}\" ixy=\"{}\" ixz=\"{}\" iyy=\"{}\" iyz=\"{}\" izz=\"{}\"/></inertial></link>",
+            element(0, 0),
+            element(0, 1),
+            element(0, 2),
+            element(1, 1),
+            element(1, 2),
+            element(2, 2)
+        );
+        let text =
+            robot(&[bare(&["base"]), body, joint("j1", "continuous", ("base", "body"), "", "<axis xyz=\"1 2 2\"/>")]);
+        let imported = converted(&text, &Options::default());
+        assert!(imported.account.remarks.iter().all(|remark| !remark.is_warning), "{index}: {:?}", imported.account.remarks);
+        let lints = &imported.account.lints;
+        let of_inertia = lints.warnings().filter(|lint| lint.message.contains("inertia")).count();
+        assert_eq!(of_inertia, 0, "{index}: {lints}");
+    }
 }
 
 /// 50² 2e-4 N m s/rad and 50 (0.03 + 0.01)/2 N m; a friction without a gear comes back to the last digit.
@@ -137,7 +207,7 @@ fn friction_goes_through_the_gear_to_the_joint() {
 #[test]
 fn friction_becomes_that_of_a_motor_without_a_gear() {
     let text = pendulum("<axis xyz=\"0 1 0\"/><dynamics damping=\"0.5\" friction=\"0.2\"/>");
-    let imported = plain(&text);
+    let imported = converted(&text, &Options::default());
     assert!(imported.text.contains("motor: {viscous: 0.5, coulomb: [0.2, -0.2]}"), "{}", imported.text);
 }
 

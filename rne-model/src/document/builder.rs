@@ -8,6 +8,7 @@ use saphyr_parser::{Event, Parser, ScalarStyle};
 
 use super::{Content, Entry, Kind, MAX_JOINTS, MAX_NODES, Node, Scalar, Style};
 use crate::diagnostic::{Diagnostic, Problems};
+use crate::expression::is_identifier;
 use crate::source::quoted;
 
 /// A robot file is six levels deep, a plan file seven.
@@ -71,7 +72,7 @@ impl<'t> Builder<'t> {
                     return Diagnostic::error(tab..tab + 1, message)
                         .help("YAML does not allow tabs in the indentation");
                 }
-                syntax_error(at, error.info()).maybe_help(self.open_bracket().or_else(|| self.around(at)))
+                syntax_error(at, error.info()).maybe_help(self.open_bracket(at).or_else(|| self.around(at)))
             })?;
             let span = self.offset(span.start.index())..self.offset(span.end.index());
             match event {
@@ -109,10 +110,17 @@ impl<'t> Builder<'t> {
         })
     }
 
-    /// A question that solves most syntax errors: the innermost bracket that is still open.
-    fn open_bracket(&self) -> Option<String> {
+    /// What solves most syntax errors: a comma before a key, or the innermost bracket that is still open.
+    fn open_bracket(&self, at: usize) -> Option<String> {
         let start = self.stack.last()?.start;
         let bracket = self.text.get(start..)?.chars().next().filter(|c| matches!(c, '[' | '{'))?;
+        let pair = self.text.get(start + 1..at).and_then(|text| text.rsplit(',').next());
+        if let Some((_, key)) = pair.and_then(|pair| pair.split_once(": ")?.1.trim_start().rsplit_once(' '))
+            && bracket == '{'
+            && is_identifier(key)
+        {
+            return Some(format!("write a comma before `{key}`"));
+        }
         Some(format!("check that the `{bracket}` in line {} is closed", line(&self.breaks, start)))
     }
 
