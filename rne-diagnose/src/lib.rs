@@ -35,7 +35,7 @@ use rne_model::Robot;
 use rne_runtime::{DynArm, WrongLength};
 
 use crate::computation::Computation;
-pub use crate::observation::Observation;
+pub use crate::observation::{COARSEST, Observation};
 pub use crate::slip::Slip;
 pub use crate::typo::Typo;
 
@@ -46,7 +46,7 @@ pub enum Diagnosis {
     Agrees(f64),
     /// These slips give them, the likeliest first; each explanation has as few slips as there must be.
     Explained(Vec<Explanation>),
-    /// None of the slips does, nor does any pair: how far the torques are off, in parts of the largest.
+    /// None of the slips does, nor does any pair to [`COARSEST`] of the largest torque: how far the torques are off, in parts of the largest.
     Unexplained(f64),
 }
 
@@ -69,22 +69,24 @@ pub fn diagnose(robot: &Robot, seen: &[Observation]) -> Result<Diagnosis, WrongL
         return Ok(Diagnosis::Agrees(error));
     }
     let slips = Slip::candidates(robot);
-    let explains = |slips: &[Slip]| -> Result<Option<Explanation>, WrongLength> {
+    let explains = |seen: &[Observation], slips: &[Slip]| -> Result<Option<Explanation>, WrongLength> {
         let tried = Tried::of(robot, seen, slips)?.filter(|tried| tried.fits);
         Ok(tried.map(|Tried { error, .. }| Explanation { slips: slips.to_vec(), error }))
     };
     let found = one_by_one(robot)
         .into_iter()
-        .filter_map(|slip| explains(&[slip]).transpose())
+        .filter_map(|slip| explains(seen, &[slip]).transpose())
         .collect::<Result<Vec<_>, _>>()?;
     if !found.is_empty() {
         return Ok(Diagnosis::Explained(found));
     }
+    // some of so many pairs give torques of few digits by accident
+    let seen: Vec<Observation> = seen.iter().map(Observation::to_enough_digits).collect();
     // of two that fit together neither is idle: the other would have fitted alone
     let pairs = slips.iter().enumerate().flat_map(|(index, &first)| {
         slips.iter().skip(index + 1).filter(move |second| first.goes_with(**second)).map(move |&second| [first, second])
     });
-    let found = pairs.filter_map(|pair| explains(&pair).transpose()).collect::<Result<Vec<_>, _>>()?;
+    let found = pairs.filter_map(|pair| explains(&seen, &pair).transpose()).collect::<Result<Vec<_>, _>>()?;
     let off = right.map_or(f64::NAN, |right| right.error);
     Ok(if found.is_empty() { Diagnosis::Unexplained(off) } else { Diagnosis::Explained(found) })
 }

@@ -22,7 +22,16 @@ pub struct Observation {
     pub resolution: Vec<f64>,
 }
 
+/// The largest tolerance of a pair of slips, in parts of the largest torque.
+pub const COARSEST: f64 = 1e-3;
+
 impl Observation {
+    /// The observation with no tolerance above [`COARSEST`].
+    pub(crate) fn to_enough_digits(&self) -> Self {
+        let most = COARSEST * largest(&self.tau);
+        Self { resolution: self.resolution.iter().map(|half| half.min(most)).collect(), ..self.clone() }
+    }
+
     /// Whether torques are those of the observation, as far as it can tell.
     pub(crate) fn shows(&self, tau: &[f64]) -> bool {
         if tau.len() != self.tau.len() || tau.iter().any(|tau| !tau.is_finite()) {

@@ -338,3 +338,18 @@ fn slips_of_lists() {
     let exchanged = states.map(|at| Observation { qd: at.qdd.clone(), qdd: at.qd.clone(), ..at });
     assert_eq!(explained(&printed(&exchanged, &right)), [Slip::RatesExchanged]);
 }
+
+/// Torques that are printed with three digits agree with every shipped robot, each within half of its own last digit.
+#[test]
+fn torques_of_three_digits_agree() {
+    let mut rng = Rng::with_seed(3);
+    for robot in robots() {
+        let [at, _] = states(&mut rng, robot.dof());
+        let right = torques_with(&robot, &[], &at).unwrap().expect("torques");
+        let printed: Vec<String> = right.iter().map(|tau| format!("{tau:.2e}")).collect();
+        let tau = printed.iter().map(|text| text.parse().unwrap()).collect();
+        let resolution = printed.iter().map(|text| rne_model::half_of_last_digit(text)).collect();
+        let found = diagnose(&robot, &[Observation { tau, resolution, ..at }]).unwrap();
+        assert!(matches!(found, Diagnosis::Agrees(_)), "{}: {found:?}", robot.name);
+    }
+}

@@ -215,8 +215,9 @@ impl Arm {
     ///
     /// Arguments are of one state, shape (n,). Returns a dict: `agrees`, `error` (in parts of the largest torque) and
     /// `explanations`, each a list of sentences with what is right. `tolerance`, in parts of the largest torque, says
-    /// how far the digits of `tau` can be trusted.
-    #[pyo3(signature = (q, qd, qdd, tau, *, tolerance=1e-6))]
+    /// how far each torque may be off; by default by half of the last digit of its shortest decimal, 14.5 by 0.05, and
+    /// by 1e-6 of the largest torque at least.
+    #[pyo3(signature = (q, qd, qdd, tau, *, tolerance=None))]
     fn diagnose<'py>(
         &self,
         py: Python<'py>,
@@ -224,7 +225,7 @@ impl Arm {
         qd: &Bound<'py, PyAny>,
         qdd: &Bound<'py, PyAny>,
         tau: &Bound<'py, PyAny>,
-        tolerance: f64,
+        tolerance: Option<f64>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let numbers = |name: &str, value: &Bound<'py, PyAny>| -> PyResult<Vec<f64>> {
             refuse_masked(name, value)?;
@@ -233,7 +234,12 @@ impl Arm {
         let (q, qd, qdd) = (numbers("q", q)?, numbers("qd", qd)?, numbers("qdd", qdd)?);
         let tau = numbers("tau", tau)?;
         let largest = tau.iter().fold(0.0, |largest: f64, tau| largest.max(tau.abs()));
-        let resolution = vec![tolerance * largest; tau.len()];
+        let half = |tau: f64| rne_model::half_of_last_digit(&rne_model::exact_digits(tau));
+        let of_digits = |tau: &f64| if *tau == 0.0 { 0.0 } else { half(*tau) }.max(1e-6 * largest);
+        let resolution = match tolerance {
+            Some(tolerance) => vec![tolerance * largest; tau.len()],
+            None => tau.iter().map(of_digits).collect(),
+        };
         let seen = Observation { q, qd, qdd, wrench: None, tau, resolution };
         let robot = self.robot();
         let diagnosis = py.detach(|| rne_diagnose::diagnose(robot, std::slice::from_ref(&seen)));

@@ -1,5 +1,6 @@
 """Layouts, precisions, room for results, and what is refused."""
 
+import functools
 import pickle
 import threading
 
@@ -159,6 +160,10 @@ def test_insight():
     told = arm.diagnose(q[0], qd[0], qdd[0], -tau[0])
     assert not told["agrees"] and told["explanations"]
     assert arm.diagnose(q[0], qd[0], qdd[0], tau[0])["agrees"]
+    # right are 14.541 and 2.4086: each number may be off by half of its last digit
+    rods = functools.partial(rne.robots.planar2.diagnose, [0.3, 0.4], [0.1, 0.2], [0.5, 0.6])
+    assert rods([14.5, 2.4])["agrees"] and rods([14.54, 2.4])["agrees"] and rods([14.5, 2.41])["agrees"]
+    assert not rods([14.51, 2.4])["agrees"] and not rods([14.5, 2.4], tolerance=1e-6)["agrees"]
     assert repr(arm) == "<rne.Arm puma560: 6 joints, standard, reduced>"
 
 

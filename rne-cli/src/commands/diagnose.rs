@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use clap::Args;
 use rne::{DynArm, Wrench};
 use rne_codegen::Function;
-use rne_diagnose::{Diagnosis, Explanation, Observation};
-use rne_model::Robot;
+use rne_diagnose::{COARSEST, Diagnosis, Explanation, Observation};
+use rne_model::{Robot, half_of_last_digit};
 use serde::Serialize;
 
 use crate::files::chosen_arm::ChosenArm;
@@ -16,7 +16,7 @@ use crate::palette::{ERROR, FOUND, GOOD, QUIET, TITLE};
 use crate::render::answer::not_finite;
 use crate::render::layout::{Align, columns, wrap};
 use crate::terminal;
-use crate::values::numbers::{List, checked, resolution, rounded};
+use crate::values::numbers::{List, checked, rounded};
 use crate::values::state::{Given, State};
 
 /// Find mistakes that explain different torques of another program
@@ -24,8 +24,9 @@ use crate::values::state::{Given, State};
 #[command(override_usage = "rne diagnose [OPTIONS] --q <Q> --qd <QD> --qdd <QDD> --tau <TAU> <FILE>")]
 #[command(after_help = "\
 Exit status: 1 if the torques differ and no mistake explains them. Without
---tolerance, rne accepts up to 1e-4 of the largest torque where no mistake
-explains all digits, and says so.
+--tolerance, each torque may be off by half of its own last digit: 14.5 by 0.05,
+2.40 by 0.005. Where no mistake explains these digits, rne accepts up to 1e-4 of
+the largest torque, and says so.
 
 Examples:
   rne diagnose robots/planar1.yaml --q 0.3 --qd 0.5 --qdd -1 --tau -4.853
@@ -58,12 +59,12 @@ pub(crate) struct Arguments {
     /// Force and moment of the tip on its environment, fx,fy,fz,nx,ny,nz, N and N m, in tip axes
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     wrench: Option<List>,
-    /// Accepted error of a torque, relative to the largest torque [default: half of the last digit of --tau]
+    /// Accepted error of a torque, relative to the largest torque [default: half of the last digit of each number of --tau]
     #[arg(long, value_name = "T", allow_hyphen_values = true,
         value_parser = checked(|part: &f64| (0.0..1.0).contains(part),
         "write a fraction of the largest torque, from 0 to below 1, such as --tolerance 1e-4"))]
     tolerance: Option<f64>,
-    /// Print the answer as JSON: {"agrees": …, "tolerance": …, "error": …, "explanations": […]}
+    /// Print the answer as JSON: {"agrees": …, "tolerance": …, "accepted": […], "error": …, "explanations": […]}
     #[arg(long)]
     json: bool,
 }
@@ -80,7 +81,7 @@ impl std::str::FromStr for Printed {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let values: List = text.parse()?;
-        Ok(Self { values, resolution: text.split(',').map(resolution).collect() })
+        Ok(Self { values, resolution: text.split(',').map(half_of_last_digit).collect() })
     }
 }
 
@@ -88,8 +89,10 @@ impl std::str::FromStr for Printed {
 #[derive(Serialize)]
 struct Reply {
     agrees: bool,
-    /// The tolerance that was needed beyond the digits of the torques, in parts of the largest torque.
+    /// The largest accepted error, in parts of the largest torque.
     tolerance: f64,
+    /// The accepted error of each torque, N m or N.
+    accepted: Vec<f64>,
     error: f64,
     explanations: Vec<Reason>,
 }
@@ -106,9 +109,6 @@ struct Named {
     says: String,
     right: String,
 }
-
-/// How far a torque may be off at most, where its digits tell, in parts of the largest.
-const COARSEST: f64 = 1e-3;
 
 /// Tolerances that are tried where nothing explains the torques to their digits, in parts of the largest torque; the
 /// last only where angles of the file were snapped, which moves torques by so much at most.
@@ -135,27 +135,37 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Diagnosis::Explained(_) => false,
     };
     if arguments.json {
-        let reply = Reply { tolerance, ..reply(&robot, &diagnosis) };
+        let largest = largest(&seen.tau, &right);
+        let accepted = if is_near { vec![tolerance * largest; right.len()] } else { seen.resolution };
+        let most = accepted.iter().fold(0.0, |most: f64, half| most.max(*half));
+        let tolerance = if largest > 0.0 { most / largest } else { 0.0 };
+        let reply = Reply { tolerance, accepted, ..reply(&robot, &diagnosis) };
         let reply = Reply { agrees: reply.agrees && !at_fault, ..reply };
         return Ok(Outcome { at_fault, ..Outcome::json(&reply)? });
     }
     let text = match diagnosis {
         Diagnosis::Agrees(error) if is_near => nearly_right(&robot, &table(&robot, &seen, &right), error, snapped),
         Diagnosis::Agrees(error) => {
-            format!("{GOOD}ok{GOOD:#} the torques agree with {TITLE}{}{TITLE:#} to {error:.0e}\n", robot.name)
+            format!(
+                "{GOOD}ok{GOOD:#} the torques agree with {TITLE}{}{TITLE:#}{}\n",
+                robot.name,
+                closeness(&seen, error)
+            )
         }
         Diagnosis::Explained(all) => {
             let remark = match snapped.filter(|_| is_near) {
                 Some(snapped) => format!("{QUIET}{}{QUIET:#}\n", wrap(&of_snapping(snapped), terminal::width(80), "")),
                 None => String::new(),
             };
-            table(&robot, &seen, &right) + "\n" + &explained(&robot, &all) + &remark
+            table(&robot, &seen, &right) + "\n" + &explained(&robot, &seen, &all) + &remark
         }
         Diagnosis::Unexplained(_) => {
             let trace = if robot.is_serial() { "compare link by link: rne eval … --trace; " } else { "" };
+            let is_coarse = seen.resolution.iter().any(|half| *half > COARSEST * largest(&seen.tau, &[]));
+            let pair = if is_coarse { "does to 1e-3 of the largest" } else { "of mistakes does" };
             table(&robot, &seen, &right)
                 + &format!(
-                    "\n{ERROR}no usual mistake{ERROR:#} gives these torques, and no pair of mistakes does\n\
+                    "\n{ERROR}no usual mistake{ERROR:#} gives these torques, and no pair {pair}\n\
                      {QUIET}{trace}accept larger errors: --tolerance 1e-3{QUIET:#}\n"
                 )
         }
@@ -187,15 +197,23 @@ fn observation(arguments: &Arguments, robot: &Robot) -> Result<(Observation, Vec
     if let Some(index) = right.iter().position(|number| !number.is_finite()) {
         return Err(Failure::input(not_finite(robot, function, index, &state.q)));
     }
-    let largest = tau.iter().chain(&right).fold(0.0, |largest: f64, tau| largest.max(tau.abs()));
+    let largest = largest(tau, &right);
+    // a zero alone says nothing of its digits: it has those of the others
+    let is_zero = |(tau, half): &(&f64, &f64)| **tau == 0.0 && **half == 0.5;
+    let digits = || tau.iter().zip(resolution);
+    let of_others = digits().filter(|it| !is_zero(it)).fold(COARSEST * largest, |least, (_, half)| least.min(*half));
     let resolution = match arguments.tolerance {
         Some(tolerance) => vec![tolerance * largest; tau.len()],
-        // one digit alone would explain anything
-        None => resolution.iter().map(|half| half.min(COARSEST * largest)).collect(),
+        None => digits().map(|it| if is_zero(&it) { of_others } else { *it.1 }).collect(),
     };
     let State { q, qd, qdd, wrench, .. } = state;
     let wrench: Option<Wrench<f64>> = wrench;
     Ok((Observation { q, qd, qdd, wrench, tau: tau.clone(), resolution }, right))
+}
+
+/// The size of the largest torque.
+fn largest(tau: &[f64], right: &[f64]) -> f64 {
+    tau.iter().chain(right).fold(0.0, |largest: f64, tau| largest.max(tau.abs()))
 }
 
 fn reply(robot: &Robot, diagnosis: &Diagnosis) -> Reply {
@@ -210,7 +228,7 @@ fn reply(robot: &Robot, diagnosis: &Diagnosis) -> Reply {
         }
         Diagnosis::Unexplained(error) => (false, *error, Vec::new()),
     };
-    Reply { agrees, tolerance: 0.0, error, explanations }
+    Reply { agrees, tolerance: 0.0, accepted: Vec::new(), error, explanations }
 }
 
 /// The remark that the angles of the robot file were snapped, from what its notes say.
@@ -236,9 +254,13 @@ fn nearly_right(robot: &Robot, table: &str, error: f64, snapped: Option<&str>) -
     )
 }
 
-/// How well slips explain torques.
-fn closeness(error: f64) -> String {
-    if error < 1e-15 { "exactly".to_owned() } else { format!("to {error:.0e} of the largest") }
+/// How well torques agree, in words after others; of zeros a part says nothing.
+fn closeness(seen: &Observation, error: f64) -> String {
+    match error {
+        _ if largest(&seen.tau, &[]) == 0.0 => String::new(),
+        0.0..1e-15 => " exactly".to_owned(),
+        _ => format!(" to {error:.0e} of the largest"),
+    }
 }
 
 /// Torques beside the right ones.
@@ -255,13 +277,17 @@ fn table(robot: &Robot, seen: &Observation, right: &[f64]) -> String {
 }
 
 /// The slips that give the torques, with what is right.
-fn explained(robot: &Robot, all: &[Explanation]) -> String {
+fn explained(robot: &Robot, seen: &Observation, all: &[Explanation]) -> String {
     let width = terminal::width(80);
     let mut text = String::new();
     for (index, Explanation { slips, error }) in all.iter().take(SHOWN).enumerate() {
         let together = if slips.len() > 1 { " together" } else { "" };
         let _ = match index {
-            0 => writeln!(text, "{TITLE}your torques{TITLE:#} result from this{together}, {}:", closeness(*error)),
+            0 => {
+                let close = closeness(seen, *error);
+                let close = if close.is_empty() { close } else { format!(",{close}") };
+                writeln!(text, "{TITLE}your torques{TITLE:#} result from this{together}{close}:")
+            }
             _ => writeln!(text, "{QUIET}or from this, which is the same at this state:{QUIET:#}"),
         };
         for slip in slips {
@@ -287,10 +313,21 @@ mod tests {
 
     #[test]
     fn digits_tell_how_far_a_torque_may_be_off() {
-        for (text, half) in
-            [("1.25", 0.005), ("-3", 0.5), ("1.5e-3", 5e-5), ("2e2", 50.0), ("pi/2", 0.0), (" 0.10 ", 0.005)]
-        {
-            assert!((resolution(text) - half).abs() <= 1e-12 * half, "{text}");
+        for (text, half) in [
+            ("1.25", 0.005),
+            ("14.5", 0.05),
+            ("2.4", 0.05),
+            ("2.40", 0.005),
+            ("-3", 0.5),
+            ("+120", 0.5),
+            ("1.5e-3", 5e-5),
+            ("1.50E+2", 0.5),
+            ("2e2", 50.0),
+            ("1e3", 500.0),
+            ("pi/2", 0.0),
+            (" 0.10 ", 0.005),
+        ] {
+            assert!((half_of_last_digit(text) - half).abs() <= 1e-12 * half, "{text}");
         }
     }
 }

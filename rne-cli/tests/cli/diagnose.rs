@@ -76,6 +76,44 @@ fn mistakes_in_the_call() {
     fails(1, &[&["diagnose", "planar2"][..], &state].concat(), &["overflows: the state is too large"]);
 }
 
+/// Torques that are right as printed agree: each is off by less than half of its own last digit.
+#[test]
+fn torques_agree_as_printed() {
+    let state = ["--q", "0.3,0.4", "--qd", "0.1,0.2", "--qdd", "0.5,0.6", "--json"];
+    // right are 14.541 and 2.4086
+    for (tau, agrees, accepted) in [
+        ("14.5,2.4", true, [0.05, 0.05]),
+        ("14.54,2.4", true, [0.005, 0.05]),
+        ("14.5,2.41", true, [0.05, 0.005]),
+        ("14.5,2.400", false, [0.05, 0.0005]),
+        ("14.50,2.4", false, [0.005, 0.05]),
+        ("15,2", true, [0.5, 0.5]),
+        ("14,2", false, [0.5, 0.5]),
+        ("1.45e1,2.41e0", true, [0.05, 0.005]),
+        ("1e1,2", true, [5.0, 0.5]),
+        ("14541e-3,2.4086", true, [0.0005, 0.00005]),
+        ("14.5410,2.4086", false, [0.00005, 0.00005]),
+    ] {
+        let called = rne(&[&["diagnose", "planar2", &format!("--tau={tau}")][..], &state].concat());
+        let reply: Value = serde_json::from_str(&called.out).expect("JSON");
+        assert_eq!(reply["agrees"], agrees, "{tau}: {reply}");
+        if agrees {
+            assert_eq!(called.status, 0, "{tau}");
+            assert_eq!(reply["accepted"], serde_json::json!(accepted), "{tau}");
+            let most = accepted.iter().fold(0.0, |most: f64, half| most.max(*half));
+            let largest = reply["tolerance"].as_f64().expect("a number");
+            assert!(largest > 0.9 * most / 16.0 && largest < 1.1 * most / 10.0, "{tau}: {reply}");
+        }
+    }
+    let wide = rne(&[&["diagnose", "planar2", "--tau=14.3,2.4", "--tolerance", "0.02"][..], &state].concat());
+    let reply: Value = serde_json::from_str(&wide.out).expect("JSON");
+    assert_eq!((&reply["agrees"], &reply["tolerance"]), (&serde_json::json!(true), &serde_json::json!(0.02)));
+    // of zeros a part of the largest says nothing, and a zero without digits accepts no half
+    let rest = ["diagnose", "planar1", "--q", "0.3", "--qd", "0", "--qdd", "0", "--tau", "0"];
+    let called = rne(&rest);
+    assert!(called.out.contains("result from this:") && called.out.contains("there is no gravity"), "{called:?}");
+}
+
 /// Somebody has typed `alpha: pi/2` for joint 3 of the PUMA 560, whose file has `-pi/2`.
 #[test]
 fn a_mistyped_sign_is_named() {

@@ -523,7 +523,7 @@ class Arm:
         """Functions of this arm on a graphics card of NVIDIA, for arrays of PyTorch, CuPy and JAX that are on it."""
     def diagnose(
         self, q: Sequence[float], qd: Sequence[float], qdd: Sequence[float], tau: Sequence[float], *,
-        tolerance: float = ...,
+        tolerance: float | None = ...,
     ) -> Diagnosis: ...
     def search(
         self, seconds: float = ..., *, functions: Sequence[str] = ..., seed: int = ...,
