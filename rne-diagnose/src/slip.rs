@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use rne_model::{Convention, Inertia, JointKind, Link, Robot, Transform};
+use rne_model::{Convention, Inertia, Joint, JointKind, Link, Robot, Row, Transform};
 
 use crate::computation::{Computation, WrenchAxes, is_of_lecture};
 use crate::lecture::Misprint;
@@ -48,6 +48,8 @@ slips! {
         "The inertia as it is written is taken for one about the origin of the link frame.";
     InertiaShifted: "inertia_shifted", "inertia", "The inertia gets m (c² 1 - c cᵀ) once more.";
     ProductsOfInertia: "products_of_inertia", "products", "xy, xz and yz have the other sign.";
+    InertiaNotTwisted: "inertia_not_twisted", "inertia",
+        "The inertias of a standard table are not turned by alpha into axes with z along the joint.";
     ComReversed: "com_reversed", "com", "The centres of mass are on the other side.";
     ComFromOtherEnd: "com_from_other_end", "com",
         "The centres of mass count from the frame at the other end of the link.";
@@ -115,6 +117,7 @@ impl Slip {
             }
         }
         all.extend([Self::InertiaAboutOrigin, Self::InertiaShifted, Self::ProductsOfInertia, Self::ComReversed]);
+        all.extend((robot.convention == Convention::Standard).then_some(Self::InertiaNotTwisted));
         if robot.is_serial() {
             // a link of a tree may have several other ends
             all.extend([Self::ComFromOtherEnd, Self::ComOfOtherEnd]);
@@ -234,6 +237,12 @@ impl Slip {
                 let Inertia { xy, xz, yz, .. } = link.inertia;
                 link.inertia = Inertia { xy: -xy, xz: -xz, yz: -yz, ..link.inertia };
             }),
+            Self::InertiaNotTwisted => {
+                robot.joints.iter_mut().for_each(|Joint { row: Row { dh, link, .. }, .. }| {
+                    let turn = Rotation3::from_axis_angle(&Vector3::x_axis(), -dh.alpha.radians);
+                    link.inertia = tensor(turn * Matrix3::from(link.inertia.rows()) * turn.inverse());
+                })
+            }
             Self::ComReversed => each_link(robot, |link| link.com = link.com.map(|c| -c)),
             Self::ComFromOtherEnd => move_com(robot, 1.0),
             Self::ComOfOtherEnd => move_com(robot, -1.0),
@@ -305,7 +314,10 @@ fn each_link(robot: &mut Robot, change: impl Fn(&mut Link)) {
 /// The inertia with a multiple of m (c² 1 - c cᵀ) added.
 fn shifted(link: &Link, times: f64) -> Inertia {
     let (c, own) = (Vector3::from(link.com), Matrix3::from(link.inertia.rows()));
-    let j = own + (Matrix3::identity() * c.norm_squared() - c * c.transpose()) * (link.mass * times);
+    tensor(own + (Matrix3::identity() * c.norm_squared() - c * c.transpose()) * (link.mass * times))
+}
+
+fn tensor(j: Matrix3<f64>) -> Inertia {
     Inertia { xx: j[(0, 0)], yy: j[(1, 1)], zz: j[(2, 2)], xy: j[(0, 1)], xz: j[(0, 2)], yz: j[(1, 2)] }
 }
 

@@ -45,6 +45,9 @@ impl Slip {
             }
             .to_owned(),
             Self::ProductsOfInertia => "xy, xz and yz of the inertias have the other sign".to_owned(),
+            Self::InertiaNotTwisted => "the inertias are not turned by alpha: they are used in axes with z along the \
+                                        joint as the file has them, whose z is along the next joint"
+                .to_owned(),
             Self::ComReversed => "the centres of mass have the other sign".to_owned(),
             Self::ComFromOtherEnd => {
                 format!(
@@ -146,6 +149,7 @@ impl Slip {
                 let about = if reference(robot) == InertiaReference::Com { "com" } else { "origin" };
                 format!("the file's inertias are about `{about}`; I_origin = I_com + m (c² 1 - c cᵀ)")
             }
+            Self::InertiaNotTwisted => "[I] = Rx(α) I Rx(α)ᵀ in axes with z along the joint".to_owned(),
             Self::ProductsOfInertia => "`xy` is the element of the tensor, -∫ x y dm".to_owned(),
             Self::ComReversed | Self::ComFromOtherEnd | Self::ComOfOtherEnd => com.to_owned(),
             Self::PositionsAsDegrees | Self::PositionsInDegrees => "q in rad: deg(30) is pi/6".to_owned(),

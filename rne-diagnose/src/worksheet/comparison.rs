@@ -247,32 +247,51 @@ impl<'a> Ordered<'a> {
             let mut places = self.values.keys().take_while(|place| place.0 <= up_to);
             places.all(|&place| here(place).is_some_and(|value| self.agrees(place, value)))
         };
-        let of_slip = |slip: crate::Slip, reach| {
-            let (says, right) = (slip.says(robot), Some(slip.right(robot)));
+        let of_slip = |slipped: &slipped::Slipped, reach| {
+            let (says, right) = (slipped.says.clone(), slipped.right.clone());
             Reason { says, right, reach }
         };
         let last = self.sheet.lines.len();
         let everything = slipped.iter().filter(|slipped| explains(&slipped.values, last));
         let mut reasons: Vec<Reason> =
-            everything.map(|slipped| of_slip(slipped.slip, Reach::Everything)).take(MOST).collect();
+            everything.map(|slipped| of_slip(slipped, Reach::Everything)).take(MOST).collect();
         if reasons.is_empty() {
             reasons.extend(self.of_other_axes(robot, at, line)?);
         }
         if reasons.iter().all(|reason| reason.reach != Reach::Everything) {
-            reasons.extend(self.of_the_line(line, component));
-            reasons.extend(self.of_torques(robot, at)?);
+            let wrong = self.wrong();
+            let of = |is_there: &dyn Fn(&Place) -> bool| wrong.iter().filter(|place| is_there(place)).count();
+            let here = of(&|place| place.0 == line);
+            let torques = of(&|place| self.line(place.0).quantity == Quantity::Tau);
+            let mut found: Vec<(usize, Reason)> =
+                self.of_the_line(line, component).into_iter().map(|reason| (here, reason)).collect();
+            found.extend(self.of_torques(robot, at)?.into_iter().map(|reason| (torques, reason)));
             let so_far = slipped.iter().filter(|slipped| explains(&slipped.values, line));
-            reasons.extend(so_far.map(|slipped| of_slip(slipped.slip, Reach::UpToHere)));
+            found.extend(so_far.map(|slipped| {
+                let explained = of(&|&place| self.agrees(place, slipped.values[place.0][place.1]));
+                (explained, of_slip(slipped, Reach::UpToHere))
+            }));
+            // what explains most of the sheet is the likeliest
+            found.sort_by_key(|(explained, _)| std::cmp::Reverse(*explained));
+            for (_, reason) in found {
+                if reasons.iter().all(|known| known.says != reason.says) {
+                    reasons.push(reason);
+                }
+            }
             reasons.truncate(MOST);
         }
         Ok(reasons)
     }
 
+    /// The values that differ.
+    fn wrong(&self) -> Vec<Place> {
+        self.values.keys().copied().filter(|&place| !self.agrees(place, self.sheet.value(place))).collect()
+    }
+
     /// The other axes in which somebody may have written all vectors: those that explain every value, or every value up
     /// to a line and more than half of those that differ.
     fn of_other_axes(&self, robot: &Robot, at: &Situation, line: usize) -> Result<Vec<Reason>, WrongLength> {
-        let wrong: Vec<Place> =
-            self.values.keys().copied().filter(|&place| !self.agrees(place, self.sheet.value(place))).collect();
+        let wrong = self.wrong();
         let mut found = Vec::new();
         for other in other_axes::all(robot, at, self.sheet)? {
             let agrees = |place: Place| self.agrees(place, other.values[place.0][place.1]);
@@ -295,9 +314,12 @@ impl<'a> Ordered<'a> {
     /// The mistakes on the line alone that explain it.
     fn of_the_line(&self, line: usize, component: usize) -> Vec<Reason> {
         let ways = local::ways(self.line(line), component);
+        // a way of one component explains no vector of which another component differs, too
+        let others_are_right = self.wrong().iter().all(|place| place.0 != line || place.1 == component);
+        let is_whole = |way: &local::Way| way.values.len() > 1 && way.values.iter().all(Option::is_some);
         let zero_is_no_multiple = |way: &local::Way| {
             let small = way.values[component].is_none_or(|value| value.abs() <= self.allowed((line, component)));
-            !small || way.says.contains("term")
+            is_whole(way) || others_are_right && (!small || way.says.contains("term"))
         };
         let fits = |way: &local::Way| {
             let mut said = way.values.iter().enumerate().filter_map(|(at, value)| Some((at, (*value)?)));
@@ -305,8 +327,7 @@ impl<'a> Ordered<'a> {
         };
         let mut found: Vec<Reason> = Vec::new();
         for way in ways.into_iter().filter(|way| fits(way) && zero_is_no_multiple(way)) {
-            let whole = way.values.len() > 1 && way.values.iter().all(Option::is_some);
-            let reach = if whole { Reach::Line } else { Reach::Component };
+            let reach = if is_whole(&way) { Reach::Line } else { Reach::Component };
             // what explains the line needs no help from what explains a part of it
             if reach == Reach::Line || found.iter().all(|other| other.reach != Reach::Line) {
                 found.push(Reason { says: way.says, right: None, reach });

@@ -1,18 +1,19 @@
 //! The worksheets of those who make one of the usual slips.
 
 use nalgebra::{Matrix3, Vector3};
-use rne_model::Robot;
-use rne_runtime::{DynArm, WrongLength};
+use rne_model::{JointKind, Robot};
+use rne_runtime::{DynArm, LinkTrace, WrongLength};
 
 use super::formulas::about_z;
-use super::{Axes, Line, Quantity, Situation, Worksheet, orientations};
+use super::{Axes, Computed, Line, Quantity, Situation, Worksheet, followed, orientations};
 use crate::computation::{Computation, Moved};
 use crate::lecture::{LinkVectors, Misprint, Placed};
 use crate::slip::Slip;
 
-/// A slip, and the values of each line of the worksheet with it.
+/// A slip in words, what is right, and the values of each line of the worksheet with it.
 pub(super) struct Slipped {
-    pub(super) slip: Slip,
+    pub(super) says: String,
+    pub(super) right: Option<String>,
     pub(super) values: Vec<Vec<f64>>,
 }
 
@@ -27,9 +28,75 @@ pub(super) fn all(robot: &Robot, at: &Situation, sheet: &Worksheet) -> Result<Ve
     for slip in Slip::candidates(robot).into_iter().chain(unseen) {
         let Some(computation) = Computation::with(robot, &[slip]) else { continue };
         let values = values(&computation, robot, at, sheet)?;
-        all.push(Slipped { slip, values });
+        all.push(Slipped { says: slip.says(robot), right: Some(slip.right(robot)), values });
+    }
+    all.extend(of_positions(robot, at, sheet)?);
+    all.extend(of_lines(robot, at, sheet)?);
+    Ok(all)
+}
+
+/// Joints that stand where they do not: at the angle of a joint beside, at zero, or on the other side.
+fn of_positions(robot: &Robot, at: &Situation, sheet: &Worksheet) -> Result<Vec<Slipped>, WrongLength> {
+    let mut all = Vec::new();
+    let revolute = |joint: usize| robot.joints.get(joint).filter(|joint| joint.row.kind == JointKind::Revolute);
+    for (joint, q) in at.q.iter().enumerate() {
+        let beside = [joint.wrapping_sub(1), joint + 1].into_iter().filter_map(|other| {
+            let [constant, of_other] = [revolute(joint)?, revolute(other)?].map(|it| it.row.dh.theta.radians);
+            Some((
+                format!("the angle of joint {} is that of joint {}", joint + 1, other + 1),
+                at.q[other] + of_other - constant,
+            ))
+        });
+        let own = [(format!("q{} is left out", joint + 1), 0.0), (format!("q{} has the other sign", joint + 1), -q)];
+        for (says, position) in beside.chain(own) {
+            let mut moved = at.clone();
+            moved.q[joint] = position;
+            let lines = Worksheet::new(robot, &moved, sheet.axes)?.lines.into_iter().zip(&sheet.lines);
+            let of_line = |(line, own): (Line, &Line)| {
+                if line.quantity == Quantity::Q { own.values.clone() } else { line.values }
+            };
+            all.push(Slipped { says, right: None, values: lines.map(of_line).collect() });
+        }
     }
     Ok(all)
+}
+
+/// Formulas that take a wrong vector or matrix in every line.
+fn of_lines(robot: &Robot, at: &Situation, sheet: &Worksheet) -> Result<Vec<Slipped>, WrongLength> {
+    type Taken = fn(&Line, &mut [LinkTrace<f64>]);
+    fn transposed(links: &mut [LinkTrace<f64>]) {
+        links.iter_mut().for_each(|link| link.rotation = Matrix3::from(link.rotation).transpose().into());
+    }
+    let slips: [(&str, Taken); 3] = [
+        ("R is used in place of Rᵀ in steps 1 to 5", |line, links| {
+            if !line.quantity.is_inward() {
+                transposed(links);
+            }
+        }),
+        ("R is used in place of Rᵀ, and Rᵀ in place of R", |_, links| transposed(links)),
+        ("r of the link itself is used in place of r of the link before", |line, links| {
+            if !line.quantity.is_inward() && line.joint > 1 {
+                links[line.joint - 2].r = links[line.joint - 1].r;
+            }
+        }),
+    ];
+    let computed = Computed::new(robot, at, sheet.axes)?;
+    let with = |(says, take): (&str, Taken)| {
+        let mut links = computed.links.clone();
+        let mut values = Vec::new();
+        for line in &sheet.lines {
+            let mut taken = links.clone();
+            take(line, &mut taken);
+            let own = computed.formulas(robot, at, &taken).by_formula(line.joint, line.quantity);
+            let own = own.map_or_else(|| line.values.clone(), |own| own.values);
+            own.iter()
+                .enumerate()
+                .for_each(|(at, value)| followed::set(&mut links[line.joint - 1], line.quantity, at, *value));
+            values.push(own);
+        }
+        Slipped { says: says.to_owned(), right: None, values }
+    };
+    Ok(slips.map(with).into())
 }
 
 fn values(

@@ -4,3 +4,4 @@
 mod agreement;
 mod lecture;
 mod mistakes;
+mod spoiled;
