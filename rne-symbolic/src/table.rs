@@ -62,12 +62,18 @@ struct Letters<'r> {
     angles: Vec<(Angle, Turn)>,
 }
 
-/// The parameter of a formula that is this parameter alone.
-fn parameter_of(formula: &Formula) -> Option<usize> {
+/// The parameters of a formula that have its unit: those that it is a sum of, each times a number.
+fn summands(formula: &Formula) -> Vec<usize> {
     match formula {
-        Formula::Parameter(index) => Some(*index),
-        Formula::Negative(x) => parameter_of(x),
-        _ => None,
+        Formula::Parameter(index) => vec![*index],
+        Formula::Negative(x) => summands(x),
+        Formula::Sum(x, y) | Formula::Difference(x, y) => [summands(x), summands(y)].concat(),
+        Formula::Product(x, y) => match (&**x, &**y) {
+            (Formula::Number(_), other) | (other, Formula::Number(_)) => summands(other),
+            _ => Vec::new(),
+        },
+        Formula::Quotient(x, y) if matches!(**y, Formula::Number(_)) => summands(x),
+        _ => Vec::new(),
     }
 }
 
@@ -114,12 +120,12 @@ impl Letters<'_> {
         }
         // a sum to divide by, or a formula that grew too long: a letter stands for it
         let formula = written.and_then(|written| self.formula(written, kind));
-        // a parameter that is the number itself has its unit
-        let alone = written.and_then(parameter_of).and_then(|index| self.parameters.get(index).copied().flatten());
-        if let Some(Symbol::Constant(at)) = alone
-            && let Some(constant) = self.constants.0.get_mut(at).filter(|constant| constant.unit.is_empty())
-        {
-            constant.unit = unit;
+        for parameter in written.map(summands).unwrap_or_default() {
+            if let Some(Some(Symbol::Constant(at))) = self.parameters.get(parameter)
+                && let Some(constant) = self.constants.0.get_mut(*at).filter(|constant| constant.unit.is_empty())
+            {
+                constant.unit = unit;
+            }
         }
         if let Some(formula) = formula.filter(|formula| !formula.is_too_long()) {
             return formula;

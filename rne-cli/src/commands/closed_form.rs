@@ -4,7 +4,7 @@ use std::path::Path;
 
 use clap::{Args, ValueEnum};
 
-use rne_model::Robot;
+use rne_model::{Joint, Robot};
 use rne_symbolic::{ClosedForm, LatexStyle};
 
 use crate::files::robot_file::{self, Frames, Shape};
@@ -78,8 +78,15 @@ impl Wanted {
         let robot = of(rne_symbolic::read(&name, &bytes).map_err(|report| Failure::from(&report))?);
         let form = ClosedForm::of(&robot, joints);
         let title = rne_emit::title(&robot);
+        let has_rotor = |joint: &Joint| joint.motor.is_some_and(|motor| motor.inertia != 0.0);
+        let remark = if !robot.rotors && robot.joints.iter().any(has_rotor) {
+            format!("the inertia of the rotors is left out; {TYPED}--rotors{TYPED:#} adds it\n")
+        } else {
+            String::new()
+        };
         if let Some(style) = self.latex {
-            return Ok(Outcome::text(form.latex(&rne_emit::ascii(&title), style.into())));
+            let text = form.latex(&rne_emit::ascii(&title), style.into());
+            return Ok(Outcome { text, remark, ..Outcome::default() });
         }
         let text = form.text_spelt(|text| letters.of(text));
         let mut before = "";
@@ -94,6 +101,7 @@ impl Wanted {
             format!("\n{TYPED}--first {joints}{TYPED:#} prints the closed form of the arm up to joint {joints}.\n")
         };
         let shorter = form.shorter().map(shorter).unwrap_or_default();
-        Ok(Outcome::text(format!("{TITLE}{title}{TITLE:#}\n\n{text}{shorter}")))
+        let text = format!("{TITLE}{title}{TITLE:#}\n\n{text}{shorter}");
+        Ok(Outcome { text, remark, remark_last: true, ..Outcome::default() })
     }
 }

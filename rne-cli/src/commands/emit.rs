@@ -1,6 +1,7 @@
 //! `rne emit`: code that compiles by itself.
 
 use std::fmt::Write as _;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -550,6 +551,10 @@ fn is_ours(text: &str) -> bool {
 /// Writes all files, or none if one of them is another's.
 fn write(arguments: &Arguments, files: &[Generated]) -> Result<Outcome, Failure> {
     files.iter().try_for_each(|file| may_be_written(arguments, &file.path))?;
+    for path in files.iter().map(|file| &file.path) {
+        let made = path.parent().map_or(Ok(()), fs::create_dir_all);
+        made.map_err(|error| output_file::unwritable(path, &error))?;
+    }
     let files: Vec<(&Path, &str)> = files.iter().map(|file| (file.path.as_path(), file.text.as_str())).collect();
     output_file::write_all(&files).map(Outcome::remark)
 }
@@ -561,17 +566,7 @@ fn may_be_written(arguments: &Arguments, out: &Path) -> Result<(), Failure> {
     }
     file_name::check(out, arguments.lang.format())?;
     match output_file::existing(out) {
-        Existing::Nothing => {
-            let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
-            match folder.filter(|folder| !folder.exists()) {
-                Some(folder) => Err(Failure::input(format_args!(
-                    "{} cannot be written: there is no folder {}",
-                    out.display(),
-                    folder.display()
-                ))),
-                None => Ok(()),
-            }
-        }
+        Existing::Nothing => Ok(()),
         Existing::Text(text) if is_ours(&text) || arguments.force => Ok(()),
         Existing::Other if arguments.force => Ok(()),
         Existing::Text(_) | Existing::Other => Err(Failure::usage(format_args!(

@@ -70,13 +70,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if let Some(file) = &arguments.file {
         return name_in_code(arguments, file);
     }
-    if let Some(parameter) = LinkParameter::parse(&arguments.topic) {
-        return Ok(Outcome::text(arguments.letters.page(&parameter.explained(), PAGE)));
-    }
-    if let Some(text) = of_function(&arguments.topic) {
-        return Ok(Outcome::text(arguments.letters.page(&text, PAGE)));
-    }
-    let topic = Topic::from_str(&arguments.topic, false).map_err(|_| {
+    let text = of_any_robot(&arguments.topic).ok_or_else(|| {
         let topics: Vec<_> = Topic::value_variants().iter().filter_map(ValueEnum::to_possible_value).collect();
         let topics: Vec<&str> = topics.iter().map(clap::builder::PossibleValue::get_name).collect();
         let word = &arguments.topic;
@@ -89,7 +83,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             topics.join(", ")
         ))
     })?;
-    let text = match topic {
+    Ok(Outcome::text(arguments.letters.page(&text, PAGE)))
+}
+
+/// What needs no robot: a link parameter, a function or a topic.
+fn of_any_robot(name: &str) -> Option<String> {
+    let of_parameter = LinkParameter::parse(name).map(|parameter| parameter.explained());
+    of_parameter.or_else(|| of_function(name)).or_else(|| Topic::from_str(name, false).ok().map(of_topic))
+}
+
+fn of_topic(topic: Topic) -> String {
+    match topic {
         Topic::Functions => entries(Function::ALL.map(|function| (function.name(), function.summary().to_owned()))),
         Topic::Arguments => of_eval(),
         Topic::Tricks => {
@@ -99,8 +103,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Topic::Quantities => quantities(),
         Topic::ExitStatus => EXIT_STATUS.to_owned(),
         Topic::HoldOut => wrap(HOLD_OUT, terminal::width(PAGE), "") + "\n",
-    };
-    Ok(Outcome::text(arguments.letters.page(&text, PAGE)))
+    }
 }
 
 /// Explains a name in the code of a robot.
@@ -115,9 +118,12 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
         Form::Reduced => plan_file::Compiler::new(path, &robot).compile(function, form)?,
     };
     let inspection = Inspection::new(&robot, &program);
-    if let Some(mut text) = equations::of_name(View { inspection: &inspection, letters: arguments.letters }, name) {
+    let view = View { inspection: &inspection, letters: arguments.letters };
+    // as the code spells the letters of the lecture, ω̇3_z
+    let spelt = rne_emit::ascii(name);
+    if let Some(mut text) = equations::of_name(view, &spelt) {
         // units of lengths, forces and masses
-        if inspection.unit(name).contains(['m', 'N', 'k']) {
+        if inspection.unit(&spelt).contains(['m', 'N', 'k']) {
             let evidence = program.proof.iter().flat_map(|proof| rne_emit::evidence(&program, proof));
             for scaled in evidence.filter(|line| line.starts_with("Scaled values")) {
                 let _ = writeln!(text, "\n{}", wrap(&scaled, terminal::width(PAGE), ""));
@@ -125,21 +131,20 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
         }
         return Ok(Outcome::text(text));
     }
-    if let Some(parameter) = LinkParameter::parse(name) {
-        return Ok(Outcome::text(arguments.letters.page(&parameter.explained(), PAGE)));
-    }
-    if let Some(text) = of_function(name) {
+    if let Some(text) = of_any_robot(name) {
         return Ok(Outcome::text(arguments.letters.page(&text, PAGE)));
     }
     // the components of a vector before a name that is nearly the same
     let components = ["x", "y", "z", "xx", "xy", "xz", "yy", "yz", "zz"]
-        .map(|axis| format!("{}_{axis}", code_name(name).unwrap_or_else(|| name.clone())));
+        .map(|axis| format!("{}_{axis}", code_name(name).unwrap_or_else(|| spelt.clone())));
     let components: Vec<&str> =
         components.iter().map(String::as_str).filter(|name| inspection.names.contains_key(*name)).collect();
-    let near = did_you_mean(name, inspection.names.keys().map(String::as_str)).filter(|_| components.is_empty());
-    let meant = if components.is_empty() { near.into_iter().collect() } else { components };
-    let meant =
-        if meant.is_empty() { String::new() } else { format!(" (did you mean {TYPED}{}{TYPED:#}?)", meant.join(", ")) };
+    let texts: Vec<String> = components.iter().filter_map(|name| equations::of_name(view, name)).collect();
+    if !texts.is_empty() {
+        return Ok(Outcome::text(texts.join("\n")));
+    }
+    let meant = did_you_mean(&spelt, inspection.names.keys().map(String::as_str))
+        .map_or_else(String::new, |meant| format!(" (did you mean {TYPED}{meant}{TYPED:#}?)"));
     let number = name.split(|c: char| !c.is_ascii_digit()).find_map(|digits| digits.parse::<usize>().ok());
     let beyond = number.is_some_and(|joint| joint > robot.dof());
     let joints = if robot.dof() == 1 { "1 joint".to_owned() } else { format!("{} joints", robot.dof()) };

@@ -20,7 +20,7 @@ Examples:
   rne new scara --dof 4 --prismatic 3 -o -   to the terminal; joint 3 prismatic
   rne new wrist --dof 3 --convention modified
 
-The file is valid: each link is a slender rod of 0.3 m and 1 kg. Replace these
+The file is valid: each link is a slender rod of 0.3 m and 2 kg. Replace these
 numbers by the numbers of your arm.")]
 pub(crate) struct Arguments {
     /// The robot's name: small letters, digits and underscores

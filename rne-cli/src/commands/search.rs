@@ -273,6 +273,10 @@ fn summary(found: &PlanFile, searched: &Searched<'_>, left_out: &[Function], pat
         (Written::Anew, None) => "is written",
     };
     let _ = writeln!(text, "{GOOD}ok{GOOD:#} {TYPED}{}{TYPED:#} {state}", path.display());
+    if written == Written::Anew {
+        let _ =
+            writeln!(text, "{QUIET}builds, emit and certify use this plan from now on: their code changes{QUIET:#}");
+    }
     text
 }
 

@@ -4,13 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use rne_diagnose::worksheet::{Comparison, Quantity, Reach, Verdict, Worksheet};
+use rne_model::six_digits;
 use serde::Serialize;
 
 use crate::outcome::Failure;
 use crate::palette::{ERROR, GOOD, QUIET};
 use crate::render::layout::{left, right, shortened, width, wrap};
 use crate::terminal;
-use crate::values::numbers::rounded;
 
 /// A file of a student with its mark, or the reason why it has none.
 pub(crate) struct Marked {
@@ -162,9 +162,9 @@ fn cells(one: &Marked, hint: bool) -> [String; 4] {
     if !first.component.is_empty() {
         let _ = write!(error, " {}", first.component);
     }
-    let _ = write!(error, ": {}", rounded(first.yours, 4));
+    let _ = write!(error, ": {}", six_digits(first.yours));
     if let Some(right) = first.right.filter(|_| !hint) {
-        let _ = write!(error, ", right {}", rounded(right, 4));
+        let _ = write!(error, ", right {}", six_digits(right));
     }
     let cause = match (&first.cause, first.explains_everything) {
         (None, _) => "no usual mistake".to_owned(),

@@ -1,6 +1,6 @@
 //! `rne show --symbolic` and `--latex`: the equations of motion in letters.
 
-use crate::call::{ROOT, fails, fine, rne_reading};
+use crate::call::{ROOT, fails, fine, rne, rne_reading};
 
 #[test]
 fn the_lectures_arm() {
@@ -120,4 +120,18 @@ fn what_a_closed_form_has_no_use_for() {
 fn the_same_every_time() {
     let call = ["show", "robots/spherical_rrp.yaml", "--symbolic"];
     assert_eq!(fine(&call), fine(&call));
+}
+
+/// A parameter that occurs only in a part of a length has its unit; rotors that are left out are told.
+#[test]
+fn units_and_rotors() {
+    let planar = fine(&["show", "planar3", "--symbolic"]);
+    assert!(planar.contains("a3 = 0.25 m"), "{planar}");
+    for latex in ["--symbolic", "--latex=body"] {
+        let with_motors = ["show", "puma560", "--first", "2", latex];
+        let left_out = rne(&with_motors);
+        assert!(left_out.err.contains("the inertia of the rotors is left out; --rotors adds it"), "{left_out:?}");
+        assert_eq!(rne(&[&with_motors[..], &["--rotors"]].concat()).err, "");
+        assert_eq!(rne(&["show", "planar2", latex]).err, "");
+    }
 }

@@ -549,3 +549,17 @@ fn warnings_of_the_robot_file_are_counted() {
     assert!(serde_json::from_str::<Value>(&called.out).is_ok(), "{}", called.out);
     assert_eq!(rne(&["eval", "planar1", "--q", "0", "--function", "gravity_torques"]).err, "");
 }
+
+/// Degrees on the command line, with their unit and without.
+#[test]
+fn degrees_of_positions() {
+    let radians = fine(&["eval", "planar2", "--q", "pi/6,-deg(45)", "--json"]);
+    assert_eq!(fine(&["eval", "planar2", "--q", "30deg,-45deg", "--json"]), radians);
+    let said = rne(&["eval", "planar2", "--q", "30,45"]);
+    assert_eq!(said.status, 0);
+    let told = "j1 is at 30 rad, more than a full turn; if this is in degrees, write 30deg";
+    assert!(said.err.contains(told), "{said:?}");
+    for fine in ["0.3,6.2", "30deg,400deg"] {
+        assert_eq!(rne(&["eval", "planar2", "--q", fine]).err, "", "{fine}");
+    }
+}

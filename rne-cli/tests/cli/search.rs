@@ -28,7 +28,8 @@ fn totals(out: &str) -> Vec<u64> {
 fn a_plan_is_written_replayed_and_never_becomes_worse() {
     let (robot, plan) = arm("search");
     let first = fine(&["search", &robot, "--seconds", "0.5", "--rewrite"]);
-    assert!(first.ends_with("arm.plan.yaml is written\n"), "{first}");
+    let told = "arm.plan.yaml is written\nbuilds, emit and certify use this plan from now on: their code changes\n";
+    assert!(first.ends_with(told), "{first}");
     shipped_plan(&plan);
     let first = fine(&["search", &robot, "--seconds", "0"]);
     let written = fs::read_to_string(&plan).expect("a plan");

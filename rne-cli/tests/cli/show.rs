@@ -93,7 +93,24 @@ fn what_a_name_in_the_code_is() {
     fails(2, &["explain", "w2z", "puma560"], &["there is no name `w2z`", "did you mean w2_z"]);
     // a vector is meant with its components, though `c2` is a name that is nearly the same
     fails(2, &["explain", "w7_z", "puma560"], &["there is no name `w7_z`", "puma560, which has 6 joints"]);
-    fails(2, &["explain", "w2", "puma560"], &["there is no name `w2`", "did you mean w2_x, w2_y, w2_z?"]);
+    // a vector: all of its components; letters as the lecture writes them
+    let all = fine(&["explain", "w3", "puma560"]);
+    let each = ["w3_x", "w3_y", "w3_z"].map(|name| fine(&["explain", name, "puma560"]));
+    assert_eq!(all, each.join("\n"));
+    for (letters, code) in [
+        ("ω3_z", "w3_z"),
+        ("ω̇3_x", "dw3_x"),
+        ("c̈3_y", "ddc3_y"),
+        ("τ2", "tau2"),
+        ("q̈2", "qdd2"),
+        ("ω3", "w3"),
+        ("c̈3", "ddc3"),
+        ("dw3", "dw3"),
+        ("omega3", "w3"),
+    ] {
+        assert_eq!(fine(&["explain", letters, "puma560"]), fine(&["explain", code, "puma560"]), "{letters}");
+    }
+    assert_eq!(fine(&["explain", "quantities", "puma560"]), fine(&["explain", "quantities"]));
     fails(2, &["explain", "functons"], &["did you mean functions", "rne explain w2_z puma560"]);
     fails(1, &["explain", "w2_z", "nowhere.yaml"], &["nowhere.yaml"]);
 }

@@ -94,7 +94,7 @@ fn a_part_that_is_no_body_is_told() {
         ]);
         warnings(&text)
     };
-    let told = "no body can have the inertia of `motor` (line 4, column 94): its largest principal moment is 2.319e-4 \
+    let told = "no body can have the inertia of `motor` (line 4, column 77): its largest principal moment is 2.319e-4 \
                 kg m², the sum of the two others is 2.261e-4 kg m²; is one number wrong by a power of ten?";
     assert_eq!(said("0.000034"), [told]);
     assert_eq!(said("0"), [""; 0]);
