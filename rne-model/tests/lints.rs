@@ -316,8 +316,8 @@ fn notes() {
 #[test]
 fn millimetres_are_told_at_the_number() {
     for (text, line, column) in [
-        (with("a: 0, alpha: pi/2", "a: 400, alpha: pi/2"), 11, 32),
-        (with("r: 2*m", "r: 2*m, a2: 400").replace("a: 0, alpha: pi/2", "a: a2, alpha: pi/2"), 7, 33),
+        (with("a: 0, alpha: pi/2", "a: 400, alpha: pi/2"), 11, 31),
+        (with("r: 2*m", "r: 2*m, a2: 400").replace("a: 0, alpha: pi/2", "a: a2, alpha: pi/2"), 7, 34),
         (with("com: [0, 0, 0.3]", "com: [0, 0, 400]"), 14, 19),
     ] {
         let report = found(&text);
