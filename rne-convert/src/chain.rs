@@ -209,24 +209,8 @@ pub(crate) fn extract(
         let span = &urdf.joints[walk.loose[0]].span;
         return Err(urdf.source.error_with(span, message, help, &Remedy::LockOthers));
     }
-    if let Some(&(first, _)) = walk.followers.first() {
-        let name = |joint: usize| &urdf.joints[joint].name;
-        let followers = walk
-            .followers
-            .iter()
-            .map(|&(joint, leader)| format!("{} follows {}", quoted(name(joint)), quoted(name(leader))));
-        let message = format!("joints outside the chain follow moving joints of the chain: {}", some(followers));
-        let help =
-            "these joints carry mass, and no row of the table can describe that this mass moves along; if the mass may \
-             stand still, lock each of these joints by its name".to_owned();
-        return Err(urdf.source.error_with(&urdf.joints[first].span, message, help, &lock(name(first))));
-    }
-    if walk.standing > 0.0 {
-        let mass = six_digits(walk.standing);
-        let remark = Remark::from(format!("the base stands still: its mass of {mass} kg is left out"));
-        // another remark says how a base floats that the file lets float
-        walk.told.remarks.push(if urdf.floats.is_none() { remark.remedy(Remedy::Float) } else { remark });
-    }
+    walk.refuse_followers_outside()?;
+    walk.remark_on_standing_base();
     (chain.loops, chain.frames) = (walk.loops(base)?, walk.frames);
     walk.told.snapped = walk.snapping.found;
     if !others.is_empty() {
@@ -270,6 +254,35 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
+    /// Refuses joints outside the chain that follow joints of the chain.
+    fn refuse_followers_outside(&self) -> Result<(), Report> {
+        if let Some(&(first, _)) = self.followers.first() {
+            let name = |joint: usize| &self.urdf.joints[joint].name;
+            let followers = self
+                .followers
+                .iter()
+                .map(|&(joint, leader)| format!("{} follows {}", quoted(name(joint)), quoted(name(leader))));
+            let message = format!("joints outside the chain follow moving joints of the chain: {}", some(followers));
+            let help =
+                "these joints carry mass, and no row of the table can describe that this mass moves along; if the mass \
+                 may stand still, lock each of these joints by its name"
+                    .to_owned();
+            return Err(self.urdf.source.error_with(&self.urdf.joints[first].span, message, help, &lock(name(first))));
+        }
+        Ok(())
+    }
+
+    /// Says that a base with mass stands still.
+    fn remark_on_standing_base(&mut self) {
+        if self.standing > 0.0 {
+            let mass = six_digits(self.standing);
+            let remark = Remark::from(format!("the base stands still: its mass of {mass} kg is left out"));
+            // another remark says how a base floats that the file lets float
+            let remark = if self.urdf.floats.is_none() { remark.remedy(Remedy::Float) } else { remark };
+            self.told.remarks.push(remark);
+        }
+    }
+
     /// Tells whether the link that floats in the file is a floating base, whose joint is at `placement` in the world.
     fn look_at_floating(&mut self, placement: Option<Pose>) {
         let Some(link) = self.urdf.floats else { return };

@@ -318,8 +318,7 @@ impl Urdf {
         let span = worst.map_or(joint, |part| &part.span_of_inertia);
         let message =
             format!("{name} has the principal moment of inertia {moment:.3e} kg m²; no body has a negative one");
-        let several =
-            if lumped.len() > 1 { format!(" (lumped of {})", names(lumped)) } else { String::new() };
+        let several = if lumped.len() > 1 { format!(" (lumped of {})", names(lumped)) } else { String::new() };
         let help = format!("correct the inertia{several}, or keep it");
         Err(self.source.error_with(span, message, help, &Remedy::KeepUnphysical))
     }

@@ -238,10 +238,10 @@ impl Slip {
                 link.inertia = Inertia { xy: -xy, xz: -xz, yz: -yz, ..link.inertia };
             }),
             Self::InertiaNotTwisted => {
-                robot.joints.iter_mut().for_each(|Joint { row: Row { dh, link, .. }, .. }| {
+                for Joint { row: Row { dh, link, .. }, .. } in &mut robot.joints {
                     let turn = Rotation3::from_axis_angle(&Vector3::x_axis(), -dh.alpha.radians);
                     link.inertia = tensor(turn * Matrix3::from(link.inertia.rows()) * turn.inverse());
-                })
+                }
             }
             Self::ComReversed => each_link(robot, |link| link.com = link.com.map(|c| -c)),
             Self::ComFromOtherEnd => move_com(robot, 1.0),

@@ -151,7 +151,7 @@ fn every_function_of_every_robot_is_the_program() {
                 let interpreter = Interpreter::new(&program);
                 let expected: Vec<f64> =
                     (0..STATES).flat_map(|state| states.interpreted(&interpreter, state)).collect();
-                if function.check_base(&robot).is_err() {
+                if function.check_base(robot).is_err() {
                     let said = arm.function(function).expect_err("no base").to_string();
                     assert!(said.contains(&format!("the file of {} has no `floating_base`", robot.name)), "{said}");
                     continue;

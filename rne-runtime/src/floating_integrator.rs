@@ -111,6 +111,7 @@ impl<J: AsRef<[T]> + AsMut<[T]> + Clone, T: Scalar> Stage<J, T> {
     }
 
     /// Their rates by the accelerations, where the base turns from this orientation.
+    #[must_use]
     pub fn rates(&self, base: &BaseAcceleration<T>, qdd: J, orientation: &Quaternion<T>, gravity: &[T; 3]) -> Self {
         let linear = times(&orientation.then(&turned(&self.u)).rotation(), &base.linear);
         Self {

@@ -1,6 +1,6 @@
 //! The README's first two commands on a machine that has nothing but what the README asks for.
 
-use std::ffi::OsString;
+use std::fmt::Write as _;
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
@@ -133,7 +133,7 @@ impl Bare {
                 .envs([("PATH", &programs), ("HOME", &home), ("CARGO_TARGET_DIR", &target)])
                 .stdin(Stdio::null())
                 .status()?;
-            table += &format!("bare: {:>6.0} s  {command}\n", start.elapsed().as_secs_f64());
+            writeln!(table, "bare: {:>6.0} s  {command}", start.elapsed().as_secs_f64())?;
             if !status.success() {
                 print!("{table}");
                 println!("bare: `{command}` fails where nothing but what the README asks for is installed");
@@ -169,7 +169,7 @@ fn link_programs(folder: &Path, sysroot: &Path) -> Result<()> {
     for name in RUST {
         symlink(sysroot.join("bin").join(name), folder.join(name))?;
     }
-    let path = std::env::var_os("PATH").unwrap_or_else(OsString::new);
+    let path = std::env::var_os("PATH").unwrap_or_default();
     for name in TOOLS {
         if let Some(program) =
             std::env::split_paths(&path).map(|place| place.join(name)).find(|program| program.is_file())

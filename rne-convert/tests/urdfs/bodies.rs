@@ -163,7 +163,11 @@ fn rounded_rods_are_imported() {
         let text =
             robot(&[bare(&["base"]), body, joint("j1", "continuous", ("base", "body"), "", "<axis xyz=\"1 2 2\"/>")]);
         let imported = converted(&text, &Options::default());
-        assert!(imported.account.remarks.iter().all(|remark| !remark.is_warning), "{index}: {:?}", imported.account.remarks);
+        assert!(
+            imported.account.remarks.iter().all(|remark| !remark.is_warning),
+            "{index}: {:?}",
+            imported.account.remarks
+        );
         let lints = &imported.account.lints;
         let of_inertia = lints.warnings().filter(|lint| lint.message.contains("inertia")).count();
         assert_eq!(of_inertia, 0, "{index}: {lints}");

@@ -65,7 +65,9 @@ fn of_positions(robot: &Robot, at: &Situation, sheet: &Worksheet) -> Result<Vec<
 fn of_lines(robot: &Robot, at: &Situation, sheet: &Worksheet) -> Result<Vec<Slipped>, WrongLength> {
     type Taken = fn(&Line, &mut [LinkTrace<f64>]);
     fn transposed(links: &mut [LinkTrace<f64>]) {
-        links.iter_mut().for_each(|link| link.rotation = Matrix3::from(link.rotation).transpose().into());
+        for link in links {
+            link.rotation = Matrix3::from(link.rotation).transpose().into();
+        }
     }
     let slips: [(&str, Taken); 3] = [
         ("R is used in place of Rᵀ in steps 1 to 5", |line, links| {

@@ -208,8 +208,8 @@ fn a_slip_of_a_whole_computation_is_named() {
     let mut named = Vec::new();
     for arm in ["planar2", "puma560", "stanford"] {
         let robot = shipped(arm);
-        let n = robot.dof();
-        let list = |from: f64| (0..n).map(|i| (from + 1.7 * i as f64).sin() + 0.2).collect::<Vec<_>>();
+        let n = u8::try_from(robot.dof()).expect("few joints");
+        let list = |from: f64| (0..n).map(|i| (from + 1.7 * f64::from(i)).sin() + 0.2).collect::<Vec<_>>();
         let at = Situation { q: list(0.4), qd: list(1.9), qdd: list(3.1), base: None, wrench: None, payload: None };
         let sheet = Worksheet::new(&robot, &at, Axes::Link).expect("a sheet");
         let right = computed(&robot, &at, Nothing);
