@@ -190,8 +190,8 @@ pub mod compiled {
     #[doc(inline)]
     pub use rne_machine::{
         ARGUMENTS, Argument, Arguments, ArmError, Array, CompiledArm, CompiledFunction, Derivatives, Destination,
-        EvaluationError, Form, FrictionWidth, Function, Layout, Machine, Number, PlanFile, Record, RobotFiles, Rollout,
-        RolloutError, RolloutLimits, SearchError, SearchOptions, SearchProgress, Sizes, WrongSize,
+        EvaluationError, Form, FrictionWidth, Function, Layout, Machine, Number, OutOfRange, PlanFile, Record,
+        RobotFiles, Rollout, RolloutError, RolloutLimits, SearchError, SearchOptions, SearchProgress, Sizes, WrongSize,
     };
 }
 

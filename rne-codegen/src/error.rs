@@ -77,6 +77,11 @@ pub enum CompileError {
         /// The robot's name.
         robot: String,
     },
+    /// The motion in contact of a robot without contacts.
+    NoContacts {
+        /// The function.
+        function: Function,
+    },
     /// A plan with a choice that the robot does not offer.
     PlanDoesNotFit {
         /// The robot's name.
@@ -321,6 +326,12 @@ impl fmt::Display for CompileError {
                 f,
                 "`{function}` is of robots with closed loops; this robot file has no `loops` with a cut joint that is \
                  solved for. The section Closed loops of docs/robot-file.md says how to write one"
+            ),
+            Self::NoContacts { function } => write!(
+                f,
+                "`{function}` is of robots with contacts, and the robot file has no `contacts`: nothing would hold the \
+                 robot. Write beside `floating_base` and `tips` which tips are held, such as `contacts: [{{tip: left, \
+                 kind: point}}]`; for a robot that nothing holds, use `floating_forward_dynamics`"
             ),
             Self::OfEveryLink { function, follower } => write!(
                 f,

@@ -167,18 +167,7 @@ impl<'r> Compiler<'r> {
 
     fn compile_unmeasured(&self, function: Function, form: Form) -> Result<Program, CompileError> {
         let robot = self.robot;
-        if let Some(joint) = robot.joints.iter().find(|joint| joint.coupling.is_some())
-            && function.is_of_every_link()
-        {
-            return Err(CompileError::OfEveryLink { function, follower: joint.name.clone() });
-        }
-        match robot.closed.loops.first() {
-            Some(closed) if !function.is_of_closed_loops() => {
-                return Err(CompileError::HasClosedLoops { function, name: closed.name.clone() });
-            }
-            None if function.is_of_closed_loops() => return Err(CompileError::NoClosedLoops { function }),
-            _ => {}
-        }
+        function.check_kind(robot)?;
         if form == Form::SevenSteps {
             return seven_steps_within(LARGEST, robot, function, &self.intermediates, self.explains);
         }

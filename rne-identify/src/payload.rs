@@ -1,16 +1,17 @@
 //! A payload: the rigid body that the link with the tip carries beyond what a robot file has. It is the last link of a
 //! serial arm.
 //!
-//! Its ten inertial parameters φ = (m, m c, J) add S φ to the base parameters θ of the file, where S has the columns of
-//! the regrouping that belong to this link. With the normal matrix N and the right-hand side b of the log,
+//! Its ten inertial parameters φ = (m, m c, J), about the origin of the tip frame and in its axes, add S T φ to the base
+//! parameters θ of the file, where S has the columns of the regrouping that belong to this link, and T moves φ to the
+//! frame of the link. With the normal matrix N and the right-hand side b of the log,
 //!
 //! ```text
-//! G = Aᵀ N A    g = Aᵀ (b - N θ)    A = [S  E]    (G + P) x = g + P x₀    covariance = (G + P)⁻¹
+//! G = Aᵀ N A    g = Aᵀ (b - N θ)    A = [S T  E]    (G + P) x = g + P x₀    covariance = (G + P)⁻¹
 //! ```
 //!
 //! E are the columns of friction and offsets. The file keeps them; here they are errors of the file with a deviation of
 //! their own in P, so that they do not pass for a payload. P also contains weak prior knowledge of the payload: its
-//! centre of mass lies about 0.1 m from the last frame, and its inertia is about as large as its mass times 0.1 m
+//! centre of mass lies about 0.1 m from the tip, and its inertia is about as large as its mass times 0.1 m
 //! squared. Numbers that the log does not determine keep these values, and do not spoil the mass.
 //!
 //! Deviations are those of least squares or, if larger, those by leaving out one segment of time after the other
@@ -19,8 +20,8 @@
 use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
 use rne_convert::robot_file;
 use rne_logs::Motion;
-use rne_model::{FrictionTransition, InertiaReference, JointKind, Robot, one_line};
-use rne_runtime::DynArm;
+use rne_model::{FrictionTransition, Inertia, InertiaReference, JointKind, Robot, Transform, one_line};
+use rne_runtime::{DynArm, Quaternion};
 
 use crate::fitted_model::{FittedModel, FrictionParameter, inverse_of_information};
 use crate::identification::{UNKNOWN, link, over_logs};
@@ -30,7 +31,7 @@ use crate::stretches::Stretches;
 use crate::structure::{FRICTION, Options, Structure};
 use rne_model::PER_LINK;
 
-/// m: the distance of a payload's centre of mass from the last frame, one deviation, and its radius of gyration.
+/// m: the distance of a payload's centre of mass from the tip, one deviation, and its radius of gyration.
 pub const PAYLOAD_REACH: f64 = 0.1;
 
 /// kg: the deviation of the mass before any log.
@@ -101,9 +102,9 @@ pub struct PayloadNumber {
 pub struct Payload {
     /// kg; negative if the log shows less mass than the file has.
     pub mass: PayloadNumber,
-    /// Centre of mass in the frame of this link, m.
+    /// Centre of mass from the origin of the tip frame, in its axes, m.
     pub com: [PayloadNumber; 3],
-    /// Inertia about the centre of mass in the axes of this link, kg m²: xx, yy, zz, xy, xz, yz.
+    /// Inertia about the centre of mass in tip axes, kg m²: xx, yy, zz, xy, xz, yz.
     pub inertia: [PayloadNumber; 6],
     /// Time by which the torques lag behind the positions, s.
     pub delay: f64,
@@ -182,17 +183,26 @@ impl Payload {
         self.mass.is_excited && self.mass.value.abs() > DEVIATIONS * self.mass.deviation
     }
 
-    /// The ten inertial parameters about the origin of this link's frame. The inertia is that of a body: products
-    /// and moments that the log does not determine are made so that they are possible.
+    /// The payload as an argument of functions, which is the one that [`added_to`](Self::added_to) adds. The inertia is
+    /// that of a body: products and moments that the log does not determine are made so that they are possible.
     #[must_use]
-    pub fn parameters(&self) -> [f64; PER_LINK] {
+    pub fn body(&self) -> rne_runtime::Payload<f64> {
         let mass = self.mass.value;
-        let com = Vector3::from(self.com.map(|number| number.value));
         let [xx, yy, zz, xy, xz, yz] = self.inertia.map(|number| number.value);
         let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
         // less than no mass has the inertia of a point
         let tensor = if mass > 0.0 { of_body(&tensor) } else { Matrix3::zeros() };
-        let about = tensor + shifted(mass, &com);
+        let j = |row, column| tensor[(row, column)];
+        let inertia = Inertia { xx: j(0, 0), yy: j(1, 1), zz: j(2, 2), xy: j(0, 1), xz: j(0, 2), yz: j(1, 2) };
+        rne_runtime::Payload { mass, com: self.com.map(|number| number.value), inertia }
+    }
+
+    /// The ten inertial parameters about the origin of the tip frame, in its axes.
+    #[must_use]
+    pub fn parameters(&self) -> [f64; PER_LINK] {
+        let rne_runtime::Payload { mass, com, inertia } = self.body();
+        let com = Vector3::from(com);
+        let about = Matrix3::from(inertia.rows()) + shifted(mass, &com);
         let h = com * mass;
         let j = |row, column| about[(row, column)];
         [mass, h.x, h.y, h.z, j(0, 0), j(0, 1), j(0, 2), j(1, 1), j(1, 2), j(2, 2)]
@@ -204,7 +214,8 @@ impl Payload {
         let mut robot = robot.clone();
         let on = robot.tip().on?;
         let mut sum = *DynArm::from_robot(&robot).inertial_parameters().get(on)?;
-        sum.iter_mut().zip(self.parameters()).for_each(|(sum, of)| *sum += of);
+        let of_link = of_tip(&robot) * DVector::from(self.parameters().to_vec());
+        sum.iter_mut().zip(&of_link).for_each(|(sum, of)| *sum += of);
         let joint = robot.joints.get_mut(on)?;
         if sum[0] <= 0.0 {
             return None;
@@ -232,6 +243,35 @@ impl Payload {
         });
         format!("# Identified payload, from {} rows of each joint.\n{}", self.rows, robot_file::write(&robot))
     }
+}
+
+/// The matrix T from inertial parameters about the origin of the tip frame, in its axes, to those in the frame of the
+/// link that carries it: with R and t of the tip, m, R h + m t, and R J Rᵀ + 2 (R h · t) 1 - R h tᵀ - t (R h)ᵀ + m (t² 1
+/// - t tᵀ).
+fn of_tip(robot: &Robot) -> DMatrix<f64> {
+    let Transform { xyz, rpy } = robot.tip().placement;
+    let [roll, pitch, yaw] = rpy.map(|angle| angle.radians);
+    let turn = [[0.0, 0.0, yaw], [0.0, pitch, 0.0], [roll, 0.0, 0.0]];
+    let turn = turn.into_iter().fold(Quaternion::identity(), |turn, angle| turn.turned_by(angle));
+    let (rotation, translation) = (Matrix3::from(turn.rotation()).transpose(), Vector3::from(xyz));
+    let mut moved = DMatrix::zeros(PER_LINK, PER_LINK);
+    for column in 0..PER_LINK {
+        let unit = |at: usize| if at == column { 1.0 } else { 0.0 };
+        let (mass, h) = (unit(0), rotation * Vector3::new(unit(1), unit(2), unit(3)));
+        let mut tensor = Matrix3::zeros();
+        for (number, (row, column)) in TENSOR.into_iter().enumerate() {
+            (tensor[(row, column)], tensor[(column, row)]) = (unit(4 + number), unit(4 + number));
+        }
+        let products = h * translation.transpose();
+        let tensor = rotation * tensor * rotation.transpose() + Matrix3::identity() * (2.0 * h.dot(&translation))
+            - products
+            - products.transpose()
+            + shifted(mass, &translation);
+        let h = h + translation * mass;
+        let numbers = [mass, h.x, h.y, h.z].into_iter().chain(TENSOR.map(|place| tensor[place]));
+        numbers.enumerate().for_each(|(row, number)| moved[(row, column)] = number);
+    }
+    moved
 }
 
 /// Options with the transitions of the file's friction.
@@ -285,7 +325,9 @@ impl Equations {
         let size = PER_LINK + FRICTION * dof;
         let mut columns = DMatrix::zeros(count + 1, size + 1);
         let rank = structure.parameters().rank();
-        columns.view_mut((0, 0), (rank, PER_LINK)).copy_from(&structure.payload_columns(PER_LINK));
+        columns
+            .view_mut((0, 0), (rank, PER_LINK))
+            .copy_from(&(structure.payload_columns(PER_LINK) * of_tip(structure.robot())));
         for at in 0..FRICTION * dof {
             columns[(rank + at, PER_LINK + at)] = 1.0;
         }

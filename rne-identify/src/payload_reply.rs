@@ -24,10 +24,15 @@ pub struct PayloadReply {
 #[derive(Debug, Serialize)]
 struct OfPayload {
     found: bool,
+    /// The frame of the numbers: the tip.
+    frame: &'static str,
     mass: Number,
     com: [Number; 3],
     /// xx, yy, zz, xy, xz, yz
     inertia: [Number; 6],
+    /// Mass, centre of mass and inertia as functions of an arm take them; zeros where there is no payload, null where
+    /// the mass is not known or below zero.
+    numbers: Option<[f64; 10]>,
 }
 
 /// A number with its standard deviation; null where the log does not determine it.
@@ -77,9 +82,15 @@ impl PayloadReply {
             cutoff,
             payload: OfPayload {
                 found: payload.is_there(),
+                frame: "tip",
                 mass: Number::of(&payload.mass, "kg"),
                 com: payload.com.each_ref().map(|number| Number::of(number, "m")),
                 inertia: payload.inertia.each_ref().map(|number| Number::of(number, "kg m²")),
+                numbers: if payload.is_there() {
+                    Some(payload.body().to_array()).filter(|_| payload.mass.value > 0.0)
+                } else {
+                    Some([0.0; 10]).filter(|_| payload.mass.is_excited)
+                },
             },
             joints: robot.independent_joints().enumerate().map(joint).collect(),
             delay: payload.delay,

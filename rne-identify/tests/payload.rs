@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use fastrand::Rng;
 use rne_identify::{MotionError, Options, Payload, PayloadNumber, identify, prediction_errors};
 use rne_logs::{Log, Motion};
-use rne_model::{Inertia, Link, Robot};
+use rne_model::{Angle, Inertia, Link, Robot};
 use rne_runtime::DynArm;
 
 /// The log's own filter, in cut-offs of the low-pass: as `rne identify` reads logs.
@@ -248,5 +248,49 @@ fn a_log_without_motion_has_a_mass_only_by_gravity() {
         assert_eq!(found.is_there(), is_felt, "{name}: {found:?}");
         assert!(!is_felt || is_within(found.mass, 5.0, 3.0), "{name}: {found:?}");
         assert!(found.com.iter().chain(&found.inertia).all(|number| !number.is_excited), "{name}: {found:?}");
+    }
+}
+
+/// The tip is turned and away from the last link: numbers and deviations are in tip axes, and the payload as an argument
+/// of functions is the one that the robot file has.
+#[test]
+fn a_payload_is_identified_in_tip_axes() {
+    let geometry = read(&here("tests/logs/ur10_log.yaml"));
+    let [first, second] = halves(&motion("tests/logs/ur10.csv", 2.0));
+    let robot = fitted(&geometry, &first, 2.0);
+    let mut tool = robot.tool;
+    tool.xyz = [0.05, -0.03, 0.2];
+    tool.rpy = [0.4, -0.7, 1.1].map(Angle::new);
+    let robot = Robot { tool, ..robot };
+    // the same body, in tip axes
+    let Link { mass, com, inertia, .. } = body(2.0);
+    let held = rne_runtime::Payload { mass, com, inertia };
+    let arm = DynArm::from_robot(&robot);
+    let mut loaded = second.clone();
+    for at in 0..second.len() {
+        let of = |list: &[Vec<f64>]| -> Vec<f64> { list.iter().map(|column| column[at]).collect() };
+        let (q, qd, qdd) = (of(&second.q), of(&second.qd), of(&second.qdd));
+        let with = arm.inverse_dynamics_with_payload(&q, &qd, &qdd, &held).unwrap();
+        let without = arm.inverse_dynamics(&q, &qd, &qdd).unwrap();
+        for (joint, torque) in with.into_iter().zip(without).map(|(with, without)| with - without).enumerate() {
+            loaded.tau[joint][at] += torque;
+            if let Some(recorded) = loaded.recorded.get_mut(joint) {
+                recorded[at] += torque;
+            }
+        }
+    }
+    let found = payload(&robot, &loaded, 2.0);
+    check("ur10 2 kg in tip axes", &found, body(2.0));
+    assert!(found.com.iter().all(|number| number.is_excited), "{found:?}");
+    let added = DynArm::from_robot(&found.added_to(&robot).expect("a mass"));
+    let mut random = Rng::with_seed(57);
+    for _ in 0..20 {
+        let [q, qd, qdd]: [Vec<f64>; 3] = [(); 3].map(|()| (0..6).map(|_| 4.0 * random.f64() - 2.0).collect());
+        let given = arm.inverse_dynamics_with_payload(&q, &qd, &qdd, &found.body()).unwrap();
+        let written = added.inverse_dynamics(&q, &qd, &qdd).unwrap();
+        let scale = given.iter().fold(0.0, |scale: f64, torque| scale.max(torque.abs()));
+        for (given, written) in given.iter().zip(&written) {
+            assert!((given - written).abs() < 1e-9 * scale, "{given} {written}");
+        }
     }
 }

@@ -257,7 +257,7 @@ impl CompiledArm {
     pub fn function(&self, function: Function) -> Result<&CompiledFunction, EvaluationError> {
         let Compiled { robot, form, file, plans, functions, .. } = &*self.0;
         let compiled = functions[function as usize].get_or_init(|| {
-            function.check_base(robot)?;
+            function.check_for(robot)?;
             let mut compiler = Compiler::new(robot).for_target(Target::Throughput);
             // what has no plan does not wait until one is found
             if *form == Form::Reduced && (file.is_some() || Algorithm::is_planned(function)) {
@@ -273,8 +273,8 @@ impl CompiledArm {
     /// The numbers of a result stand in the order of the function's [layout](Function::layout), matrices row by row.
     ///
     /// # Errors
-    /// When the function cannot be compiled, an argument is missing or has another size, the payload of a state has a
-    /// mass below zero, or the room for the results has another size.
+    /// When the function cannot be compiled, an argument is missing, has another size or is
+    /// [out of range](crate::OutOfRange), or when the room for the results has another size.
     pub fn run<T: Number>(
         &self,
         function: Function,

@@ -1,10 +1,10 @@
 //! One function of one arm, ready to run.
 
 use rne_codegen::{CompileError, Program};
+use rne_runtime::VectorUnit;
 use rne_runtime::machine::{Destination, Source};
-use rne_runtime::{NegativeMass, VectorUnit};
 
-use crate::{Arguments, Array, EvaluationError, Machine, Number, WrongSize, arguments};
+use crate::{Arguments, Array, EvaluationError, Machine, Number, OutOfRange, WrongSize, arguments};
 
 /// As many inputs find room on the stack: those of an arm of twenty joints, of most functions.
 const FEW: usize = 64;
@@ -86,8 +86,8 @@ impl CompiledFunction {
     /// Computes a number of states, on all cores with the feature `rayon`.
     ///
     /// # Errors
-    /// When an argument is missing or has another size, the payload of a state has a mass below zero, or the room for
-    /// the results has another size.
+    /// When an argument is missing, has another size or is [out of range](OutOfRange), or when the room for the results
+    /// has another size.
     pub fn run<T: Number>(
         &self,
         unit: VectorUnit,
@@ -114,8 +114,8 @@ impl CompiledFunction {
     /// but what the thread keeps of its first call.
     ///
     /// # Errors
-    /// When an argument is missing or has another size, the payload of a state has a mass below zero, or the room for
-    /// the results has another size.
+    /// When an argument is missing, has another size or is [out of range](OutOfRange), or when the room for the results
+    /// has another size.
     pub fn run_one<T: Number>(
         &self,
         unit: VectorUnit,
@@ -151,7 +151,7 @@ impl CompiledFunction {
     /// not. Who computes states in parts asks this once before the first part.
     ///
     /// # Errors
-    /// When an argument is missing or has another size, or when the payload of a state has a mass below zero.
+    /// When an argument is missing, has another size, or is [out of range](OutOfRange).
     pub fn check<T: Number>(&self, states: usize, arguments: &Arguments<'_, T>) -> Result<(), EvaluationError> {
         let mut arrays = self.arrays.iter().enumerate();
         arrays.try_for_each(|(index, (_, elements))| self.checked(index, *elements, states, arguments).map(|_| ()))
@@ -180,12 +180,13 @@ impl CompiledFunction {
         if !array.has(elements, states) {
             return Err(refused(argument, array, elements, states));
         }
-        if argument == "payload" {
-            // its first element is the mass
-            let masses = (0..states).filter_map(|state| array.number(0, elements, state, states));
-            for (index, mass) in masses.enumerate() {
-                let wrong = |mass| EvaluationError::NegativeMass { mass, state: index + 1, states };
-                NegativeMass::check(*mass).map_err(wrong)?;
+        if OutOfRange::elements(argument) > 0 {
+            // one row for all is looked at once
+            let rows = if matches!(array, Array::Same(_)) { states.min(1) } else { states };
+            for state in 0..rows {
+                let number = |element| array.number(element, elements, state, states).map(|&number| number.into());
+                let wrong = |mistake| EvaluationError::OutOfRange { mistake, state: state + 1, states };
+                OutOfRange::check(argument, number).map_err(wrong)?;
             }
         }
         Ok(array)

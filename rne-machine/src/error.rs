@@ -7,9 +7,8 @@ use std::path::PathBuf;
 
 use rne_codegen::{CompileError, Function};
 use rne_model::Report;
-use rne_runtime::NegativeMass;
 
-use crate::WrongSize;
+use crate::{OutOfRange, WrongSize};
 
 /// Why a file gave no arm.
 #[derive(Debug)]
@@ -75,11 +74,11 @@ pub enum EvaluationError {
         /// How many numbers were given.
         size: WrongSize,
     },
-    /// The payload of a state has a mass below zero.
-    NegativeMass {
-        /// The mass.
-        mass: NegativeMass,
-        /// The first state that has it, counted from 1.
+    /// An argument has numbers that it cannot have.
+    OutOfRange {
+        /// What is wrong.
+        mistake: OutOfRange,
+        /// The first state that has them, counted from 1.
         state: usize,
         /// How many states there are.
         states: usize,
@@ -104,8 +103,8 @@ impl fmt::Display for EvaluationError {
                 let of_states = of_states(*states);
                 write!(f, "`{argument}` must have {elements} numbers{of_states}, but {size}")
             }
-            Self::NegativeMass { mass, states: 1, .. } => mass.fmt(f),
-            Self::NegativeMass { mass, state, states } => write!(f, "state {state} of {states}: {mass}"),
+            Self::OutOfRange { mistake, states: 1, .. } => mistake.fmt(f),
+            Self::OutOfRange { mistake, state, states } => write!(f, "state {state} of {states}: {mistake}"),
             Self::Room { outputs, states, size } => {
                 let of_states = of_states(*states);
                 write!(f, "the memory for the result must hold {outputs} numbers{of_states}, but {size}")

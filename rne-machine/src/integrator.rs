@@ -3,14 +3,21 @@
 use rne_runtime::integrator_of_lists;
 
 use crate::results::{NextState, NextStateDerivatives, StepDerivatives};
-use crate::{CompiledArm, EvaluationError, Number};
+use crate::{CompiledArm, EvaluationError, Number, OutOfRange};
+
+/// Refuses a step that is not a finite number above zero.
+fn check<T: Number>(step: T) -> Result<(), EvaluationError> {
+    let wrong = |mistake| EvaluationError::OutOfRange { mistake, state: 1, states: 1 };
+    OutOfRange::check("step", |_| Some(step.into())).map_err(wrong)
+}
 
 impl CompiledArm {
     /// A step of the classical Runge-Kutta method of the duration `step`, s, under torques that do not change during
     /// the step. It computes the accelerations at four states; the error of a motion is of order h⁴.
     ///
     /// # Errors
-    /// When an argument does not have one element per joint, or when the function cannot be compiled for this robot.
+    /// When an argument does not have one element per joint, when the step is not a finite number above zero, or when
+    /// the function cannot be compiled for this robot.
     pub fn runge_kutta_step<T: Number>(
         &self,
         q: &[T],
@@ -18,6 +25,7 @@ impl CompiledArm {
         tau: &[T],
         step: T,
     ) -> Result<NextState<T>, EvaluationError> {
+        check(step)?;
         let accelerations = |q: &[T], qd: &[T]| self.forward_dynamics(q, qd, tau);
         let [q, qd] = integrator_of_lists::runge_kutta_step(accelerations, q, qd, |_| step)?;
         Ok(NextState { q, qd })
@@ -27,7 +35,8 @@ impl CompiledArm {
     /// the accelerations three times and their derivatives four times.
     ///
     /// # Errors
-    /// When an argument does not have one element per joint, or when a function cannot be compiled for this robot.
+    /// When an argument does not have one element per joint, when the step is not a finite number above zero, or when
+    /// a function cannot be compiled for this robot.
     pub fn runge_kutta_step_derivatives<T: Number>(
         &self,
         q: &[T],
@@ -35,6 +44,7 @@ impl CompiledArm {
         tau: &[T],
         step: T,
     ) -> Result<NextStateDerivatives<T>, EvaluationError> {
+        check(step)?;
         let accelerations = |q: &[T], qd: &[T]| self.forward_dynamics(q, qd, tau);
         let derivatives =
             |q: &[T], qd: &[T]| self.forward_dynamics_derivatives(q, qd, tau).map(|by| [by.dq, by.dqd, by.dtau]);

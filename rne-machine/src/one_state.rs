@@ -13,8 +13,8 @@ impl CompiledArm {
     /// `results`. Nothing is allocated for more than the arguments.
     ///
     /// # Errors
-    /// When an argument is missing or has another size, or `results`, when the payload has a mass below zero, or when
-    /// the function cannot be compiled.
+    /// When an argument is missing or has another size, or `results`, when an argument is
+    /// [out of range](crate::OutOfRange), or when the function cannot be compiled.
     pub fn run_one<T: Number>(
         &self,
         function: Function,
@@ -120,8 +120,8 @@ macro_rules! methods {
             #[doc = $summary]
             ///
             /// # Errors
-            /// When an argument does not have one element per joint or tip, when a payload has a mass below zero, or
-            /// when the function cannot be compiled for this robot.
+            /// When an argument does not have one element per joint or tip, when it is
+            /// [out of range](crate::OutOfRange), or when the function cannot be compiled for this robot.
             #[allow(clippy::too_many_arguments)] // those of the table
             pub fn $name<T: Number>(
                 &self,

@@ -3,9 +3,9 @@
 
 use fastrand::Rng;
 use rne_codegen::{Arguments as Numbers, Compiler, Interpreter, Target};
-use rne_machine::{Arguments, Array, CompiledArm, Destination, Form, Function};
+use rne_machine::{Arguments, Array, CompiledArm, Destination, Form, Function, OutOfRange};
 use rne_model::Robot;
-use rne_runtime::{Payload, Scalar, VectorUnit};
+use rne_runtime::{Payload, Quaternion, Scalar, VectorUnit};
 use rne_search::PlanFile;
 
 /// States: some blocks, and some that fill none.
@@ -44,6 +44,17 @@ struct States {
     rows: Vec<Vec<f64>>,
 }
 
+/// The rows of a random rotation.
+fn rotation(rng: &mut Rng) -> [f64; 9] {
+    let turn = Quaternion::identity().turned_by([(); 3].map(|()| 6.0 * rng.f64() - 3.0));
+    turn.rotation().concat().try_into().expect("nine")
+}
+
+/// Whether a robot has a function, so that an arm that is compiled at run time has it.
+fn has(arm: &CompiledArm, function: Function) -> bool {
+    function.check_for(arm.robot()).is_ok()
+}
+
 impl States {
     fn random(rng: &mut Rng, dof: usize) -> Self {
         let mut rows: Vec<Vec<f64>> = widths(dof)
@@ -59,6 +70,13 @@ impl States {
         rows[5] = q.iter().map(|&q| Scalar::sin_cos(q).1).collect();
         // no payload has a mass below zero
         rows[8].iter_mut().step_by(10).for_each(|mass| *mass = mass.abs());
+        // no step goes back in time
+        rows[19].iter_mut().for_each(|step| *step = step.abs());
+        let rotations: Vec<[f64; 9]> = (0..STATES).map(|_| rotation(rng)).collect();
+        rows[17] = rotations.concat();
+        for (pose, rotation) in rows[16].chunks_mut(12).zip(&rotations) {
+            pose[..9].copy_from_slice(rotation);
+        }
         // the base has one angular velocity
         let omega = rows[9].clone();
         for (twist, omega) in rows[15].chunks_mut(6).zip(omega.chunks(3)) {
@@ -351,4 +369,60 @@ fn a_payload_of_negative_mass_is_refused() {
         let payload = Payload { mass, ..Payload::none() };
         assert!(arm.inverse_dynamics_with_payload(&none, &none, &none, &payload).is_ok(), "{mass}");
     }
+}
+
+/// A value that an argument cannot have is refused by every function that takes the argument, in every layout, and
+/// nothing is written; without contacts there is no motion in contact. The functions are those of the table.
+#[test]
+fn what_an_argument_cannot_be_is_refused_by_every_function_that_takes_it() {
+    let arm = arms().find(|arm| arm.robot().name == "planar2").expect("a shipped robot");
+    let rotations =
+        [[2.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 2.0], [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, -1.0], [0.0; 9]];
+    let rotations: Vec<Vec<f64>> = rotations.map(|rotation| [&rotation[..], &[0.0; 3]].concat()).to_vec();
+    let steps: Vec<Vec<f64>> = [0.0, -0.0, -1e-3, f64::NAN, f64::INFINITY].map(|step| vec![step]).to_vec();
+    let wrong = [("step", &steps), ("pose", &rotations), ("base_rotation", &rotations), ("payload", &vec![vec![-1.0]])];
+    let states = States::random(&mut Rng::with_seed(57), 2);
+    let mut refused = 0;
+    for function in Function::OF_TREES.into_iter().filter(|function| has(&arm, *function)) {
+        let compiled = arm.function(function).expect("a function that compiles");
+        let outputs = compiled.outputs();
+        for &(name, width) in compiled.arguments() {
+            let values = wrong.iter().find(|(other, _)| *other == name).map_or(&[][..], |(_, values)| values);
+            assert_eq!(values.is_empty(), OutOfRange::elements(name) == 0, "{name}");
+            for value in values {
+                let index = widths(2).iter().position(|(other, _)| *other == name).expect("an argument");
+                let mut rows = states.rows[index][..3 * width].to_vec();
+                let changed = value.len().min(width);
+                rows[2 * width..2 * width + changed].copy_from_slice(&value[..changed]);
+                let columns: Vec<Vec<f64>> =
+                    (0..width).map(|element| rows.iter().skip(element).step_by(width).copied().collect()).collect();
+                let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+                let same = &rows[2 * width..];
+                for (array, state) in [(Array::Rows(&rows), 3), (Array::Columns(&columns), 3), (Array::Same(same), 1)] {
+                    let given = states.given(|index, width| Array::Rows(&states.rows[index][..3 * width]));
+                    let given = given.with(name, array).expect("an argument");
+                    let mut room = vec![7.0; 3 * outputs];
+                    let found = arm.run(function, 3, &given, Destination::Rows(&mut room));
+                    let said = found.expect_err("it is refused").to_string();
+                    assert!(said.starts_with(&format!("state {state} of 3: ")), "{function}, {name}: {said}");
+                    assert!(room.iter().all(|number| *number == 7.0), "{function}, {name}");
+                    refused += 1;
+                }
+                let given = states.of_state(0).with(name, Array::Same(same)).expect("an argument");
+                let mut room = vec![7.0; outputs];
+                assert!(arm.run_one(function, &given, &mut room).is_err(), "{function}, {name}");
+                assert!(room.iter().all(|number| *number == 7.0), "{function}, {name}");
+            }
+        }
+    }
+    assert!(refused > 50, "{refused}");
+    let zeros = [0.0; 2];
+    assert!(arm.runge_kutta_step(&zeros, &zeros, &zeros, 0.1).is_ok());
+    for step in [0.0, -0.1, f64::NAN, f64::INFINITY] {
+        let said = arm.runge_kutta_step(&zeros, &zeros, &zeros, step).unwrap_err().to_string();
+        assert!(said.contains("it must be a finite number above 0"), "{said}");
+        assert!(arm.runge_kutta_step_derivatives(&zeros, &zeros, &zeros, step).is_err());
+    }
+    let said = arm.function(Function::ForwardDynamicsInContact).unwrap_err().to_string();
+    assert!(said.contains("the robot file has no `contacts`") && said.contains("kind: point"), "{said}");
 }

@@ -98,7 +98,7 @@ impl From<EvaluationError> for Failure {
         let status = match error {
             EvaluationError::Compile(_) => Status::CannotCompile,
             EvaluationError::Missing { .. } => Status::MissingArgument,
-            EvaluationError::NegativeMass { .. } => Status::OutOfRange,
+            EvaluationError::OutOfRange { .. } => Status::OutOfRange,
             _ => Status::WrongSize,
         };
         Self::new(status, error.to_string())

@@ -9,6 +9,9 @@ use rne::{BaseMotion, Pose};
 
 use crate::arrays::{array_of, in_order, readable, shape_in_words, taken};
 
+/// A quaternion that is written with three digits has the length 1 but for this.
+const MOST_ROUNDED: f64 = 1e-3;
+
 /// An argument whose last axes are those of one state.
 struct Numbers {
     name: &'static str,
@@ -56,6 +59,23 @@ impl Numbers {
 
     fn first<const N: usize>(&self, state: usize) -> [f64; N] {
         std::array::from_fn(|index| self.at(state)[self.begin + index])
+    }
+}
+
+impl Numbers {
+    /// Refuses positions of a base whose quaternion, with its elements in this order, has not the length 1.
+    fn with_unit_quaternion(self, order: &str) -> PyResult<Self> {
+        let size = self.shape.last().copied().unwrap_or(1).max(1);
+        let (first, end) = (self.begin + 3, self.begin + 7);
+        let lengths = self.elements.chunks_exact(size).map(|q| q[first..end].iter().map(|x| x * x).sum::<f64>().sqrt());
+        if let Some(length) = lengths.into_iter().find(|length| (length - 1.0).abs() > MOST_ROUNDED) {
+            return Err(PyValueError::new_err(format!(
+                "`{}[{first}:{end}]` is a quaternion of the length {length:.4}, but it must have the length 1; its order \
+                 is {order}",
+                self.name
+            )));
+        }
+        Ok(self)
     }
 }
 
@@ -149,6 +169,12 @@ pub(crate) fn base_from_imu<'py>(
             return Err(PyValueError::new_err(format!("`rotation` has the shape {shape}, but it must be (3, 3)")));
         }
         unit.rotation = std::array::from_fn(|row| std::array::from_fn(|column| rows.elements[3 * row + column]));
+        if !unit.is_rigid() {
+            return Err(PyValueError::new_err(
+                "`rotation` is no rotation: its three rows must have the length 1, be at right angles to each other, and \
+                 be right-handed",
+            ));
+        }
     }
     if let Some(position) = position {
         unit.translation = Numbers::of("position", position, 1, 3)?.first(0);
@@ -181,7 +207,7 @@ pub(crate) fn base_from_pinocchio<'py>(
     gravity: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (gravity, [position, velocity]) = base_of(py, "base_of_pinocchio", model, gravity)?;
-    let q = Numbers::after(position, "q", q, 1, 7)?;
+    let q = Numbers::after(position, "q", q, 1, 7)?.with_unit_quaternion("x y z w")?;
     let (v, a) = (Numbers::after(velocity, "v", v, 1, 6)?, Numbers::after(velocity, "a", a, 1, 6)?);
     told(py, &[&q, &v, &a, &gravity], |state| {
         BaseMotion::from_pinocchio(&q.first(state), &v.first(state), &a.first(state), gravity.first(state))
@@ -209,7 +235,7 @@ pub(crate) fn base_from_mujoco<'py>(
     gravity: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (gravity, [position, velocity]) = base_of(py, "base_of_mujoco", model, gravity)?;
-    let q = Numbers::after(position, "qpos", qpos, 1, 7)?;
+    let q = Numbers::after(position, "qpos", qpos, 1, 7)?.with_unit_quaternion("w x y z")?;
     let (v, a) = (Numbers::after(velocity, "qvel", qvel, 1, 6)?, Numbers::after(velocity, "qacc", qacc, 1, 6)?);
     told(py, &[&q, &v, &a, &gravity], |state| {
         BaseMotion::from_mujoco(&q.first(state), &v.first(state), &a.first(state), gravity.first(state))
@@ -245,7 +271,10 @@ pub(crate) fn derivatives_to_pinocchio<'py>(
     };
     let (dq, dqd, domega) = (part("dq")?, part("dqd")?, part("domega")?);
     let mass = Numbers::of("mass", mass, 2, 6)?;
-    let (q, v) = (Numbers::after(position, "q", q, 1, 7)?, Numbers::after(velocity, "v", v, 1, 6)?);
+    let (q, v) = (
+        Numbers::after(position, "q", q, 1, 7)?.with_unit_quaternion("x y z w")?,
+        Numbers::after(velocity, "v", v, 1, 6)?,
+    );
     let size = *mass.shape.last().unwrap_or(&6);
     for (matrix, columns) in [(&dq, size - 6), (&dqd, size - 6), (&domega, 3), (&mass, size)] {
         if matrix.shape[matrix.leading().len()..] != [size, columns] {

@@ -6,7 +6,7 @@ use numpy::Element;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use rne::compiled::{Arguments, Array, CompiledArm, EvaluationError, Function, Number};
+use rne::compiled::{Arguments, Array, CompiledArm, EvaluationError, Function, Number, OutOfRange};
 use rne::{BaseAcceleration, BaseTwist, Quaternion};
 use rne_runtime::floating_integrator_of_lists::{Linear, Stage, Turning, derivatives, factor, moved, runge_kutta};
 use rne_runtime::integrator_of_lists;
@@ -195,7 +195,13 @@ impl<T: Element + Number> Rows<T> {
             given.iter().map(|given| Held::of(given, dtype, &(0..0))).collect::<PyResult<_>>()?;
         let many = states(&held)?;
         let of_each = |held: &Held<'_, T>| Ok((held.name(), held.elements(), held.rows(many.unwrap_or(1))?));
-        Ok(Self { many, rows: held.iter().map(of_each).collect::<PyResult<_>>()? })
+        let rows = Self { many, rows: held.iter().map(of_each).collect::<PyResult<_>>()? };
+        // the machine is given the accelerations alone
+        let mut steps = rows.all("step").iter();
+        steps
+            .try_for_each(|&step| OutOfRange::check("step", |_| Some(step.into())))
+            .map_err(|error| of_evaluation(&error))?;
+        Ok(rows)
     }
 
     /// The numbers of an argument at some states.

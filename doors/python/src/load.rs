@@ -33,7 +33,8 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 ///     Path of a robot file, a URDF or an MJCF file, or its text, or the name of a built-in robot. A plan file beside a
 ///     robot file is honoured. The words on a URDF below hold for an MJCF file, too.
 /// tip, base : str, optional
-///     Of a URDF: the links at the ends of the arm. Without `base` the root; `tip` is needed where there are several.
+///     Of a URDF: the links at the ends of the arm. Without `base` the root; `tip` is needed where there are several. With
+///     `whole`, `tip` may be a list of links: they are the tips that carry wrenches, the first of them is the tip.
 /// whole : bool
 ///     Of a URDF: take all links after the base, a tree, and not one arm. `tip` is then the link that carries the tip.
 /// floating : bool, optional
@@ -82,7 +83,7 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 pub(crate) fn load(
     py: Python<'_>,
     source: &Bound<'_, PyAny>,
-    tip: Option<String>,
+    tip: Option<Tips>,
     base: Option<String>,
     whole: bool,
     floating: Option<bool>,
@@ -139,8 +140,19 @@ pub(crate) fn load(
     };
     let text = String::from_utf8(bytes).map_err(|_| PyValueError::new_err(format!("{name} is not text in UTF-8")))?;
     let lock: Vec<(String, f64)> = lock.unwrap_or_default().into_iter().collect();
-    let selection = Selection { base, tip, lock, lock_others, whole, floating };
-    let options = Options { selection, convention, snap, keep_unphysical, frames: true, ..Options::default() };
+    let mut tips = match tip {
+        None => Vec::new(),
+        Some(Tips::One(tip)) => vec![tip],
+        Some(Tips::Many(tips)) => tips,
+    }
+    .into_iter();
+    let selection = Selection { base, tip: tips.next(), lock, lock_others, whole, floating };
+    let more_tips: Vec<String> = tips.collect();
+    if !more_tips.is_empty() && !whole {
+        return Err(PyValueError::new_err("an arm has one tip; `whole=True` takes the whole robot with several tips"));
+    }
+    let options =
+        Options { selection, more_tips, convention, snap, keep_unphysical, frames: true, ..Options::default() };
     let imported = py.detach(|| rne_convert::import(&name, &text, &options));
     let imported = imported.map_err(|report| of_report(py, &report))?;
     let held = imported.account.held.iter().cloned().collect();
@@ -185,6 +197,13 @@ fn warn(py: Python<'_>, name: &str, mut said: Vec<String>) -> PyResult<()> {
     }
     let category = py.get_type::<RobotFileWarning>();
     said.into_iter().try_for_each(|text| PyErr::warn(py, &category, &CString::new(text)?, 1))
+}
+
+/// One link or several.
+#[derive(FromPyObject)]
+pub(crate) enum Tips {
+    One(String),
+    Many(Vec<String>),
 }
 
 enum Given {

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat};
 use rne::NegativeMass;
 use rne_identify::{ArmLog, JointError, MotionError, Part, PassError, Payload, PayloadReply, Purpose};
+use rne_model::Inertia;
 
 use crate::arm::Arm;
 use crate::arrays::{array_of, in_order, readable, refuse_masked, shape_in_words, shape_of, taken};
@@ -37,6 +38,13 @@ pub(crate) fn payload<'py>(
     let is_other = |(one, other): (f64, f64)| (one - other).abs() > 1e-8 + 1e-5 * one.abs().min(other.abs());
     if [(xy, yx), (xz, zx), (yz, zy)].into_iter().any(is_other) {
         return Err(PyValueError::new_err("`inertia` is a symmetric tensor of shape (3, 3)"));
+    }
+    let moments = Inertia { xx, yy, zz, xy, xz, yz }.principal_moments();
+    if let Some([least, ..]) = moments.filter(|&[least, _, most]| least < -1e-6 * most.abs()) {
+        return Err(PyValueError::new_err(format!(
+            "`inertia` has a principal moment of {least:.3e} kg m²: no body has less than 0; write the inertia about the \
+             centre of mass, not about the tip"
+        )));
     }
     array_of(py, &[], &[10], vec![mass, x, y, z, xx, yy, zz, xy, xz, yz])
 }

@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -163,6 +164,39 @@ def test_a_payload_is_that_of_the_command_line(command_line, tmp_path):
     assert not quiet.found and str(quiet).startswith("no payload")
     with pytest.raises(ValueError, match="rne.identify"):
         rne.identify_payload(robot_of("ur10"), log_of("ur10"))
+
+
+def test_an_identified_payload_is_an_argument_in_tip_axes():
+    """The tip is turned and 0.2 m away from the last link: what is found is what the log was computed with."""
+    text = rne.robots.iiwa14.yaml
+    [tool] = [line for line in text.splitlines() if line.startswith("tool:")]
+    arm = rne.load(text.replace(tool, "tool: {xyz: [0.05, -0.03, 0.2], rpy: [0.4, -pi/4, 1.1]}"))
+    motion = rne.excite(arm, seconds=10, evaluations=20, rate=100)
+    truth = rne.payload(2.0, [0.03, -0.02, 0.06], np.diag([0.004, 0.005, 0.003]))
+    rng = np.random.default_rng(7)
+    tau = arm.inverse_dynamics(motion.q, motion.qd, motion.qdd, payload=truth)
+    tau = tau + 0.02 * rng.normal(size=tau.shape)
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        found = rne.identify_payload(arm, {"time": motion.time, "q": motion.q, "qd": motion.qd, "tau": tau})
+    assert not [one for one in said if "does not name its joints" in str(one.message)]
+    assert found.found and found.payload.shape == (10,) and "tip axes" in str(found)
+    assert abs(found.payload[0] - truth[0]) < 0.1 and np.abs(found.payload[1:4] - truth[1:4]).max() < 0.02
+    assert [number["value"] for number in found.com] == list(found.payload[1:4])
+    for number, true in zip(found.com, truth[1:4]):
+        assert abs(number["value"] - true) < 3 * number["deviation"]
+    # the same body in the robot file and as an argument
+    q, qd, qdd = rng.normal(size=(3, 20, arm.dof))
+    given = arm.inverse_dynamics(q, qd, qdd, payload=found.payload)
+    written = found.arm.inverse_dynamics(q, qd, qdd)
+    np.testing.assert_allclose(given, written, atol=1e-7 * np.abs(given).max())
+    # its weight, by numpy: the work of gravity at its centre of mass
+    at = lambda q: (arm.pose(q) @ np.append(found.payload[1:4], 1.0))[..., :3]
+    change = np.eye(arm.dof) * 1e-6
+    slope = np.stack([(at(q[0] + step) - at(q[0] - step)) / 2e-6 for step in change])
+    weight = -found.payload[0] * slope @ np.asarray(arm.gravity)
+    found_weight = arm.gravity_torques(q[0], payload=found.payload) - arm.gravity_torques(q[0])
+    np.testing.assert_allclose(found_weight, weight, atol=1e-6)
 
 
 def test_the_identified_arm_predicts_the_log(identified, name):

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rne::DynArm;
-use rne_codegen::{Argument, CompileError, Function, Layout, Record, Sizes, Step};
+use rne_codegen::{Argument, Function, Layout, Record, Sizes, Step};
 use rne_diagnose::worksheet::{Quantity, Worksheet};
 use rne_model::{Joint, JointKind, Robot};
 use serde_json::{Value, json};
@@ -192,7 +192,8 @@ fn computed(arguments: &Arguments, robot: Robot) -> Result<Outcome, Failure> {
         (None, false) => Function::InverseDynamics,
     });
     arguments.at.check(function)?;
-    Arguments::has_function(function, &robot)?;
+    function.check_for(&robot).map_err(Failure::usage)?;
+    arguments.arm.check(function)?;
     if let Some(states) = &arguments.states {
         let file = arguments.arm.file();
         return states::Job {
@@ -288,19 +289,6 @@ impl Arguments {
         self.arm.robot_at(&self.at)
     }
 
-    /// Whether a robot has the function: with closed loops those of loops, and no others; with a floating base those of
-    /// floating bases.
-    fn has_function(function: Function, robot: &Robot) -> Result<(), Failure> {
-        function.check_base(robot).map_err(Failure::usage)?;
-        match robot.closed.loops.first() {
-            Some(closed) if !function.is_of_closed_loops() => {
-                Err(Failure::usage(CompileError::HasClosedLoops { function, name: closed.name.clone() }))
-            }
-            None if function.is_of_closed_loops() => Err(Failure::usage(CompileError::NoClosedLoops { function })),
-            _ => Ok(()),
-        }
-    }
-
     /// Whether the function can be computed and traced for a robot.
     fn check(&self, function: Function, robot: &Robot) -> Result<(), Failure> {
         if self.trace && !function.returns_torques() {
@@ -310,11 +298,6 @@ impl Arguments {
                  these functions: {}",
                 with.join(", ")
             )));
-        }
-        let follower = robot.joints.iter().find(|joint| joint.coupling.is_some());
-        if let Some(joint) = follower.filter(|_| function.is_of_every_link()) {
-            let error = CompileError::OfEveryLink { function, follower: joint.name.clone() };
-            return Err(Failure::usage(error));
         }
         if self.trace && !robot.is_serial() {
             return Err(Failure::usage(
@@ -387,4 +370,146 @@ fn grouped(layout: &Layout, numbers: &[f64]) -> Value {
         Value::Object(fields.zip::<Vec<Value>>(parts).collect())
     };
     layout.fold(&mut numbers.iter().map(|&number| Value::from(number)), &Value::Array, &record).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::iter;
+
+    use clap::Parser;
+    use rne_codegen::Argument::{
+        Accelerations, Base, BasePose, BaseRotation, BaseTwist, BaseVelocity, Multipliers, Passive, Positions, Rates,
+        Step, Torques, Wrench, Wrenches,
+    };
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Command {
+        #[command(flatten)]
+        arguments: Arguments,
+    }
+
+    /// Runs with options, each with its value.
+    fn run_with<'a>(file: &'a str, options: impl Iterator<Item = &'a str>) -> Result<Outcome, Failure> {
+        let words = ["eval", file].into_iter().chain(options);
+        run(&Command::try_parse_from(words).unwrap_or_else(|error| panic!("{error}")).arguments)
+    }
+
+    /// Options, a value of two joints or of a base, and the arguments of functions that use it.
+    const OPTIONS: [(&str, &str, &[Argument]); 18] = [
+        ("--q", "0.1,0.2", &[Positions]),
+        ("--qd", "0.1,0.2", &[Rates]),
+        ("--qdd", "0.1,0.2", &[Accelerations]),
+        ("--tau", "0.1,0.2", &[Torques]),
+        ("--duration", "0.01", &[Step]),
+        ("--multipliers", "1,2", &[Multipliers]),
+        ("--wrench", "1,2,3,4,5,6", &[Wrench]),
+        ("--tip-wrench", "tip=1,2,3,4,5,6", &[Wrenches]),
+        ("--passive", "1", &[Passive]),
+        ("--base-omega", "1,2,3", &[Base, BaseVelocity, BaseTwist]),
+        ("--base-omega-dot", "1,2,3", &[Base]),
+        ("--base-acceleration", "1,2,3", &[Base]),
+        ("--base-velocity", "1,2,3", &[BaseTwist]),
+        ("--base-pose", "1,2,3,0,0,0", &[BasePose]),
+        ("--gravity", "1,2,3", &[Base]),
+        ("--base-rotation", "1,0,0,0,1,0,0,0,1", &[BaseRotation]),
+        ("--payload", "1,0,0,0", &[Argument::Payload]),
+        ("--frame", "shoulder", &[]),
+    ];
+
+    /// Every option that has a value, and `--rotors`, with every function: it is used, or it is refused by its name.
+    /// What uses it stands in the table of functions.
+    #[test]
+    fn every_function_uses_or_refuses_every_option() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/satellite.yaml");
+        let robot =
+            crate::files::robot_file::robot(std::path::Path::new(file), crate::files::robot_file::Shape::Closed);
+        let robot = robot.expect("a shipped robot");
+        let (mut used, mut refused) = (0, 0);
+        for function in Function::ALL.into_iter().filter(|function| function.check_for(&robot).is_ok()) {
+            let needed = || {
+                OPTIONS
+                    .into_iter()
+                    .filter(|(_, _, arguments)| arguments.iter().any(|argument| function.takes(*argument)))
+            };
+            let needed = || {
+                let all = needed().flat_map(|(option, value, _)| [option, value]);
+                ["--function", function.name()].into_iter().chain(all)
+            };
+            let plain = run_with(file, needed());
+            assert!(plain.is_ok(), "{function}: {}", plain.err().map(|error| error.text).unwrap_or_default());
+            for (option, value) in OPTIONS
+                .into_iter()
+                .map(|(option, value, _)| (option, Some(value)))
+                .chain(iter::once(("--rotors", None)))
+            {
+                if needed().any(|other| other == option) {
+                    continue;
+                }
+                let is_used = match option {
+                    "--rotors" => function.feels_rotors(),
+                    "--frame" => function.of_frame().is_some(),
+                    "--payload" => function.feels_links(),
+                    _ => false,
+                };
+                let given = needed().chain(iter::once(option)).chain(value);
+                match run_with(file, given) {
+                    Ok(_) => assert!(is_used, "{function} takes {option}, which it does not use"),
+                    Err(error) => {
+                        let error = error.text;
+                        assert!(!is_used && error.contains(option), "{function}, {option}: {error}");
+                        refused += 1;
+                        continue;
+                    }
+                }
+                used += 1;
+            }
+        }
+        assert!(used > 50 && refused > 500, "{used} used, {refused} refused");
+    }
+
+    /// Functions that say that masses change them are changed by a payload, and the others are those of the links alone.
+    #[test]
+    fn what_feels_links_is_what_a_payload_changes() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/satellite.yaml");
+        let robot =
+            crate::files::robot_file::robot(std::path::Path::new(file), crate::files::robot_file::Shape::Closed);
+        let robot = Robot { gravity: [1.0, 2.0, -9.81], ..robot.expect("a shipped robot") };
+        let loaded = rne_convert::carrying(
+            &robot,
+            3.0,
+            [0.1, 0.2, 0.3],
+            rne_model::Inertia { xx: 0.1, yy: 0.1, zz: 0.1, ..rne_model::Inertia::default() },
+        );
+        let lists = |numbers: &[f64]| List(numbers.to_vec());
+        let (joints, triple, six) =
+            (lists(&[0.3, 0.7]), lists(&[0.4, -0.5, 0.6]), lists(&[0.1, 0.2, 0.3, 0.4, 0.5, 0.6]));
+        let (one, payload) = (lists(&[0.01]), lists(&[1.0, 0.1, 0.0, 0.2]));
+        for function in Function::ALL.into_iter().filter(|function| function.check_for(&robot).is_ok()) {
+            let take = |argument, list| Some(list).filter(|_| function.takes(argument));
+            let base = |list| Some(list).filter(|_| function.takes(Base));
+            let given = Given {
+                q: take(Positions, &joints),
+                qd: take(Rates, &joints),
+                qdd: take(Accelerations, &joints),
+                tau: take(Torques, &joints),
+                duration: take(Step, &one),
+                multipliers: take(Multipliers, &joints),
+                wrench: take(Wrench, &six),
+                payload: take(Argument::Payload, &payload),
+                base_omega: base(&triple).or(take(BaseVelocity, &triple)).or(take(BaseTwist, &triple)),
+                base_omega_dot: base(&triple),
+                base_acceleration: base(&triple),
+                base_velocity: take(BaseTwist, &triple),
+                base_pose: take(BasePose, &six),
+                ..Given::default()
+            };
+            // a floating base needs no wrenches, and what needs them is that with one wrench
+            let Ok(state) = State::new(function, given, &robot) else { continue };
+            let [alone, loaded] = [&robot, &loaded]
+                .map(|robot| state.numbers(&DynArm::from_robot(robot)).expect("arrays of the right length"));
+            assert_eq!(alone != loaded, function.feels_links(), "{function}");
+        }
+    }
 }

@@ -183,6 +183,28 @@ impl ChosenArm {
         &self.file
     }
 
+    /// Refuses a payload and rotors where they change nothing of a function.
+    pub(crate) fn check(&self, function: Function) -> Result<(), Failure> {
+        if self.carried.payload.is_some() && !function.feels_links() {
+            let with = Function::ALL.into_iter().filter(|other| other.with_payload().is_some()).map(Function::name);
+            return Err(Failure::usage(format_args!(
+                "{function} takes no {TYPED}--payload{TYPED:#}: masses do not change it. These functions take one, as \
+                 do others of forces, energies and the centre of mass: {}",
+                with.collect::<Vec<_>>().join(", ")
+            )));
+        }
+        if self.rotors.rotors && !function.feels_rotors() {
+            let with = Function::ALL
+                .into_iter()
+                .filter(|other| other.feels_rotors() && other.is_of_closed_loops() == function.is_of_closed_loops());
+            return Err(Failure::usage(format_args!(
+                "{function} takes no {TYPED}--rotors{TYPED:#}: the inertia of rotors does not change it. It changes {}",
+                with.map(Function::name).collect::<Vec<_>>().join(", ")
+            )));
+        }
+        Ok(())
+    }
+
     /// The robot with the payload as a part of the link with the tip.
     pub(crate) fn robot_with_payload(&self, shape: Shape) -> Result<Robot, Failure> {
         self.carried.of(self.read(Frames::Dropped, shape)?.0)

@@ -4,14 +4,13 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 use std::path::Path;
 
-use rne::Pose;
 use rne_logs::{CsvRows, Npy};
+use rne_machine::OutOfRange;
 use rne_model::{did_you_mean, open_file};
 
 use crate::files::csv_table::quoted;
 use crate::files::input_file::{self, is_standard_input, is_stream};
 use crate::outcome::Failure;
-use crate::values::state::ROTATION;
 
 /// States of a part: some megabytes, whatever the file's size.
 pub(crate) const PART: usize = 16_384;
@@ -25,34 +24,17 @@ pub(crate) struct Table {
     restricted: Restricted,
 }
 
-/// The columns whose numbers may not be any.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Restricted {
-    /// The column of a mass, which is not negative.
-    pub(crate) mass: Option<usize>,
-    /// The column of the duration of a step, which is positive.
-    pub(crate) duration: Option<usize>,
-    /// The first of nine columns of a rotation, row by row.
-    pub(crate) rotation: Option<usize>,
-}
+/// The arguments whose numbers may not be any, with their first columns.
+#[derive(Clone, Default)]
+pub(crate) struct Restricted(pub(crate) Vec<(&'static str, usize)>);
 
 impl Restricted {
     /// The mistake of a row, whose columns have these names.
-    fn mistake(self, row: &[f64], name: impl Fn(usize) -> String) -> Option<String> {
-        if let Some((at, mass)) = self.mass.and_then(|at| Some((at, *row.get(at)?)))
-            && mass < 0.0
-        {
-            return Some(format!("the mass {} is {mass} kg; a mass is zero or positive", name(at)));
-        }
-        if let Some((at, duration)) = self.duration.and_then(|at| Some((at, *row.get(at)?)))
-            && duration <= 0.0
-        {
-            return Some(format!("the duration {} is {duration} s; it must be above 0 s", name(at)));
-        }
-        let at = self.rotation?;
-        let row = |from: usize| row.get(from..from + 3)?.try_into().ok();
-        let pose = Pose { rotation: [row(at)?, row(at + 3)?, row(at + 6)?], translation: [0.0; 3] };
-        (!pose.is_rigid()).then(|| format!("what begins with {} is no rotation: {ROTATION}", name(at)))
+    fn mistake(&self, row: &[f64], name: impl Fn(usize) -> String) -> Option<String> {
+        self.0.iter().find_map(|&(argument, first)| {
+            let mistake = OutOfRange::check(argument, |element| row.get(first + element).copied()).err()?;
+            Some(format!("{}: {mistake}", name(first)))
+        })
     }
 }
 
@@ -153,7 +135,7 @@ impl Table {
 
     /// Appends the rows of the next part; how many there are.
     pub(crate) fn read(&mut self, rows: &mut Vec<f64>) -> Result<usize, Failure> {
-        let (name, restricted) = (&self.name, self.restricted);
+        let (name, restricted) = (&self.name, &self.restricted);
         match &mut self.rows {
             Rows::Csv { rows: table, columns } => {
                 let mut count = 0;

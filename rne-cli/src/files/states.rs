@@ -7,7 +7,7 @@ use std::time::Instant;
 use indicatif::{ProgressBar, ProgressStyle};
 use rne_codegen::{Answer, Function, Layout};
 use rne_logs::Heading;
-use rne_machine::{Arguments, Array, CompiledArm, CompiledFunction, Destination};
+use rne_machine::{Arguments, Array, CompiledArm, CompiledFunction, Destination, OutOfRange};
 
 use crate::files::input_file::is_standard_input;
 use crate::files::output_file::is_standard_output;
@@ -77,18 +77,14 @@ fn named_columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<Option<S
     compiled.arguments().iter().flat_map(headings).collect()
 }
 
-/// The columns of a payload's mass, of the duration of a step and of a rotation.
+/// The arguments whose numbers may not be any, with their first columns.
 fn restricted(compiled: &CompiledFunction) -> Restricted {
-    let place = |wanted: &str| {
-        let argument = compiled.arguments().iter().position(|(name, _)| *name == wanted)?;
-        Some(compiled.arguments()[..argument].iter().map(|(_, elements)| elements).sum())
-    };
-    // a pose begins with its rotation
-    Restricted {
-        mass: place("payload"),
-        duration: place("step"),
-        rotation: place("base_rotation").or_else(|| place("pose")),
-    }
+    let mut at = 0;
+    let places = compiled.arguments().iter().map(|&(name, elements)| {
+        at += elements;
+        (name, at - elements)
+    });
+    Restricted(places.filter(|(name, _)| OutOfRange::elements(name) > 0).collect())
 }
 
 /// The columns of its results: torques and accelerations by their symbols, others by the function's name and their

@@ -46,9 +46,8 @@ impl WordedPayload<'_> {
             };
             let mut cells = vec![["  number".to_owned(), "value".to_owned(), "unit".to_owned()]];
             cells.extend(rows.map(row));
-            let link = link_with_tip(self.robot);
-            let title = format!("payload in the frame of {link}, inertia about its centre of mass");
-            push_table(&mut text, &title, &[Align::Left, Align::Right, Align::Left], &cells);
+            let title = "payload in tip axes, from their origin; inertia about its centre of mass";
+            push_table(&mut text, title, &[Align::Left, Align::Right, Align::Left], &cells);
         }
         if let Some(with) = self.with {
             let mut cells = vec![["  joint", "FILE", "with payload"].map(str::to_owned)];
@@ -79,7 +78,7 @@ impl WordedPayload<'_> {
             let largest = com.iter().map(|number| number.deviation).fold(0.0, f64::max);
             let each = com.map(|number| of_deviation(number.value, largest));
             let deviation = of_deviation(largest, largest);
-            format!("centre of mass ({}) ± {deviation} m in the frame of {link}", each.join(", "))
+            format!("centre of mass ({}) ± {deviation} m in tip axes", each.join(", "))
         } else {
             let known = ["x", "y", "z"].into_iter().zip(com).filter(|(_, number)| number.is_excited);
             let known: Vec<String> = known
@@ -89,7 +88,7 @@ impl WordedPayload<'_> {
                 "centre of mass not excited".to_owned()
             } else {
                 format!(
-                    "centre of mass {} in the frame of {link}; the log does not excite the other coordinates",
+                    "centre of mass {} in tip axes; the log does not excite the other coordinates",
                     known.join(", ")
                 )
             }

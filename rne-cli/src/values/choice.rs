@@ -204,16 +204,16 @@ pub(crate) fn of_loops(function: Function, robot: &Robot) -> Function {
 }
 
 /// The functions that a robot has something to compute for, in the order of the traits: without motors,
-/// `actuator_torques` is zero, and there for who asks for it by name. With couplings, there is no `regressor`. Without
+/// `actuator_torques` is zero, and there for who asks for it by name. With couplings, there is no
+/// `regressor`, and without contacts no motion in contact. Without
 /// named tips, a function with a wrench at each tip is the one with a wrench at the tip. Functions of a floating base
 /// are for robots that have one.
 pub(crate) fn functions_of(robot: &Robot) -> impl Iterator<Item = Function> {
     let has_motors = robot.joints.iter().any(|joint| joint.motor.is_some());
-    let (has_couplings, has_tips) = (robot.has_couplings(), !robot.tips.is_empty());
+    let has_tips = !robot.tips.is_empty();
     Function::of_robot(robot).filter(move |function| {
         (*function != Function::ActuatorTorques || has_motors)
-            && !(has_couplings && function.is_of_every_link())
-            && function.check_base(robot).is_ok()
+            && function.check_for(robot).is_ok()
             && (has_tips || function.is_of_floating_base() || !function.takes(Argument::Wrenches))
     })
 }

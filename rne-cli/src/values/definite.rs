@@ -21,7 +21,7 @@ pub(crate) const BUT_FOR_ROUNDING: &str = "the mass matrix is singular at this p
 
 /// The mistake in the result of a function that inverts the mass matrix, where this is not positive definite.
 pub(crate) const NOT_DEFINITE: &str = "the mass matrix is not positive definite at this position: a link is no real \
-                                       body (`physical: false`), or a payload has negative numbers";
+                                       body (`physical: false`)";
 
 /// Whether the mass matrix that a function inverts is not positive definite at a position: q, and the dependent joints
 /// of closed loops.

@@ -327,7 +327,11 @@ records! {
 /// Positions of the dependent joints of closed loops: those that close the loops, from the given ones. A Newton step
 /// takes the given ones as they are.
 fn passive(function: Function, list: Option<&List>, q: Option<&[f64]>, robot: &Robot) -> Result<Vec<f64>, Failure> {
-    let Some(q) = q.filter(|_| function.takes(Argument::Passive) || list.is_some()) else { return Ok(Vec::new()) };
+    if !function.takes(Argument::Passive) {
+        let refused = list.map(|_| not_taken(function, "--passive", Argument::Passive));
+        return refused.map_or(Ok(Vec::new()), Err);
+    }
+    let Some(q) = q else { return Ok(Vec::new()) };
     let names: Vec<_> = robot.closed.passive.iter().map(|&at| robot.joints[at].name.as_str()).collect();
     let each = format!("one number for each dependent joint of {}: {}", robot.name, names.join(", "));
     let given = match list {
@@ -344,6 +348,9 @@ fn passive(function: Function, list: Option<&List>, q: Option<&[f64]>, robot: &R
 const PAYLOAD: &str =
     "mass, centre of mass and inertia about it: m,cx,cy,cz,xx,yy,zz,xy,xz,yz; or m,cx,cy,cz of a point";
 
+/// A principal moment below zero by this part of the largest one is rounding.
+const ROUNDED: f64 = 1e-6;
+
 /// A payload from its list: mass and centre of mass, and inertia where it is given.
 pub(crate) fn payload(List(values): &List) -> Result<Payload<f64>, Failure> {
     if values.len() != 4 && values.len() != 10 {
@@ -354,6 +361,13 @@ pub(crate) fn payload(List(values): &List) -> Result<Payload<f64>, Failure> {
     all.iter_mut().zip(values).for_each(|(number, value)| *number = *value);
     let payload = Payload::from_array(all);
     payload.check().map_err(|error| Failure::usage(format_args!("--payload begins with the mass: {error}")))?;
+    let negative = |&[least, _, most]: &[f64; 3]| least < -ROUNDED * most.abs();
+    if let Some([least, ..]) = payload.inertia.principal_moments().filter(negative) {
+        return Err(Failure::usage(format_args!(
+            "--payload has an inertia with a principal moment of {least:.3e} kg m²: no body has less than 0; write the \
+             inertia about the centre of mass, not about the tip"
+        )));
+    }
     Ok(payload)
 }
 
@@ -380,8 +394,7 @@ fn pose_of_base(function: Function, given: Option<&List>) -> Result<Pose<f64>, F
 }
 
 /// The conditions for a rotation.
-pub(crate) const ROTATION: &str =
-    "its three rows must have the length 1, be at right angles to each other, and be right-handed";
+const ROTATION: &str = "its three rows must have the length 1, be at right angles to each other, and be right-handed";
 
 /// The rotation of these nine numbers, row by row.
 fn rotation(name: &str, numbers: &[f64]) -> Result<[[f64; 3]; 3], Failure> {

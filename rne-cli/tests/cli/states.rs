@@ -171,7 +171,11 @@ fn every_function_is_that_of_single_states() {
     let folder = folder("states_functions");
     let path = |name: &str| folder.join(name).display().to_string();
     for function in Function::OF_TREES.into_iter().step_by(if shipped::is_exhaustive() { 1 } else { 3 }) {
-        let robot = if function.is_of_floating_base() { "docs/satellite.yaml" } else { "robots/stanford.yaml" };
+        let robot = match function {
+            Function::ForwardDynamicsInContact => "docs/standing_hyq.yaml",
+            _ if function.is_of_floating_base() => "docs/satellite.yaml",
+            _ => "robots/stanford.yaml",
+        };
         let name = function.name();
         let columns = columns(robot, name);
         let mut states: Vec<Vec<f64>> =
@@ -247,9 +251,10 @@ fn a_duration_has_two_names() {
 fn a_duration_is_positive() {
     let arguments = ["eval", "planar1", "--function", "euler_step", "--states", "-"];
     let table = |name: &str, duration: &str| format!("tau1,{name},q1,qd1\n1,{duration},0.5,2\n");
-    for (name, duration) in [("duration", "0"), ("step", "-1")] {
+    for (name, duration) in [("duration", "0"), ("step", "-1"), ("duration", "NaN"), ("duration", "inf")] {
         let refused = rne_reading(&arguments, &table(name, duration));
-        let said = format!("<standard input>:2: the duration `{name}` is {duration} s; it must be above 0 s");
+        let said =
+            format!("<standard input>:2: `{name}`: the step is {duration} s, but it must be a finite number above 0");
         assert!(refused.status == 1 && refused.said().contains(&said), "{refused:?}");
     }
     let single = ["eval", "planar1", "--function", "euler_step", "--q", "0.5", "--qd", "2", "--tau", "1"];
@@ -323,7 +328,7 @@ fn a_negative_mass_of_a_payload_is_refused() {
     let table = |masses: &[f64]| names.join(",") + "\n" + &masses.iter().map(|mass| line(*mass)).collect::<String>();
     let found = rne_reading(&arguments, &table(&[1.0, 0.0, -0.25, 1.0]));
     assert!(found.status == 1 && found.out.is_empty(), "{found:?}");
-    let said = "<standard input>:4: the mass `m` is -0.25 kg; a mass is zero or positive";
+    let said = "<standard input>:4: `m`: the payload's mass is -0.25 kg: no body has less than 0";
     assert!(found.err.contains(said), "{found:?}");
     assert_eq!(rne_reading(&arguments, &table(&[1.0, 0.0, -0.0])).status, 0);
 
@@ -339,7 +344,7 @@ fn a_negative_mass_of_a_payload_is_refused() {
     let shape = format!("(20001, {})", names.len());
     fs::write(&path, npy("<f8", "False", &shape, &bytes(&numbers))).expect("a file");
     let [path, output] = [&path, &out].map(|path| path.display().to_string());
-    let said = format!("{path}: state 20000: the mass in column {} is -0.25 kg", place + 1);
+    let said = format!("{path}: state 20000: in column {}: the payload's mass is -0.25 kg", place + 1);
     fails(1, &[&arguments[..5], &[path.as_str(), "-o", &output]].concat(), &[&said]);
     assert!(!out.exists(), "a file is whole or not there");
 }
@@ -361,7 +366,8 @@ fn a_rotation_that_is_none_is_refused() {
         let table = |off: f64| names.join(",") + "\n" + &line(0.0) + &line(off);
         assert_eq!(rne_reading(&arguments, &table(1e-6)).status, 0);
         let found = rne_reading(&arguments, &table(1e-3));
-        let said = format!("<standard input>:3: what begins with `{first}` is no rotation: its three rows must have");
+        let argument = if function == "tip_jacobians" { "base_rotation" } else { "pose" };
+        let said = format!("<standard input>:3: `{first}`: `{argument}` is no rotation: its three rows must have");
         assert!(found.status == 1 && found.err.contains(&said), "{found:?}");
     }
 }

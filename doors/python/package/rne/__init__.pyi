@@ -544,7 +544,7 @@ robots: _Robots
 def load(
     source: str | PathLike[str],
     *,
-    tip: str | None = ...,
+    tip: str | Sequence[str] | None = ...,
     base: str | None = ...,
     whole: bool = ...,
     floating: bool | None = ...,
@@ -660,6 +660,7 @@ class IdentifiedPayload:
     """The rigid body that the last link carries beyond what the robot file has."""
 
     found: bool
+    payload: Floats | None
     mass: dict[str, Any]
     com: list[dict[str, Any]]
     inertia: list[dict[str, Any]]

@@ -10,10 +10,14 @@ class Excitation:
 
     `time` (N,) in s, `q`, `qd` and `qdd` (N, n) in rad, rad/s and rad/s², of sliding joints in m, m/s and m/s².
     `condition` is the condition number of the equations, `evaluations` the number of motions that were tried. `joints`
-    has where each joint starts and how far it moves, `parameters` how well a log would determine each base parameter.
+    has where each joint starts and how far it moves, `parameters` how well a log would determine each base parameter:
+    if each row had noise of 1 % of the effort limits, or of 5 % of the torques of plausible links where a joint has no
+    limit. A log with less noise determines more. With `rotors=True`, the rotors have base parameters, too, here and in
+    `rne.identify`.
     """
 
-    def __init__(self, reply):
+    def __init__(self, reply, of="links"):
+        self._of = of
         self.time, self.q, self.qd, self.qdd = reply["time"], reply["q"], reply["qd"], reply["qdd"]
         self.condition, self.first_condition = reply["condition"], reply["first_condition"]
         self.evaluations = reply["evaluations"]
@@ -37,10 +41,12 @@ class Excitation:
         return polars.DataFrame(self.columns())
 
     def __repr__(self):
+        limited = all(joint["effort"] is not None for joint in self.joints)
+        noise = "1 % of the effort limits" if limited else "5 % of the torques"
         excited = sum(of["excited"] for of in self.parameters)
         return (
             f"<rne.Excitation: {self.time[-1]:.4g} s, condition {self.condition:.4g}, {excited} of "
-            f"{len(self.parameters)} base parameters excited>"
+            f"{len(self.parameters)} base parameters of {self._of} excited with noise of {noise}>"
         )
 
 
@@ -103,4 +109,4 @@ def excite(
         "seed": seed,
         "rate": rate,
     }
-    return Excitation(exciting(as_arm(robot), asked))
+    return Excitation(exciting(as_arm(robot), asked), "links and rotors" if rotors else "links")

@@ -85,5 +85,5 @@ def identify(robot, paths, *, hold_out=None, rotors=False, friction=True, regula
     if reply["robot_file"] is None:
         nothing = "nothing is excited: the log determines no link and no friction of this arm, so there is no robot file"
         reply["remarks"].append((True, nothing))
-    warn(reply["remarks"])
+    warn(reply["remarks"], paths)
     return Identification(reply)

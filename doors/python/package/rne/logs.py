@@ -5,7 +5,10 @@ import warnings
 import numpy as np
 
 from ._rne import Arm, RobotFileWarning, load, log_content, log_motion
-from .sources import files, reading
+from .sources import files, has_order, reading
+
+#: The beginning of a remark on the order of the joints.
+_ORDER = "the log does not name its joints"
 
 
 def load_unchecked(robot):
@@ -20,10 +23,14 @@ def as_arm(robot):
     return robot if isinstance(robot, Arm) else load_unchecked(robot)
 
 
-def warn(remarks):
-    """Warns of what may make a result wrong; all remarks as a list of sentences."""
+def warn(remarks, *sources):
+    """Warns of what may make a result wrong; all remarks as a list of sentences.
+
+    A column of shape (N, n) has the order of the arm, so nobody is warned of an order that its table does not tell.
+    """
+    is_told = bool(sources) and all(map(has_order, sources))
     for is_warning, words in remarks:
-        if is_warning:
+        if is_warning and not (is_told and words.startswith(_ORDER)):
             # of who calls rne.identify or rne.watch
             warnings.warn(words, UserWarning, stacklevel=3)
     return [words for _, words in remarks]

@@ -2,6 +2,8 @@
 
 import pathlib
 
+import numpy
+
 from ._rne import payload_identified
 from .logs import as_arm, load_unchecked, warn
 from .sources import files, reading
@@ -10,9 +12,12 @@ from .sources import files, reading
 class IdentifiedPayload:
     """The rigid body that the last link carries beyond what the robot file has.
 
-    `found` says whether the logs show a payload. `mass` (kg), `com` (the centre of mass x, y, z in the frame of the last
-    link, m) and `inertia` (xx, yy, zz, xy, xz, yz about the centre of mass, kg m²) are dicts with `value`, `deviation`,
-    `unit` and `excited`, or lists of them; value and deviation are None where the logs do not determine the number.
+    All numbers are in tip axes, as those of the keyword `payload`. `payload` is an array of ten numbers for this
+    keyword; it is zero where the logs show no payload, and None where they do not determine the mass or show less mass than the
+    robot file has. `found` says whether the logs show a payload. `mass` (kg), `com` (the centre of mass x, y, z from
+    the origin of the tip frame, m) and `inertia` (xx, yy, zz, xy, xz, yz about the centre of mass, kg m²) are dicts with
+    `value`, `deviation`, `unit` and `excited`, or lists of them; value and deviation are None where the logs do not
+    determine the number.
     `joints` has the errors without and with the payload, `robot_file` the text of the robot file with the payload in its
     last link and `arm` the arm that it describes; both are None if the logs do not determine the mass.
     """
@@ -20,6 +25,7 @@ class IdentifiedPayload:
     def __init__(self, reply):
         found = reply["payload"]
         self.found, self.mass, self.com, self.inertia = found["found"], found["mass"], found["com"], found["inertia"]
+        self.payload = None if found["numbers"] is None else numpy.array(found["numbers"])
         self.joints, self.delay, self.cutoff = reply["joints"], reply["delay"], reply["cutoff"]
         self.logs, self.robot = reply["logs"], reply["robot"]
         self.states, self.duration = reply["states"], reply["duration"]
@@ -37,7 +43,9 @@ class IdentifiedPayload:
         if not self.mass["excited"]:
             return "the logs do not determine the mass of a payload"
         mass = f"{self.mass['value']:.3f} ± {self.mass['deviation']:.3f} kg"
-        return f"payload of {mass}" if self.found else f"no payload: {mass} beyond the robot file"
+        com = [number["value"] for number in self.com]
+        at = "" if None in com else " at ({:.3f}, {:.3f}, {:.3f}) m in tip axes".format(*com)
+        return f"payload of {mass}{at}" if self.found else f"no payload: {mass} beyond the robot file"
 
     def __repr__(self):
         return f"<rne.IdentifiedPayload of {self.robot}: {self}>"
@@ -58,10 +66,10 @@ def identify_payload(robot, paths, **options):
     Returns
     -------
     IdentifiedPayload
-        With `mass`, `com`, `inertia`, `arm`.
+        With `payload`, `mass`, `com`, `inertia`, `arm`.
     """
     arm = as_arm(robot)
     with files(paths, reading(**options)) as (found, given):
         reply = payload_identified(arm, found, given)
-    warn(reply["remarks"])
+    warn(reply["remarks"], paths)
     return IdentifiedPayload(reply)

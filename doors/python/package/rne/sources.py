@@ -97,6 +97,12 @@ def _is_list(value):
     return isinstance(value, Sequence) and not _is_path(value) and not hasattr(value, "columns")
 
 
+def has_order(source):
+    """Whether the joints of a source are columns of shape (N, n) of tables in memory."""
+    tables = source if _is_list(source) else [] if source is None else [source]
+    return all(not _is_path(one) and any(np.ndim(column) == 2 for _, column in _columns(one)) for one in tables)
+
+
 def _columns(table):
     """The names and arrays of a table: of a dict, pandas, Polars or PyArrow."""
     if isinstance(table, Mapping):

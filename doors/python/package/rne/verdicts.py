@@ -110,5 +110,5 @@ def _excited(verdict):
     return [
         *offsets,
         f"{said}, but not {_enumerated(unknown)}: the model holds for similar motions only.",
-        "rne.excite(robot) designs a better motion.",
+        "rne.excite(robot) designs a better motion; after such a motion, take more `evaluations` or `seconds`.",
     ]

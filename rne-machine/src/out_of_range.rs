@@ -1,0 +1,63 @@
+//! Numbers that an argument cannot have: one check for all doors at which arguments come in.
+
+use std::fmt;
+
+use rne_runtime::{NegativeMass, Pose};
+
+/// Numbers that an argument cannot have. A number that is not a number passes in a rotation and as a mass: results show
+/// it.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum OutOfRange {
+    /// The mass of a payload is below zero.
+    Mass(NegativeMass),
+    /// The duration of a step is not a finite number above zero, s.
+    Step(f64),
+    /// The rotation of this argument is none.
+    Rotation(String),
+}
+
+impl OutOfRange {
+    /// How many of the first elements of an argument are [checked](Self::check).
+    #[must_use]
+    pub fn elements(argument: &str) -> usize {
+        match argument {
+            "payload" | "step" => 1,
+            // a pose begins with its rotation
+            "pose" | "base_rotation" => 9,
+            _ => 0,
+        }
+    }
+
+    /// Refuses numbers that an argument cannot have. `number` is an element of the argument.
+    ///
+    /// # Errors
+    /// What is wrong with them.
+    pub fn check(argument: &str, number: impl Fn(usize) -> Option<f64>) -> Result<(), Self> {
+        let at = |element| number(element).unwrap_or(f64::NAN);
+        match argument {
+            "payload" => NegativeMass::check(at(0)).map_err(Self::Mass),
+            "step" if !(at(0) > 0.0 && at(0).is_finite()) => Err(Self::Step(at(0))),
+            "pose" | "base_rotation" => {
+                let rotation = [0, 3, 6].map(|row| [row, row + 1, row + 2].map(at));
+                let is_rigid = Pose { rotation, translation: [0.0; 3] }.is_rigid();
+                if is_rigid { Ok(()) } else { Err(Self::Rotation(argument.to_owned())) }
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl fmt::Display for OutOfRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Mass(mass) => mass.fmt(f),
+            Self::Step(step) => write!(f, "the step is {step} s, but it must be a finite number above 0"),
+            Self::Rotation(argument) => write!(
+                f,
+                "`{argument}` is no rotation: its three rows must have the length 1, be at right angles to each other, \
+                 and be right-handed"
+            ),
+        }
+    }
+}
