@@ -92,7 +92,7 @@ fn torques_agree_as_printed() {
         ("1.45e1,2.41e0", true, [0.05, 0.005]),
         ("1e1,2", true, [5.0, 0.5]),
         ("14541e-3,2.4086", true, [0.0005, 0.00005]),
-        ("14.5410,2.4086", false, [0.00005, 0.00005]),
+        ("14.5420,2.4086", false, [0.00005, 0.00005]),
     ] {
         let called = rne(&[&["diagnose", "planar2", &format!("--tau={tau}")][..], &state].concat());
         let reply: Value = serde_json::from_str(&called.out).expect("JSON");

@@ -262,10 +262,10 @@ fn a_file_has_a_name_of_its_language() {
     );
     assert!(fs::read_dir(&folder).expect("a folder").next().is_none(), "nothing was written");
     // a folder is made
-    fine(&["emit", ROBOT, "--lang", "c", "-o", &path(&folder, "ctl/new/arm.c")]);
+    written(&["emit", ROBOT, "--lang", "c", "-o", &path(&folder, "ctl/new/arm.c")]);
     assert!(folder.join("ctl/new/arm.h").is_file());
     fs::write(folder.join("file"), "text").expect("written");
-    fails(1, &["emit", ROBOT, "--lang", "c", "-o", &path(&folder, "file/arm.c")], &["cannot be written"]);
+    fails(1, &["emit", ROBOT, "--lang", "c", "-o", &path(&folder, "file/arm.c")], &["file/arm.h", "Not a directory"]);
 }
 
 /// A call that writes files and says so.
