@@ -290,7 +290,8 @@ fn a_payload_is_identified_in_tip_axes() {
         let written = added.inverse_dynamics(&q, &qd, &qdd).unwrap();
         let scale = given.iter().fold(0.0, |scale: f64, torque| scale.max(torque.abs()));
         for (given, written) in given.iter().zip(&written) {
-            assert!((given - written).abs() < 1e-9 * scale, "{given} {written}");
+            // the link of a file is made a possible body, which moves the ninth digit
+            assert!((given - written).abs() < 1e-8 * scale, "{given} {written}");
         }
     }
 }

@@ -121,8 +121,11 @@ fn a_payload_is_found_on_the_link_with_the_tip() {
     let motion = log(&loaded, 0.0);
     let found = Payload::identify(&robot, 2.0, |take| -> Result<(), MotionError> { take(&motion) }).unwrap();
     assert!(found.is_there() && (found.mass.value - mass).abs() < 0.02, "{found:?}");
-    for (found, truth) in found.com.iter().zip(com) {
-        assert!((found.value - truth).abs() < 0.01, "{found:?} {truth}");
+    // from the tip, whose axes are those of the link
+    let placement = robot.tip().placement;
+    assert!(placement.rpy.iter().all(|angle| angle.radians == 0.0));
+    for ((found, com), tip) in found.com.iter().zip(com).zip(placement.xyz) {
+        assert!((found.value - (com - tip)).abs() < 0.01, "{found:?} {com} {tip}");
     }
     let with = found.added_to(&robot).expect("a body");
     assert!((with.joints[2].row.link.mass - both).abs() < 0.02 && with.joints[4] == robot.joints[4]);

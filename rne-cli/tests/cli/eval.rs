@@ -414,7 +414,8 @@ fn a_mass_matrix_that_is_singular_but_for_rounding_has_no_accelerations() {
         let text = format!(
             "format: 2\nname: legs\nsource: own\nconvention: modified\ngravity: [0, 0, -9.81]\ntool: {{on: j1}}\n\
              floating_base: {{name: trunk, link: {{mass: 0}}}}\n\
-             contacts: [{{tip: tip, kind: point}}]\njoints:\n{legs}"
+             frames: [{{name: foot, on: j1, xyz: [0.2, 0, 0]}}]\ntips: [foot]\n\
+             contacts: [{{tip: foot, kind: point}}]\njoints:\n{legs}"
         );
         fs::write(&path, text).expect("a file");
         path.to_str().expect("UTF-8").to_owned()
