@@ -41,12 +41,10 @@ Examples:
   rne certify docs/desk_arm.yaml --check desk_arm.cert.md
   rne certify docs/desk_arm.yaml --observer --gain 20 --period 0.001
   rne certify docs/desk_arm_identified.yaml --friction --limits
-  rne certify docs/desk_arm.yaml --evidence evidence
 
 The command compiles the code of `rne emit --lang c`, reads its instructions by
 objdump, runs it in QEMU, compares the results with those of this computer, and
 bounds their error. It fails if the code branches, uses doubles or calls others.
-
 Needed: arm-none-eabi-gcc with objdump; used if installed: qemu-system-arm,
 cppcheck. See docs/assurance.md. For a file of `rne emit`, repeat its options.")]
 #[allow(clippy::struct_excessive_bools)] // options of a command

@@ -82,6 +82,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask page", ".ci/run", "step cargo xtask page --install\n"),
     ("cargo xtask playground", "xtask/src/verify.rs", "\"xtask\", \"playground\", \"--install\""),
     ("cargo xtask features", "xtask/src/verify.rs", "\"xtask\", \"features\""),
+    ("cargo xtask certify-all", ".ci/run", "step cargo xtask certify-all --install\n"),
     ("cargo xtask certificate", ".ci/run", "step cargo xtask certificate --install\n"),
     ("cargo xtask frozen", ".ci/run", "step cargo xtask frozen\n"),
     ("cargo xtask light", ".ci/run", "step cargo xtask light\n"),

@@ -132,7 +132,7 @@ fn every_command_has_the_remarks_of_the_import() {
             &["ops", file],
             &["emit", file, "--lang", "c"],
             &["show", file],
-            &["convert", file, "--to", "modified"],
+            &["convert", file, "--convention", "modified"],
         ] {
             assert_eq!(remarks(call), expected, "{call:?}");
         }

@@ -75,9 +75,10 @@ fn a_trick_is_left_out_with_what_needs_it() {
 fn a_plan_takes_nothing_from_other_functions() {
     let (robot, _) = arm("extreme");
     let emit = ["emit", &robot, "--function", "forward_dynamics", "--form", "reduced"];
-    fine(&emit);
+    // the arm loses digits in single precision, and a warning says so
+    assert_eq!(rne(&emit).status, 0);
     fine(&["search", &robot, "--seconds", "0"]);
-    fine(&emit);
+    assert_eq!(rne(&emit).status, 0);
 }
 
 /// Counts, quotients and a place: none of them is taken on trust.
