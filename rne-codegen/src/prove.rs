@@ -36,7 +36,7 @@ const LEAST_SCALE: f64 = 1e-2;
 pub struct Reference<'r> {
     robot: &'r Robot,
     faithful: Program,
-    /// The same with joints near the arm, where the table has them far away: numbers are compared with its numbers.
+    /// The program with joints near the arm, where the table has them far away: numbers are compared with its numbers.
     near: Option<Program>,
     /// The torques of motion, of which what the function returns are parts.
     motion: Option<Program>,

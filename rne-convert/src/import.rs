@@ -95,8 +95,8 @@ pub struct Account {
     pub change: Option<Difference>,
     /// Between the chain and the table as rne computes it: the rounding of the conversion.
     pub rounding: Difference,
-    /// What the import leaves out or assumes, and probable mistakes of the file: limits that it ignores, numbers in
-    /// other units.
+    /// Remarks on parts that the import leaves out or assumes, and probable mistakes of the file: limits that it
+    /// ignores, numbers in other units.
     pub remarks: Vec<Remark>,
     /// Whether the file is an MJCF file.
     pub is_mjcf: bool,

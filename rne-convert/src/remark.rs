@@ -1,4 +1,4 @@
-//! What an import leaves out or assumes: one list, which every door says in its own words.
+//! Remarks on parts that an import leaves out or assumes: one list, which every door prints in its own words.
 
 use std::fmt;
 

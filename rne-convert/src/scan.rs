@@ -22,7 +22,7 @@ const MAX_ELEMENTS: usize = 20_000;
 /// No number of an arm is larger, in SI units.
 pub(crate) const LARGEST: f64 = 1e9;
 
-/// A limit of a joint, infinite if there is none: for this, programs write their largest number, such as 1.8e308.
+/// A limit of a joint, infinite if it has no limit: for this, programs write their largest number, such as 1.8e308.
 pub(crate) fn end_of_range(value: f64) -> f64 {
     if value.abs() < LARGEST { value } else { f64::INFINITY.copysign(value) }
 }

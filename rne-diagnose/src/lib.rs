@@ -46,7 +46,8 @@ pub enum Diagnosis {
     Agrees(f64),
     /// These slips give them, the likeliest first; each explanation has as few slips as there must be.
     Explained(Vec<Explanation>),
-    /// None of the slips does, nor does any pair to [`COARSEST`] of the largest torque: how far the torques are off, in parts of the largest.
+    /// None of the slips does, nor does any pair to [`COARSEST`] of the largest torque: how far the torques are off, in
+    /// parts of the largest.
     Unexplained(f64),
 }
 

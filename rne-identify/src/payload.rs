@@ -1,9 +1,9 @@
 //! A payload: the rigid body that the link with the tip carries beyond what a robot file has. It is the last link of a
 //! serial arm.
 //!
-//! Its ten inertial parameters φ = (m, m c, J), about the origin of the tip frame and in its axes, add S T φ to the base
-//! parameters θ of the file, where S has the columns of the regrouping that belong to this link, and T moves φ to the
-//! frame of the link. With the normal matrix N and the right-hand side b of the log,
+//! Its ten inertial parameters φ = (m, m c, J), about the origin of the tip frame and in its axes, add S T φ to the
+//! base parameters θ of the file, where S has the columns of the regrouping that belong to this link, and T moves φ to
+//! the frame of the link. With the normal matrix N and the right-hand side b of the log,
 //!
 //! ```text
 //! G = Aᵀ N A    g = Aᵀ (b - N θ)    A = [S T  E]    (G + P) x = g + P x₀    covariance = (G + P)⁻¹
@@ -246,7 +246,8 @@ impl Payload {
 }
 
 /// The matrix T from inertial parameters about the origin of the tip frame, in its axes, to those in the frame of the
-/// link that carries it: with R and t of the tip, m, R h + m t, and R J Rᵀ + 2 (R h · t) 1 - R h tᵀ - t (R h)ᵀ + m (t² 1
+/// link that carries it: with R and t of the tip, m, R h + m t, and R J Rᵀ + 2 (R h · t) 1 - R h tᵀ - t (R h)ᵀ + m (t²
+/// 1
 /// - t tᵀ).
 fn of_tip(robot: &Robot) -> DMatrix<f64> {
     let Transform { xyz, rpy } = robot.tip().placement;

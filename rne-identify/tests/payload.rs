@@ -251,8 +251,8 @@ fn a_log_without_motion_has_a_mass_only_by_gravity() {
     }
 }
 
-/// The tip is turned and away from the last link: numbers and deviations are in tip axes, and the payload as an argument
-/// of functions is the one that the robot file has.
+/// The tip is turned and away from the last link: numbers and deviations are in tip axes, and the payload as an
+/// argument of functions is the one that the robot file has.
 #[test]
 fn a_payload_is_identified_in_tip_axes() {
     let geometry = read(&here("tests/logs/ur10_log.yaml"));

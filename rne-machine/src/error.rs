@@ -76,7 +76,7 @@ pub enum EvaluationError {
     },
     /// An argument has numbers that it cannot have.
     OutOfRange {
-        /// What is wrong.
+        /// The mistake.
         mistake: OutOfRange,
         /// The first state that has them, counted from 1.
         state: usize,

@@ -13,7 +13,7 @@ pub enum OutOfRange {
     Mass(NegativeMass),
     /// The duration of a step is not a finite number above zero, s.
     Step(f64),
-    /// The rotation of this argument is none.
+    /// The rotation of this argument is not a rotation.
     Rotation(String),
 }
 

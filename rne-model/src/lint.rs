@@ -201,7 +201,8 @@ pub(crate) fn triangle_inequality(cx: &Context, place: Range<usize>, moments: Op
         let is_known = !physical || c - (a + b) <= ROUNDED * c;
         let severity = if is_known { Severity::Note } else { Severity::Warning };
         let help = if physical {
-            "is one number wrong by a power of ten, or are two exchanged? Correct it; to keep the numbers of a published \
+            "is one number wrong by a power of ten, or are two exchanged? Correct it; to keep the numbers of a \
+             published \
              table, with which rne computes, write `physical: false`"
         } else {
             "rne computes with these numbers, as `physical: false` allows"

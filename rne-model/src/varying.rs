@@ -48,7 +48,8 @@ pub(crate) fn fixed(what: &'static str) -> impl Fn(&Context, &Node) -> Option<f6
         }
         let name = cx.parameter_name(quantity.first_parameter());
         let message = format!(
-            "{what} {} depends on the run-time parameter {}; only lengths (not `b` and `at`), gravity, the numbers under \
+            "{what} {} depends on the run-time parameter {}; only lengths (not `b` and `at`), gravity, the numbers \
+             under \
              `motor`, and the mass, centre of mass and inertia of a link that a joint moves may vary",
             quoted(cx.raw(node)),
             quoted(&name)

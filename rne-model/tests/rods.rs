@@ -31,7 +31,8 @@ pub(crate) fn thin(random: &mut impl FnMut() -> f64, sign: f64) -> [f64; 6] {
 }
 
 /// An element with so many significant digits, or so many decimals of the size of the tensor.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // small numbers of digits
+// small numbers of digits
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)]
 fn printed(elements: [f64; 6], digits: usize, fixed: bool) -> [String; 6] {
     let largest = elements.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
     let decimals = (digits as f64 - 1.0 - largest.log10().floor()) as usize;

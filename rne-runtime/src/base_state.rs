@@ -80,7 +80,8 @@ impl<T: Scalar> BaseMotion<T> {
     }
 
     /// From the first elements of Pinocchio's `q` (7), `v` (6) and `a` (6) with a free flyer, and gravity in the axes
-    /// in which `q` has the orientation: those of the placement of the free flyer, which are the world's in most models.
+    /// in which `q` has the orientation: those of the placement of the free flyer, which are the world's in most
+    /// models.
     ///
     /// Pinocchio's acceleration is spatial: the classical one of frame 0's origin is a + ω × v.
     #[must_use]
@@ -124,8 +125,8 @@ impl<T: Scalar> BaseMotion<T> {
 }
 
 impl<T: Scalar> Pose<T> {
-    /// From the first seven elements of Pinocchio's `q` with a free flyer: the position, then the quaternion x y z w. It
-    /// is the pose in the placement of the free flyer, which is the world in most models.
+    /// From the first seven elements of Pinocchio's `q` with a free flyer: the position, then the quaternion x y z w.
+    /// It is the pose in the placement of the free flyer, which is the world in most models.
     #[must_use]
     pub fn from_pinocchio(&[a, b, c, x, y, z, w]: &[T; 7]) -> Self {
         Self { rotation: Quaternion { w, x, y, z }.rotation(), translation: [a, b, c] }

@@ -55,8 +55,8 @@ mod integrator;
 #[cfg(feature = "std")]
 #[doc(hidden)]
 pub mod integrator_of_lists;
-/// Steps and their derivatives of a robot whose base nothing holds, with lists of joints: the Python package has robots of
-/// any number of joints.
+/// Steps and their derivatives of a robot whose base nothing holds, with lists of joints: the Python package has robots
+/// of any number of joints.
 #[doc(hidden)]
 pub mod floating_integrator_of_lists {
     pub use crate::floating_integrator::{Stage, moved, runge_kutta};

@@ -27,8 +27,8 @@ pub(crate) fn read(path: &str) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// Each form in each number type. Of an arm of many joints a plain `cargo test` takes each form and each number type once,
-/// because its C code is long: `every_robot.rs` takes all four.
+/// Each form in each number type. Of an arm of many joints a plain `cargo test` takes each form and each number type
+/// once, because its C code is long: `every_robot.rs` takes all four.
 fn units(dof: usize, is_sample: bool) -> impl Iterator<Item = (Form, Precision)> {
     let all = [Form::SevenSteps, Form::Reduced].into_iter().flat_map(|form| Precision::ALL.map(|of| (form, of)));
     all.filter(move |(form, of)| !is_sample || dof <= 4 || (*form == Form::SevenSteps) == (*of == Precision::Single))

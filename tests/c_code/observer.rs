@@ -24,8 +24,8 @@ fn units() -> impl Iterator<Item = (Form, Precision)> {
     [Form::SevenSteps, Form::Reduced].into_iter().flat_map(|form| Precision::ALL.map(|precision| (form, precision)))
 }
 
-/// The words of observers with these gains and periods in C: by form and number type, setting, tick and joint. One program
-/// computes them all.
+/// The words of observers with these gains and periods in C: by form and number type, setting, tick and joint. One
+/// program computes them all.
 fn of_c<const DOF: usize>(compiler: &Compiler, robot: &Robot, settings: &[[f64; 2]]) -> Vec<u64> {
     let (mut source, mut calls, mut input) = (INCLUDES.to_owned(), String::new(), Vec::new());
     for (form, precision) in units() {

@@ -58,7 +58,8 @@ fn urdf(joints: &[Joint]) -> String {
             "<joint name=\"j{0}\" type=\"{kind}\"><parent link=\"l{index}\"/><child link=\"l{0}\"/><origin \
              xyz=\"{x} {y} {z}\" rpy=\"{r} {p} {w}\"/><axis xyz=\"0 0 1\"/><limit lower=\"-3\" upper=\"3\" \
              effort=\"1\" velocity=\"1\"/></joint><link name=\"l{0}\"><inertial><origin xyz=\"{cx} {cy} {cz}\"/><mass \
-             value=\"{mass}\"/><inertia ixx=\"{xx}\" iyy=\"{yy}\" izz=\"{zz}\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial>\
+             value=\"{mass}\"/><inertia ixx=\"{xx}\" iyy=\"{yy}\" izz=\"{zz}\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/>\
+             </inertial>\
              </link>",
             index + 1
         );
@@ -74,7 +75,8 @@ fn near(joints: &[Joint]) -> Robot {
         let parent = if index == 0 { "base".to_owned() } else { format!("j{index}") };
         let _ = writeln!(
             text,
-            "  - {{name: j{}, parent: {parent}, type: {kind}, at: {{xyz: {xyz:?}, rpy: {rpy:?}}}, dh: {{theta: 0, d: 0, \
+            "  - {{name: j{}, parent: {parent}, type: {kind}, at: {{xyz: {xyz:?}, rpy: {rpy:?}}}, \
+             dh: {{theta: 0, d: 0, \
              a: 0, alpha: 0}}, limits: {{position: [-3, 3]}}, link: {{mass: {mass}, com: {com:?}, inertia: {{xx: {xx}, \
              yy: {yy}, zz: {zz}}}}}}}",
             index + 1

@@ -1,7 +1,7 @@
 //! Robots on floating bases: real ones beside Pinocchio, operations of the reduced form, and laws of mechanics.
 //!
-//! `tests/reference/floating.py` made the robot files and the values: `rne import --whole --floating` read the URDF, and so did
-//! Pinocchio, whose states have a quaternion and spatial vectors.
+//! `tests/reference/floating.py` made the robot files and the values: `rne import --whole --floating` read the URDF,
+//! and so did Pinocchio, whose states have a quaternion and spatial vectors.
 
 use nalgebra::Vector3;
 use rne::{

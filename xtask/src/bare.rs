@@ -34,7 +34,7 @@ pub(crate) struct Bare {
     target_dir: Option<PathBuf>,
 }
 
-/// What the README asks for besides Rust: a C compiler with its binutils, git, coreutils and a shell.
+/// The programs that the README asks for besides Rust: a C compiler with its binutils, git, coreutils and a shell.
 const TOOLS: [&str; 59] = [
     "cc",
     "ar",

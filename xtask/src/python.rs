@@ -113,7 +113,8 @@ impl Python {
     }
 }
 
-/// Functions from Python beside those of other packages, timed: the table that a script of `benches/peers/python` prints.
+/// Functions from Python beside those of other packages, timed: the table that a script of `benches/peers/python`
+/// prints.
 pub(crate) fn beside_peers(script: &str) -> Result<String> {
     let place = Place::new()?;
     let packages = [&TESTS[..], &PEERS, &[TOOLBOX]].concat();

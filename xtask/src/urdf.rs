@@ -19,11 +19,11 @@ const PACKAGES: [&str; 4] = ["pin==4.1.0", "mujoco==4.0.0", "example-robot-data=
 /// Imports real arms and compares them with Pinocchio
 ///
 /// Torques, mass matrix and tip of at least 12 arms of packages, in both conventions: to 1e-10 without snapping, and
-/// with it by no more than the import tells. `tests/reference/urdf.py` has the arms and the comparison. With a folder of URDFs of
-/// trees: all functions that Pinocchio has, of the whole robots that `tests/reference/trees.py` names, to 1e-12. With --mjcf: the
-/// torques of MuJoCo, of the MJCF files and URDFs in a folder, to 1e-9; MuJoCo saves each URDF as MJCF. With --corpora:
-/// all whole robots of the packages through every door of the Python wheel, right or refused with a reason, by
-/// `tests/reference/corpora.py`.
+/// with it by no more than the import tells. `tests/reference/urdf.py` has the arms and the comparison. With a folder
+/// of URDFs of trees: all functions that Pinocchio has, of the whole robots that `tests/reference/trees.py` names, to
+/// 1e-12. With --mjcf: the torques of MuJoCo, of the MJCF files and URDFs in a folder, to 1e-9; MuJoCo saves each URDF
+/// as MJCF. With --corpora: all whole robots of the packages through every door of the Python wheel, right or refused
+/// with a reason, by `tests/reference/corpora.py`.
 #[derive(Args)]
 #[command(after_help = "\
 Needs python3 with venv; Pinocchio and the arms are fetched into target/urdf/venv.

@@ -1,5 +1,6 @@
-//! The motion of a floating base in the vectors of other tools, as arguments of `Arm.inverse_dynamics_of_floating_base`,
-//! and its derivatives as their matrices: docs/conventions.md has the table of these conventions.
+//! The motion of a floating base in the vectors of other tools, as arguments of
+//! `Arm.inverse_dynamics_of_floating_base`, and its derivatives as their matrices: docs/conventions.md has the table of
+//! these conventions.
 
 use numpy::PyUntypedArrayMethods;
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -70,7 +71,8 @@ impl Numbers {
         let lengths = self.elements.chunks_exact(size).map(|q| q[first..end].iter().map(|x| x * x).sum::<f64>().sqrt());
         if let Some(length) = lengths.into_iter().find(|length| (length - 1.0).abs() > MOST_ROUNDED) {
             return Err(PyValueError::new_err(format!(
-                "`{}[{first}:{end}]` is a quaternion of the length {length:.4}, but it must have the length 1; its order \
+                "`{}[{first}:{end}]` is a quaternion of the length {length:.4}, but it must have the length 1; its \
+                 order \
                  is {order}",
                 self.name
             )));
@@ -171,7 +173,8 @@ pub(crate) fn base_from_imu<'py>(
         unit.rotation = std::array::from_fn(|row| std::array::from_fn(|column| rows.elements[3 * row + column]));
         if !unit.is_rigid() {
             return Err(PyValueError::new_err(
-                "`rotation` is no rotation: its three rows must have the length 1, be at right angles to each other, and \
+                "`rotation` is no rotation: its three rows must have the length 1, be at right angles to each other, \
+                 and \
                  be right-handed",
             ));
         }

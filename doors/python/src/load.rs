@@ -33,7 +33,8 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 ///     Path of a robot file, a URDF or an MJCF file, or its text, or the name of a built-in robot. A plan file beside a
 ///     robot file is honoured. The words on a URDF below hold for an MJCF file, too.
 /// tip, base : str, optional
-///     Of a URDF: the links at the ends of the arm. Without `base` the root; `tip` is needed where there are several. With
+///     Of a URDF: the links at the ends of the arm. Without `base` the root; `tip` is needed where there are several.
+///     With
 ///     `whole`, `tip` may be a list of links: they are the tips that carry wrenches, the first of them is the tip.
 /// whole : bool
 ///     Of a URDF: take all links after the base, a tree, and not one arm. `tip` is then the link that carries the tip.

@@ -42,7 +42,8 @@ pub(crate) fn payload<'py>(
     let moments = Inertia { xx, yy, zz, xy, xz, yz }.principal_moments();
     if let Some([least, ..]) = moments.filter(|&[least, _, most]| least < -1e-6 * most.abs()) {
         return Err(PyValueError::new_err(format!(
-            "`inertia` has a principal moment of {least:.3e} kg m²: no body has less than 0; write the inertia about the \
+            "`inertia` has a principal moment of {least:.3e} kg m²: no body has less than 0; write the inertia about \
+             the \
              centre of mass, not about the tip"
         )));
     }

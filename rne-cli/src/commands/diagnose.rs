@@ -59,7 +59,8 @@ pub(crate) struct Arguments {
     /// Force and moment of the tip on its environment, fx,fy,fz,nx,ny,nz, N and N m, in tip axes
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     wrench: Option<List>,
-    /// Accepted error of a torque, relative to the largest torque [default: half of the last digit of each number of --tau]
+    /// Accepted error of a torque, relative to the largest torque [default: half of the last digit of each number of
+    /// --tau]
     #[arg(long, value_name = "T", allow_hyphen_values = true,
         value_parser = checked(|part: &f64| (0.0..1.0).contains(part),
         "write a fraction of the largest torque, from 0 to below 1, such as --tolerance 1e-4"))]

@@ -230,7 +230,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-/// What code loses in single precision, unless it computes in double precision alone.
+/// The digits that code loses in single precision, unless it computes in double precision alone.
 fn losses(arguments: &Arguments, programs: &[Program]) -> String {
     let lines = rne_emit::losses(programs);
     if lines.is_empty() || arguments.casadi || arguments.real == Some(Real::Double) {

@@ -469,7 +469,8 @@ mod tests {
         assert!(used > 50 && refused > 500, "{used} used, {refused} refused");
     }
 
-    /// Functions that say that masses change them are changed by a payload, and the others are those of the links alone.
+    /// Functions that say that masses change them are changed by a payload, and the others are those of the links
+    /// alone.
     #[test]
     fn what_feels_links_is_what_a_payload_changes() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/satellite.yaml");

@@ -86,7 +86,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome::text(arguments.letters.page(&text, PAGE)))
 }
 
-/// What needs no robot: a link parameter, a function or a topic.
+/// A text that needs no robot: of a link parameter, a function or a topic.
 fn of_any_robot(name: &str) -> Option<String> {
     let of_parameter = LinkParameter::parse(name).map(|parameter| parameter.explained());
     of_parameter.or_else(|| of_function(name)).or_else(|| Topic::from_str(name, false).ok().map(of_topic))

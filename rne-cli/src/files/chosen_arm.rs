@@ -145,7 +145,7 @@ impl Carried {
         };
         if frame.on.is_none() {
             return Err(Failure::usage(if robot.floating_base.is_some() {
-                "--payload-on names a frame on the floating base; write a payload there into the list `bodies` of the file"
+                "--payload-on names a frame on the floating base; write a payload there into the list `bodies`"
             } else {
                 "--payload-on names a frame on the base, where a payload has no effect"
             }));

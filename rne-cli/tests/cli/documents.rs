@@ -186,8 +186,8 @@ fn of_rne(command: &str) -> Option<String> {
     Some(format!("rne {arguments}").replace("NAME", "puma560"))
 }
 
-/// Whether words stand for others: `FILE…`, `[--joint I]`, `COMMAND`; or no robot is named, so that the words name an option:
-/// `rne emit --tests`.
+/// Whether words stand for others: `FILE…`, `[--joint I]`, `COMMAND`; or no robot is named, so that the words name an
+/// option: `rne emit --tests`.
 fn is_pattern(command: &str) -> bool {
     command.contains(['…', '['])
         || ["COMMAND", "DIR", "FILE", "LINK", "TOPIC", "SHELL", "ROBOT"].iter().any(|word| command.contains(word))

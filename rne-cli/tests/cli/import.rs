@@ -105,7 +105,8 @@ fn every_command_has_the_remarks_of_the_import() {
                 stiffness=\"2\"/><inertial pos=\"0 0 1\" mass=\"1\" diaginertia=\"1 1 1\"/></body></worldbody>\
                 <tendon><fixed name=\"t\" armature=\"1\"><joint joint=\"j\" coef=\"1\"/></fixed></tendon></mujoco>";
     let hand = "<robot name=\"h\"><link name=\"base\"><inertial><mass value=\"7\"/><inertia ixx=\"1\" iyy=\"1\" \
-                izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link><link name=\"l\"><inertial><mass value=\"1\"/>\
+                izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link><link name=\"l\"><inertial>\
+                <mass value=\"1\"/>\
                 <inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>\
                 <joint name=\"j\" type=\"continuous\"><parent link=\"base\"/><child link=\"l\"/><origin rpy=\"9 0 0\"/>\
                 </joint></robot>";

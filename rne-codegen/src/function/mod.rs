@@ -228,8 +228,8 @@ impl Function {
             || matches!(self.capability(), Capability::FloatingEnergy | Capability::FloatingEulerStep)
     }
 
-    /// Whether a robot has the base and the contacts that the function needs. The compiler takes a robot whose file has no
-    /// `floating_base` as one whose base has no mass; whoever computes numbers of the robot asks this first, because
+    /// Whether a robot has the base and the contacts that the function needs. The compiler takes a robot whose file has
+    /// no `floating_base` as one whose base has no mass; whoever computes numbers of the robot asks this first, because
     /// that mass was probably left out.
     ///
     /// # Errors

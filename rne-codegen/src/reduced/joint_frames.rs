@@ -15,8 +15,8 @@ use crate::reduced::gyrostats::{Carrier, put_rotors};
 use crate::reduced::link_parameters::{about_x, about_z, apply, compose, transpose};
 use crate::reduced::{Gyrostat, IDENTITY, PseudoInertia, Square, Triple};
 
-/// Frames stand far from the arm if one is farther from it than this, in parts of the longest way within the arm: second
-/// moments then lose more than two digits.
+/// Frames stand far from the arm if one is farther from it than this, in parts of the longest way within the arm:
+/// second moments then lose more than two digits.
 const FAR: f64 = 10.0;
 
 /// How far along its axis a point near the arm is from where the table has each joint; `None` where the frames of the

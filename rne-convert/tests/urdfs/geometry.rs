@@ -30,7 +30,8 @@ fn the_largest_number_is_no_limit() {
         none(pendulum(&format!("<limit {}/>", limit.replace(&format!("-{largest}"), "-1"))));
         for angle in ["degree", "radian"] {
             none(format!(
-                "<mujoco><compiler angle='{angle}'/><worldbody><body><joint range='-{largest} {largest}' limited='true' \
+                "<mujoco><compiler angle='{angle}'/><worldbody><body><joint range='-{largest} {largest}' \
+                 limited='true' \
                  actuatorfrcrange='-{largest} {largest}' actuatorfrclimited='true'/>\
                  <inertial pos='0 0 1' mass='1' diaginertia='1 1 1'/></body></worldbody></mujoco>"
             ));

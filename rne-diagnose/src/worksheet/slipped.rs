@@ -35,7 +35,7 @@ pub(super) fn all(robot: &Robot, at: &Situation, sheet: &Worksheet) -> Result<Ve
     Ok(all)
 }
 
-/// Joints that stand where they do not: at the angle of a joint beside, at zero, or on the other side.
+/// Joints at wrong positions: at the angle of a joint beside, at zero, or on the other side.
 fn of_positions(robot: &Robot, at: &Situation, sheet: &Worksheet) -> Result<Vec<Slipped>, WrongLength> {
     let mut all = Vec::new();
     let revolute = |joint: usize| robot.joints.get(joint).filter(|joint| joint.row.kind == JointKind::Revolute);

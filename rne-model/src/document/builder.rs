@@ -110,7 +110,7 @@ impl<'t> Builder<'t> {
         })
     }
 
-    /// What solves most syntax errors: a comma before a key, or the innermost bracket that is still open.
+    /// The help that solves most syntax errors: a comma before a key, or the innermost bracket that is still open.
     fn open_bracket(&self, at: usize) -> Option<String> {
         let start = self.stack.last()?.start;
         let bracket = self.text.get(start..)?.chars().next().filter(|c| matches!(c, '[' | '{'))?;
