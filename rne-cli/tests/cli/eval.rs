@@ -381,7 +381,12 @@ fn functions_take_their_arguments_and_no_others() {
     // a function of a floating base, of every kind
     for function in ["floating_mass_matrix", "centroidal_momentum_matrix", "floating_potential_energy", "tip_jacobians"]
     {
-        call(2, function, &q, &[function, "the file of planar2 has no `floating_base`", "Import the whole robot with a floating base"]);
+        call(
+            2,
+            function,
+            &q,
+            &[function, "the file of planar2 has no `floating_base`", "Import the whole robot with a floating base"],
+        );
         let emitted = ["emit", robot, "--lang", "c", "--function", function];
         fails(2, &emitted, &["the file of planar2 has no `floating_base`"]);
     }
