@@ -101,11 +101,6 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     // it fetches Cyclone DDS, and measures for a minute
     ("cargo xtask ros2", "xtask/src/main.rs", "Ros2(ros2::Ros2)"),
     (".ci/run", ".ci/run", "#!/usr/bin/env bash"),
-    (
-        "python3 rne-certify/checker/check_c.py",
-        "rne-cli/tests/cli/certify.rs",
-        "Command::new(\"python3\").arg(checker)",
-    ),
     // of an object that a compiler of the user has made
     ("arm-none-eabi-nm -u my_arm.o", "rne-cli/tests/cli/certify_trees.rs", "Command::new(\"arm-none-eabi-nm\")"),
     // in a firmware that rne has written
