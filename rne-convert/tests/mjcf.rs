@@ -297,7 +297,7 @@ fn every_mistake_has_its_message_and_its_place() {
         ("0 0 1", "0 0", 4, "it must be 3 numbers"),
         ("diaginertia=\"1 1 1\"", "", 4, "lacks `diaginertia`"),
         ("diaginertia", "fullinertia=\"1 1 1 0 0 0\" diaginertia", 4, "two inertias"),
-        ("diaginertia=\"1 1 1\"", "fullinertia=\"1 1 1 2 0 0\"", 5, "no body has a negative one"),
+        ("diaginertia=\"1 1 1\"", "fullinertia=\"1 1 1 2 0 0\"", 4, "no body has a negative one"),
         ("diaginertia", "quat=\"0 0 0 0\" diaginertia", 4, "it has no direction"),
         ("diaginertia", "quat=\"1 0 0 0\" euler=\"0 0 0\" diaginertia", 4, "several orientations"),
         ("<joint name=\"j\"/>", "<joint name=\"j\" axis=\"0 0 0\"/>", 5, "has no direction"),
