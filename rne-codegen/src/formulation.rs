@@ -6,6 +6,7 @@ use crate::formulate;
 use crate::function::Function;
 use crate::ir::{Builder, Cost, Embedding, Name, Policy, Traced};
 use crate::program::Scales;
+use crate::reduced::near_origins;
 
 /// A function as a graph that has not been lowered: what it returns, by name, and the graph of that with its trace.
 #[allow(missing_debug_implementations)] // a graph of thousands of nodes
@@ -33,7 +34,10 @@ impl Formulation {
         Self::on(Builder::explained(Policy::Structure, Embedding::default(), function), robot, function)
     }
 
-    fn on(builder: Builder, robot: &Robot, function: Function) -> Self {
+    fn on(mut builder: Builder, robot: &Robot, function: Function) -> Self {
+        if builder.moves_origins && !function.is_of_table_points() {
+            builder.origins = near_origins(robot);
+        }
         let (names, outputs) = formulate::outputs(&builder, robot, function).into_iter().unzip();
         Self { names, traced: builder.finish(outputs), scales: Vec::new() }
     }

@@ -10,6 +10,7 @@ use crate::ir::{Exactly, Policy, Quantity};
 use crate::lower::{Heading, lower};
 use crate::program::{Program, Proof};
 use crate::prove::{self, Reference};
+use crate::reduced::near_origins;
 
 /// Sums and products of a function that are compiled: `inverse_dynamics_derivatives` of an arm of 40 joints in which
 /// nothing folds. Its text is some 15 MB.
@@ -77,7 +78,9 @@ impl<'r> Reference<'r> {
             let Formulation { names, traced, .. } = Formulation::near(robot, function);
             Ok(lower(&heading, traced, &names)?.0)
         };
-        Self::new(robot, seven_steps, compiled)
+        let function = seven_steps.function;
+        let is_far = !function.is_of_table_points() && near_origins(robot).is_some();
+        Self::new(robot, seven_steps, is_far, compiled)
     }
 
     /// The evidence that a formulation, arranged as a build arranges it, is that of the seven steps.

@@ -11,7 +11,6 @@ use crate::function::Function;
 use crate::interpret::{Arguments, Interpreter, Real};
 use crate::ir::{Axis, Embedding, Exactly, Input, Name, Quantity, Residue, SamplePoint, composed, operators};
 use crate::program::{Program, Proof};
-use crate::reduced::near_origins;
 use crate::refusal::{largest_loss, largest_rounding};
 use crate::{CompileError, Suspect};
 
@@ -43,20 +42,21 @@ pub struct Reference<'r> {
 }
 
 impl<'r> Reference<'r> {
-    /// `compiled` compiles a function of the robot by the seven steps, with joints near the arm.
+    /// `compiled` compiles a function of the robot by the seven steps, with joints near the arm. `is_far` says that the
+    /// table has joints far from the arm.
     ///
     /// # Errors
     /// When they cannot be compiled.
     pub(crate) fn new(
         robot: &'r Robot,
         faithful: Program,
+        is_far: bool,
         compiled: impl Fn(Function) -> Result<Program, CompileError>,
     ) -> Result<Self, CompileError> {
         let function = faithful.function;
         let of_motion =
             if function.is_of_closed_loops() { Function::InverseDynamicsOfLoops } else { Function::InverseDynamics };
         let motion = if function.entry().is_of_motion { Some(compiled(of_motion)?) } else { None };
-        let is_far = near_origins(robot).is_some() && !function.is_of_table_points();
         let near = if is_far { Some(compiled(function)?) } else { None };
         Ok(Self { robot, faithful, near, motion })
     }

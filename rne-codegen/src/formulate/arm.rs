@@ -27,7 +27,6 @@ use crate::coordinates::Coordinates;
 use crate::formulate::Spin;
 use crate::function::Argument;
 use crate::ir::{Axis, Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
-use crate::reduced::near_origins;
 
 /// Where a joint, or the tip frame, is mounted on its parent link: the constants between a link and what it carries.
 #[derive(Clone, Copy)]
@@ -105,8 +104,7 @@ impl<'s> Arm<'s> {
         let twists: Vec<_> =
             rows.iter().enumerate().map(|(index, row)| turn_about_x(builder, robot, index, &row.dh.alpha)).collect();
         let floating_base = floating_base(builder, robot);
-        let near =
-            if builder.moves_origins && !builder.function.is_of_table_points() { near_origins(robot) } else { None };
+        let near = builder.origins.clone();
         // where joints are near the arm: from there to the link frame of the table
         let mut ends: Vec<Vector<'s>> = Vec::new();
         let mut links: Vec<Link<'s>> = Vec::with_capacity(joints);

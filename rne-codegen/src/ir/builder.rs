@@ -32,6 +32,8 @@ pub(crate) struct Builder {
     pub(crate) function: Function,
     /// Whether joints may be taken to be at other points of their axes than the table has them.
     pub(crate) moves_origins: bool,
+    /// How far along its axis each joint is from where the table has it, where the table has joints far from the arm.
+    pub(crate) origins: Option<Vec<f64>>,
     /// The variable of the derivatives that are being written.
     by: Cell<Option<WithRespectTo>>,
     /// The motion of the joints in the formulas that are being written.
@@ -65,6 +67,7 @@ impl Builder {
             function,
             // the seven steps have the joints where the table has them
             moves_origins: policy != Policy::Structure,
+            origins: None,
             by: Cell::new(None),
             moving: Cell::default(),
             is_unnamed: Cell::default(),
