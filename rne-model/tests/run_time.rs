@@ -168,7 +168,8 @@ fn errors() {
             "twist",
             ("unit: 1", "unit: 1"),
             (11, 47, "twist"),
-            "the angle `twist` depends on the run-time parameter `twist`; only lengths (not `b` and `at`), gravity",
+            "the angle `twist` depends on the run-time parameter `twist`; only lengths (not `b` and `at`), gravity, \
+             the numbers",
             "remove `twist` from the run-time parameters: rne then uses its value in the file",
         ),
         ("h", ("theta: 0,", "theta: h - pi,"), (11, 17, "h - pi"), "the angle `h - pi` depends on", "remove `h` from"),

@@ -81,7 +81,7 @@ fn with_type<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     value.py().import("numpy")?.call_method1("asarray", (value,))
 }
 
-/// The shape of an argument of real numbers; `None` of what is none, which is refused later.
+/// The shape of an argument of real numbers; `None` for another kind of value, which is refused later.
 pub(crate) fn shape_of(value: &Bound<'_, PyAny>) -> PyResult<Option<Vec<usize>>> {
     let shape =
         |array: &Bound<'_, PyUntypedArray>| b"fiub".contains(&array.dtype().kind()).then(|| array.shape().to_vec());
