@@ -59,7 +59,11 @@ fn mistakes_in_contacts_are_told_at_their_place() {
     }
     for (key, said) in [
         ("first_moment: [0, 0, 0]", "only the link of a joint has this key"),
-        ("mass: m", "only lengths (not `b` and `at`), gravity, the numbers under `motor`, and the mass"),
+        (
+            "mass: m",
+            "only lengths (not `b` and `at`), gravity, the numbers under `motor`, and the mass, centre of mass and \
+             inertia of a link",
+        ),
     ] {
         let base = FLOATING.replace("mass: 1", &format!("mass: 1, {key}")).replace("mass: 1, mass", "mass");
         let text = format!("parameters: {{m: 1}}\n{}", text(2, &base, "[]"));
