@@ -305,6 +305,9 @@ fn fits_together(arguments: &Arguments) -> Result<(), Failure> {
              {TYPED}--lang c{TYPED:#}"
         )));
     }
+    if arguments.evidence.is_some() {
+        certify_trace::check_options(arguments, &arguments.programs())?;
+    }
     if !arguments.observer {
         return Ok(());
     }

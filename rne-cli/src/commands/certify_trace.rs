@@ -21,6 +21,18 @@ use crate::palette::{TITLE, TYPED};
 /// The functions that the checker computes.
 const CHECKED: [Function; 3] = [Function::InverseDynamics, Function::BiasTorques, Function::GravityTorques];
 
+/// Refuses evidence of code that the checker does not read.
+pub(super) fn check_options(arguments: &Arguments, functions: &[Function]) -> Result<(), Failure> {
+    if arguments.lang == Language::C && functions.iter().any(|function| CHECKED.contains(function)) {
+        return Ok(());
+    }
+    Err(Failure::usage(format_args!(
+        "{TYPED}--evidence{TYPED:#} is for code in C with one of {}, which the checker computes; give one of them in \
+         {TYPED}--function{TYPED:#}",
+        CHECKED.map(Function::name).join(", ")
+    )))
+}
+
 /// The keys of the robot file that the checker does not support.
 fn not_supported(robot: &Robot) -> Vec<&'static str> {
     let keys = [
@@ -41,19 +53,12 @@ pub(super) fn write(
     programs: &[Program],
     bytes: &[u8],
 ) -> Result<String, Failure> {
-    let checked: Vec<&Program> = programs.iter().filter(|program| CHECKED.contains(&program.function)).collect();
-    if arguments.lang != Language::C || checked.is_empty() {
-        return Err(Failure::usage(format_args!(
-            "{TYPED}--evidence{TYPED:#} is for code in C with one of {}, which the checker computes; give one of \
-             them in {TYPED}--function{TYPED:#}",
-            CHECKED.map(Function::name).join(", ")
-        )));
-    }
+    let checked = programs.iter().filter(|program| CHECKED.contains(&program.function));
     let compiler = Compiler::new(&arguments.file, robot);
     let precision = arguments.real.map_or(Precision::Single, Real::precision);
     let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
     let mut functions = Vec::new();
-    for &program in &checked {
+    for program in checked.clone() {
         let Some(derivation) = compiler.derivation(program)? else {
             return Err(Failure::usage(format_args!(
                 "{TYPED}--evidence{TYPED:#} is for {TYPED}--form reduced{TYPED:#}: the constants of this code are \
@@ -65,7 +70,7 @@ pub(super) fn write(
     let (code, stem) = (arguments.c_code(robot, programs, bytes, precision)?, stem(arguments, robot));
     let header = format!("{stem}.h");
     let source = code.source(&header);
-    let names = checked.iter().map(|program| format!("{prefix}_{}", program.function)).collect::<Vec<_>>();
+    let names = checked.map(|program| format!("{prefix}_{}", program.function)).collect::<Vec<_>>();
     let mut trace = json!({
         "prefix": prefix.to_string(),
         "real": precision.c_type(),
