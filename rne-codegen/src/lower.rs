@@ -229,8 +229,8 @@ impl<'w> Lowering<'w> {
     }
 
     /// A term without a name that is used more than once, and a leaf without a name, are called after the quantity
-    /// in which they first stood. Other names may look alike, and what a language tells apart is their text: a number
-    /// that gives a text of them is left out.
+    /// in which they first stood; a sum of another unit is called after what it adds. Other names may look alike, and
+    /// what a language tells apart is their text: a number that gives a text of them is left out.
     fn name_shared_terms(&mut self) {
         let given = self.names.iter().flatten().map(|given| given.name);
         let defined = self.written.trace.definitions.iter().map(|definition| definition.name);
@@ -256,6 +256,7 @@ impl<'w> Lowering<'w> {
                     indices: between.get(&(birth.place.quantity, birth.place.joint)).copied().unwrap_or_default(),
                     ..Name::scalar(birth.place.quantity, birth.place.joint)
                 });
+            let base = self.summand_of_another_unit(id, base).unwrap_or(base);
             // counted among those that look alike: of some quantities a name does not tell the joint
             let part =
                 parts.entry(Name { joint: if base.tells_joint() { base.joint } else { 0 }, ..base }).or_default();
@@ -270,6 +271,18 @@ impl<'w> Lowering<'w> {
             let negative = !is_constant && self.is_negative(id);
             self.names[index] = Some(Given { name, negative });
         }
+    }
+
+    /// What a sum adds, where its unit is not that of `name`: a moment that is part of a force divided by a length is
+    /// called a moment. Units are those of a revolute joint; a quantity without one says nothing.
+    fn summand_of_another_unit(&self, id: Ref, name: Name) -> Option<Name> {
+        let Op::Sum(a, b) = self.written.graph.op(id) else { return None };
+        let unit = |name: Name| name.quantity.unit(JointKind::Revolute);
+        [a, b].map(Ref::magnitude).into_iter().find_map(|summand| match self.names[summand.index()] {
+            None => self.summand_of_another_unit(summand, name),
+            Some(given) if [unit(name), unit(given.name)].contains(&"") => None,
+            Some(given) => (unit(name) != unit(given.name)).then_some(Name { part: 0, ..given.name }),
+        })
     }
 
     /// Whether what a node computes is written with a minus sign in front: signs are carried outwards.

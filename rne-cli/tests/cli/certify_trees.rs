@@ -313,7 +313,7 @@ fn the_flags_of_the_page_give_code_without_a_library() {
     for flags in rows {
         assert_eq!(undefined(flags), "", "{flags}");
     }
-    for flags in ["-mcpu=cortex-m4 -mthumb", "-mcpu=cortex-m0 -mthumb"] {
+    for flags in ["-mcpu=cortex-m4 -mthumb -DRNE_SOFT_FLOAT", "-mcpu=cortex-m0 -mthumb -DRNE_SOFT_FLOAT"] {
         assert!(undefined(flags).contains("__aeabi_fmul"), "{flags}");
     }
 }

@@ -235,6 +235,10 @@ fn settings_that_spoil_the_sine_are_refused() {
         };
         assert_eq!(says(&[]), "", "{real}");
         assert!(says(&["-ffast-math"]).contains("the sine needs"), "{real}");
+        // as on a processor of Arm without hardware for floating-point numbers
+        let is_slow = !cfg!(target_arch = "aarch64") && real == "float";
+        assert_eq!(says(&["-D__ARM_ARCH=7"]).contains("-DRNE_SOFT_FLOAT to allow it"), is_slow, "{real}");
+        assert_eq!(says(&["-D__ARM_ARCH=7", "-DRNE_SOFT_FLOAT"]), "", "{real}");
         assert_eq!(says(&["-ffast-math", "-DRNE_SIN_COS=sincos_of_the_board"]), "", "{real}");
         let is_gcc = says(&["-v"]).contains("gcc version");
         if is_gcc {

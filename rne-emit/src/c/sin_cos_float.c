@@ -1,3 +1,6 @@
+#if defined(__ARM_ARCH) && !defined(__ARM_FP) && !defined(RNE_SOFT_FLOAT)
+#error "float is computed by a library: add -mfpu and -mfloat-abi=hard, or -DRNE_SOFT_FLOAT to allow it"
+#endif
 #ifdef RNE_SIN_COS
 
 // From outside.
