@@ -40,7 +40,7 @@ pub(crate) fn lower(
     let outputs: Vec<(Name, Ref)> = names.iter().copied().zip(written.graph.outputs.iter().copied()).collect();
     let uses = count_uses(&written);
     drop_unused(&mut written, &uses);
-    let lowering = Lowering::new(&written, uses);
+    let lowering = Lowering::new(&written, uses, heading.form);
     let constants = lowering.constants()?;
     let exactly = constants.iter().map(|(constant, at)| (constant.name, lowering.exactly(constant, *at))).collect();
     derivation::note_program(&exactly);
@@ -161,6 +161,7 @@ struct Given {
 
 struct Lowering<'w> {
     written: &'w Traced,
+    form: Form,
     uses: Vec<usize>,
     is_output: Vec<bool>,
     names: Vec<Option<Given>>,
@@ -169,14 +170,14 @@ struct Lowering<'w> {
 }
 
 impl<'w> Lowering<'w> {
-    fn new(written: &'w Traced, uses: Vec<usize>) -> Self {
+    fn new(written: &'w Traced, uses: Vec<usize>, form: Form) -> Self {
         let mut is_output = vec![false; uses.len()];
         for at in &written.graph.outputs {
             is_output[at.index()] = true;
         }
         let definitions = written.trace.definitions.iter();
         let signs = definitions.map(|definition| (definition.name, definition.at.is_negative())).collect();
-        let mut lowering = Self { written, names: vec![None; uses.len()], uses, is_output, signs };
+        let mut lowering = Self { written, form, names: vec![None; uses.len()], uses, is_output, signs };
         lowering.take_given_names();
         lowering.name_shared_terms();
         lowering
@@ -274,9 +275,10 @@ impl<'w> Lowering<'w> {
     }
 
     /// What a sum adds, where its unit is not that of `name`: a moment that is part of a force divided by a length is
-    /// called a moment. Units are those of a revolute joint; a quantity without one says nothing.
+    /// called a moment. Units are those of a revolute joint; a quantity without one says nothing. In the seven steps, a
+    /// term is a part of one equation of the lecture, and keeps its name.
     fn summand_of_another_unit(&self, id: Ref, name: Name) -> Option<Name> {
-        let Op::Sum(a, b) = self.written.graph.op(id) else { return None };
+        let (Form::Reduced, Op::Sum(a, b)) = (self.form, self.written.graph.op(id)) else { return None };
         let unit = |name: Name| name.quantity.unit(JointKind::Revolute);
         [a, b].map(Ref::magnitude).into_iter().find_map(|summand| match self.names[summand.index()] {
             None => self.summand_of_another_unit(summand, name),

@@ -75,13 +75,13 @@ fn check(robot: &Robot) {
 
 #[test]
 fn names_are_defined_before_they_are_used() {
-    const MOST: u64 = 4;
+    const MOST: u64 = 2;
     let read = |text: &str| {
         let read = Reader::new("robot").trees().couplings().read(text);
         read.unwrap_or_else(|report| panic!("{report}")).robot
     };
     check(&read(include_str!("../../docs/palletiser.yaml")));
-    for seed in 0..if shipped::is_exhaustive() { 20 * MOST } else { MOST } {
+    for seed in 0..if shipped::is_exhaustive() { 40 * MOST } else { MOST } {
         let dof = 2 + usize::try_from(seed).expect("small") % 4;
         check(&couplings::robots(seed, dof).1);
         check(&motors::robot(seed, dof, motors::Shape::Any, seed % 2 == 0));
