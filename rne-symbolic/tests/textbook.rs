@@ -157,7 +157,7 @@ fn a_parameter_that_an_angle_or_a_root_depends_on_is_a_number() {
     );
     assert_eq!(form.mass(0, 0).as_deref(), Some("(1/9) m b² + I1_zz"));
     let text = form.text();
-    for part in ["\n    m = 2 kg, b = 0.4\n", "I1_zz = 1.7320508075688772 kg m²", "θ1 = q1 + 0.2 rad"] {
+    for part in ["\n    m = 2 kg, b = 0.4 m\n", "I1_zz = 1.7320508075688772 kg m²", "θ1 = q1 + 0.2 rad"] {
         assert!(text.contains(part), "no `{part}` in {text}");
     }
 }
