@@ -1,8 +1,10 @@
 //! The names of the numbers in generated code: what they look like, and that two variables of one name are refused,
 //! whoever made them.
 
-use rne_codegen::{Axis, CompileError, Compiler, Form, Function, Name, Program, Quantity};
-use rne_model::{Reader, Robot};
+mod common;
+
+use rne_codegen::{Axis, CompileError, Compiler, Form, Function, Name, Operator, Program, Quantity, Value};
+use rne_model::{JointKind, Reader, Robot};
 
 #[test]
 fn names_are_the_interface() {
@@ -61,6 +63,27 @@ fn shared_terms_name_the_links_of_their_joint() {
         }
     }
     assert!(shared > 0, "no shared term of a joint whose parent is not the joint before");
+}
+
+/// A part of a force that is a moment over a length is called a moment: whoever reads the code adds moments there.
+#[test]
+fn a_shared_sum_has_the_unit_of_what_it_adds() {
+    let unit = |name: Name| Some(name.quantity.unit(JointKind::Revolute)).filter(|unit| !unit.is_empty());
+    let mut renamed = 0;
+    for robot in common::all() {
+        let program = Compiler::new(&robot).compile(Function::InverseDynamics, Form::Reduced).expect("a program");
+        for statement in program.statements.iter().filter(|statement| statement.name.part > 0) {
+            let Value::Binary(Operator::Sum | Operator::Difference, a, b) = program.values.get(statement.value) else {
+                continue;
+            };
+            let Some(own) = unit(statement.name) else { continue };
+            let added: Vec<&str> =
+                [a, b].into_iter().filter_map(|id| unit(program.values.name(id)?)).collect();
+            assert!(added.is_empty() || added.contains(&own), "{}: {}", robot.name, statement.name);
+            renamed += usize::from(statement.place.quantity != statement.name.quantity);
+        }
+    }
+    assert!(renamed > 0, "no part of a quantity has another unit");
 }
 
 fn rod() -> Program {

@@ -261,6 +261,13 @@ const STEPS: &[Step] = &[
         needs: Needs::Nothing,
     },
     Step {
+        name: "mpc",
+        about: "optimal control of the example, whose solver CMake builds",
+        variables: &[],
+        command: &["cargo", "test", "--manifest-path", "examples/mpc/Cargo.toml", "--locked"],
+        needs: Needs::Packages(&["cmake", "g++"]),
+    },
+    Step {
         name: "deny",
         about: "licences, sources and duplicates of dependencies",
         variables: &[],
