@@ -77,8 +77,7 @@ fn a_shared_sum_has_the_unit_of_what_it_adds() {
                 continue;
             };
             let Some(own) = unit(statement.name) else { continue };
-            let added: Vec<&str> =
-                [a, b].into_iter().filter_map(|id| unit(program.values.name(id)?)).collect();
+            let added: Vec<&str> = [a, b].into_iter().filter_map(|id| unit(program.values.name(id)?)).collect();
             assert!(added.is_empty() || added.contains(&own), "{}: {}", robot.name, statement.name);
             renamed += usize::from(statement.place.quantity != statement.name.quantity);
         }
