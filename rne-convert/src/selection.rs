@@ -135,7 +135,7 @@ fn listed(urdf: &Urdf, leaves: &[(usize, usize)]) -> String {
 const OF_TIPS: [&str; 8] = ["foot", "hand", "flange", "end_effector", "endeffector", "ee", "tool", "tcp"];
 
 /// How probable it is that a leaf is the tip, by its name: `tool0` is the tip by convention (ROS REP 199, and
-/// ROS-Industrial before it), then names with the words of tips, `tcp` (tool centre point) first. `ee` and `hand` end a
+/// ROS-Industrial before it), as is `tip`, the name that `rne export` writes, then names with the words of tips, `tcp` (tool centre point) first. `ee` and `hand` end a
 /// name, but for `_link`, because other words and fingers contain them. A leaf that follows another joint, such as the
 /// second finger of a gripper, comes after the others, and what is drawn or spins in a motor last.
 fn rank(urdf: &Urdf, base: usize, leaf: usize) -> usize {
@@ -153,7 +153,7 @@ fn rank(urdf: &Urdf, base: usize, leaf: usize) -> usize {
         0
     } else if follows {
         1
-    } else if name == "tool0" {
+    } else if name == "tool0" || name == "tip" {
         OTHER + OF_TIPS.len() + 1
     } else {
         OTHER + OF_TIPS.iter().rposition(has).map_or(0, |place| place + 1)
@@ -179,9 +179,14 @@ pub(crate) fn tip(urdf: &Urdf, base: usize, selection: &Selection) -> Result<End
     }
     // leaves without a movable joint are sensors on the base, or marks on it
     let moved: Vec<usize> = leaves.iter().filter(|(_, joints)| *joints > 0).map(|(leaf, _)| *leaf).collect();
-    // of leaves that are equally probable, the last one
+    // of leaves that are equally probable, the last of those whose last joint moves no other joint's leaf
+    let carries_none = |leaf: usize, leaves: &[usize]| {
+        let Some(joint) = last_movable(urdf, base, leaf) else { return false };
+        leaves.iter().all(|&other| last_movable(urdf, base, other) == Some(joint) || !is_beyond(urdf, joint, other))
+    };
     let end = |mut others: Vec<usize>| {
-        let likeliest = (0..others.len()).max_by_key(|&at| rank(urdf, base, others[at]));
+        let likeliest =
+            (0..others.len()).max_by_key(|&at| (rank(urdf, base, others[at]), carries_none(others[at], &others)));
         let link = others.remove(likeliest.unwrap_or(others.len() - 1));
         Ok(End { link, others })
     };
@@ -198,6 +203,17 @@ pub(crate) fn tip(urdf: &Urdf, base: usize, selection: &Selection) -> Result<End
         format!("{} has {} end links, so you must name the tip", quoted(&urdf.links[base].name), leaves.len());
     let help = format!("the tip is one of these links, or a link before it:\n{}", listed(urdf, &leaves));
     Err(urdf.source.error_with(&urdf.links[base].span, message, help, &Remedy::NameTip))
+}
+
+/// Whether a joint moves a link.
+fn is_beyond(urdf: &Urdf, joint: usize, mut link: usize) -> bool {
+    while let Some(parent) = urdf.links[link].parent {
+        if parent == joint {
+            return true;
+        }
+        link = urdf.joints[parent].parent;
+    }
+    false
 }
 
 /// The last movable joint before a link.

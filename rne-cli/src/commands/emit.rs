@@ -456,6 +456,7 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
     };
     // a function by its name is refused by the compiler, which says why the robot has it not
     let of_robot: Vec<Function> = match asked.as_slice() {
+        [] if arguments.runge_kutta => Function::of_robot(robot).chain([Function::ForwardDynamics]).collect(),
         [] => Function::of_robot(robot).collect(),
         _ => Function::ALL.to_vec(),
     };

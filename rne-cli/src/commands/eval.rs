@@ -30,7 +30,7 @@ use crate::values::closure;
 use crate::values::definite::{BUT_FOR_ROUNDING, NOT_DEFINITE, is_indefinite, is_singular};
 use crate::values::limits;
 use crate::values::numbers::{List, duration};
-use crate::values::state::{Given, State, TipWrench};
+use crate::values::state::{Given, State, TipWrench, payload};
 
 /// Compute torques, or another function of an arm, at given states
 #[derive(Args)]
@@ -155,7 +155,7 @@ pub(crate) const DIGITS_BY_HAND: u8 = 4;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let (robot, lints) = arguments.robot()?;
-    let remark = degrees(arguments, &robot) + &lints;
+    let remark = degrees(arguments, &robot) + &impossible_payload(arguments) + &lints;
     let outcome = computed(arguments, robot)?;
     let outcome = Outcome { remark: outcome.remark + &remark, ..outcome };
     let letters = arguments.letters;
@@ -176,6 +176,18 @@ fn degrees(arguments: &Arguments, robot: &Robot) -> String {
     };
     positions.into_iter().find(is_degrees).map_or_else(String::new, |(joint, q)| {
         format!("{} is at {q} rad, more than a full turn; if this is in degrees, write {q}deg\n", joint.name)
+    })
+}
+
+/// A remark on a payload whose inertia no distribution of mass has. In a robot file, such a link is a warning.
+fn impossible_payload(arguments: &Arguments) -> String {
+    let payload = arguments.arm.carried.payload.as_ref().and_then(|list| payload(list).ok());
+    payload.and_then(|payload| payload.inertia.impossible_moments()).map_or_else(String::new, |[a, b, c]| {
+        format!(
+            "note: the inertia of --payload violates the triangle inequality: its largest principal moment, {c:.4} \
+             kg m², is more than the sum of the two others, {:.4} kg m²\n",
+            a + b
+        )
     })
 }
 

@@ -62,6 +62,9 @@ impl Table {
     ) -> Result<Self, Failure> {
         let name = input_file::name(path);
         let unreadable = |error: io::Error| Failure::input(format_args!("the states {name} cannot be read: {error}"));
+        if path.is_dir() {
+            return Err(Failure::input(format_args!("{name} is a folder; name a file of states, CSV or .npy")));
+        }
         let file: Box<dyn Read> = if is_standard_input(path) {
             Box::new(io::stdin())
         } else if is_stream(path) {

@@ -145,6 +145,8 @@ fn c_passes_its_tests() {
             assert!(output.status.code() == Some(1) && said(&output).contains(what), "{right}: {}", said(&output));
         }
     }
+    // a robot without the function has no step, and no empty file
+    fails(1, &["emit", "docs/four_bar.yaml", "--lang", "c", "--runge-kutta"], &["closed loops"]);
     let alone = ["emit", "robots/planar2.yaml", "--lang", "c", "--tests", "--runge-kutta"];
     let code = fine(&[&alone[..], &["--function", "forward_dynamics"]].concat());
     let Some(output) = tested_c(&folder, &code) else { return };

@@ -46,6 +46,19 @@ fn a_number_is_no_file() {
 }
 
 #[test]
+fn a_payload_that_no_body_can_be_is_told() {
+    let with = |payload| {
+        rne(&["eval", "robots/planar2.yaml", "--function", "gravity_torques", "--q", "0,0", "--payload", payload])
+    };
+    let told = with("1,0,0,0,1,1,9,0,0,0");
+    assert!(told.status == 0 && told.err.contains("violates the triangle inequality"), "{told:?}");
+    assert!(told.err.contains("moment, 9.0000 kg") && told.err.contains("others, 2.0000 kg m²"), "{told:?}");
+    assert_eq!(with("1,0,0,0,1,1,2,0,0,0").err, "");
+    let refused = with("1,0,0,0,1,1,-9,0,0,0");
+    assert!(refused.status == 2 && refused.err.contains("a principal moment of -9"), "{refused:?}");
+}
+
+#[test]
 fn torques_are_the_known_ones() {
     for robot in ["planar1", "puma560", "scara_cobra600", "panda"] {
         let file = format!("robots/{robot}.yaml");

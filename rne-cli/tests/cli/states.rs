@@ -332,9 +332,16 @@ fn a_negative_mass_of_a_payload_is_refused() {
     assert!(found.err.contains(said), "{found:?}");
     assert_eq!(rne_reading(&arguments, &table(&[1.0, 0.0, -0.0])).status, 0);
 
+    // no body has such an inertia
+    let moment = names.iter().position(|name| name == "Izz").expect("an inertia");
+    let negative: Vec<String> =
+        row(1.0).iter().enumerate().map(|(at, x)| if at == moment { "-9".into() } else { x.to_string() }).collect();
+    let found = rne_reading(&arguments, &format!("{}{}\n", table(&[1.0]), negative.join(",")));
+    assert!(found.status == 1 && found.err.contains("<standard input>:3: `m`: the payload's inertia has"), "{found:?}");
+
     // the same rule for one state
     let single = [&arguments[..4], &["--q", "0,0", "--qd", "0,0", "--qdd", "0,0", "--payload=-0.25,0,0,0"]].concat();
-    fails(2, &single, &["--payload begins with the mass: the payload's mass is -0.25 kg: no body has less than 0"]);
+    fails(2, &single, &["--payload: the payload's mass is -0.25 kg: no body has less than 0"]);
 
     let folder = folder("states_payload");
     let (path, out) = (folder.join("in.npy"), folder.join("out.npy"));

@@ -308,3 +308,26 @@ fn several_tips_are_listed() {
         assert!(said.contains(words), "{said}");
     }
 }
+
+/// A camera in the middle of the arm is no tip, in whatever order the joints stand; a name of a tip is, there as well.
+#[test]
+fn the_tip_is_on_the_last_joint_unless_its_name_says_more() {
+    let moving = |name: &str, links| joint(name, "revolute", links, "xyz=\"0 0 0.3\"", FREE);
+    let fixed = |name: &str, links| joint(name, "fixed", links, "xyz=\"0 0 0.1\"", "");
+    let body = |name: &str| link(name, 1.0, "0 0 0.1", [0.01; 3]);
+    for (end, inner, tip) in [("end", "camera", "end"), ("end", "tool0", "tool0"), ("tip", "link_1", "tip")] {
+        let mut joints = [
+            moving("a", ("base", "upper")),
+            moving("b", ("upper", "fore")),
+            fixed("c", ("fore", end)),
+            fixed("d", ("upper", inner)),
+        ];
+        for _ in 0..joints.len() {
+            joints.rotate_left(1);
+            let links = [bare(&["base", end, inner]), body("upper"), body("fore"), joints.concat()];
+            let urdf = Urdf::read("arm.urdf", &robot(&links)).unwrap_or_else(|error| panic!("{error}"));
+            let account = urdf.import(&options()).unwrap_or_else(|error| panic!("{error}")).account;
+            assert_eq!(account.tip, tip, "{:?}", account.remarks);
+        }
+    }
+}
