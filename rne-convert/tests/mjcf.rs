@@ -233,6 +233,27 @@ fn what_is_left_out_is_told() {
     }
 }
 
+/// Actuators of all kinds take the values of the class of one of them, as in MuJoCo, and a rotor that turns with a tendon
+/// is told.
+#[test]
+fn actuators_of_all_kinds_have_rotors() {
+    let of = |actuator: &str| {
+        let lists = format!(
+            "<tendon><fixed name=\"t\"><joint joint=\"j\" coef=\"1\"/></fixed></tendon><default><general gear=\"3\" \
+             armature=\".1\"/></default><actuator><{actuator}/></actuator><equality/>"
+        );
+        let urdf = Urdf::read("m.xml", &with("<equality/>", &lists)).unwrap_or_else(|report| panic!("{report}"));
+        urdf.import(&whole()).unwrap_or_else(|report| panic!("{report}"))
+    };
+    for kind in ["general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle", "dcmotor"] {
+        let robot = of(&format!("{kind} joint=\"j\"")).robot;
+        let motor = robot.joints[0].motor.as_ref().unwrap_or_else(|| panic!("{kind} has no rotor"));
+        assert!((motor.inertia * motor.gear_ratio.powi(2) - 0.9).abs() < 1e-12, "{kind}: {motor:?}");
+        let told = of(&format!("{kind} tendon=\"t\"")).account.sentences().join("\n");
+        assert!(told.contains("rotors and damping of actuators on tendons are left out, but MuJoCo's"), "{told}");
+    }
+}
+
 /// A ball is named, with what to do, and can be held at zero.
 #[test]
 fn a_ball_alone_is_named() {

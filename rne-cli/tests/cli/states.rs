@@ -614,5 +614,5 @@ fn options_that_do_not_go_with_states_are_refused() {
     }
     fails(2, &["eval", "-", "--states", "-"], &["FILE and --states are both standard input"]);
     fails(1, &["eval", "planar2", "--states", "nowhere.csv"], &["the states nowhere.csv cannot be read"]);
-    fails(1, &["eval", "planar2", "--states", "robots"], &["the states robots cannot be read"]);
+    fails(1, &["eval", "planar2", "--states", "robots"], &["robots is a folder; name a file of states"]);
 }

@@ -18,7 +18,14 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
     let mut limits: Vec<(usize, Option<(f64, f64)>)> = Vec::new();
     for element in root.below("actuator") {
         let actuator = settings.classed(element, 0)?;
-        let Some(name) = actuator.text("joint").or_else(|| actuator.text("jointinparent")) else { continue };
+        let Some(name) = actuator.text("joint").or_else(|| actuator.text("jointinparent")) else {
+            if let Some(tendon) = actuator.text("tendon")
+                && is_there(actuator, &["armature", "damping"])?
+            {
+                left_out.add_felt("rotors and damping of actuators on tendons are left out", tendon);
+            }
+            continue;
+        };
         let Some(&joint) = joints.get(name) else {
             let message = format!("the actuator is one of the joint {}, which does not exist", quoted(name));
             return Err(actuator.refused(message, "there is no such joint in the file".to_owned()));

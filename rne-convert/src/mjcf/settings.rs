@@ -10,8 +10,21 @@ use crate::geometry::Rotation;
 use crate::scan::{LARGEST, end_of_range};
 use crate::source::{Source, names, quoted};
 
-/// Actuators that share the values of a class, whatever their element is.
-const ACTUATORS: [&str; 4] = ["general", "motor", "position", "velocity"];
+/// Actuators: all share the values of a class, whatever their element is (`Default` in MuJoCo's `xml_native_reader.cc`).
+const ACTUATORS: [&str; 12] = [
+    "general",
+    "motor",
+    "position",
+    "velocity",
+    "intvelocity",
+    "damper",
+    "cylinder",
+    "muscle",
+    "adhesion",
+    "dcmotor",
+    "orientation",
+    "pid",
+];
 
 /// Settings and classes of the file.
 pub(super) struct Settings<'a> {

@@ -91,9 +91,14 @@ def from_mujoco(model, **options):
     actuators = []
     on_joints = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))
     for i in range(model.nu):
-        if int(model.actuator_trntype[i]) not in on_joints:
+        kind, at = int(model.actuator_trntype[i]), model.actuator_trnid[i, 0]
+        if kind in on_joints:
+            values = {"joint": joints[at]}
+        elif kind == int(mujoco.mjtTrn.mjTRN_TENDON):
+            values = {"tendon": model.tendon(at).name or f"tendon {at}"}
+        else:
             continue
-        values = {"joint": joints[model.actuator_trnid[i, 0]], "gear": model.actuator_gear[i, :1]}
+        values["gear"] = model.actuator_gear[i, :1]
         for part in ("armature", "damping"):  # since MuJoCo 3.4
             values |= {part: _terms(model, f"actuator_{part}", i)} if hasattr(model, f"actuator_{part}") else {}
         if model.actuator_forcelimited[i]:
