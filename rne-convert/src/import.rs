@@ -232,8 +232,8 @@ impl Urdf {
         };
         robot.notes = notes(&told, change.as_ref());
         let text = robot_file::write(&robot);
-        let checked =
-            Reader::new(&format!("{}, imported", self.source.file)).trees().couplings().loops().read(&text)?;
+        let reader = Reader::new(&format!("{}, imported", self.source.file)).trees().couplings().loops();
+        let checked = reader.read(&text).map_err(|report| self.joint_called_base().unwrap_or(report))?;
         let rounding = Difference::of_table(&exact, &checked.robot);
         let joints = chain.joints.iter().map(|joint| joint.name.clone());
         let mut all: Vec<Remark> = self.ignored(&told).into_iter().map(Remark::from).collect();
@@ -257,6 +257,13 @@ impl Urdf {
             lints: checked.lints,
         };
         Ok(Imported { robot: checked.robot, text, account })
+    }
+
+    /// The error for a joint with the name of frame 0, which other rows and frames of a robot file refer to.
+    fn joint_called_base(&self) -> Option<Report> {
+        let joint = self.joints.iter().find(|joint| joint.name == "base")?;
+        let message = "the joint `base` has the name that a robot file gives to frame 0";
+        Some(self.source.error(&joint.span, message, "rename the joint, for instance `base_joint`".to_owned()))
     }
 
     /// The frames of the tip `first` and of the other tips; `frames` has the links and their names as frames.

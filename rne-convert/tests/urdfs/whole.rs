@@ -331,3 +331,13 @@ fn the_tip_is_on_the_last_joint_unless_its_name_says_more() {
         }
     }
 }
+
+/// The error has the place in the URDF, not one in the robot file, which nobody has seen.
+#[test]
+fn a_joint_with_the_name_of_frame_0_is_refused_where_it_stands() {
+    let text = torso(FREE).replace("name=\"waist\"", "name=\"base\"");
+    let refused = Urdf::read("torso.urdf", &text).and_then(|urdf| urdf.import(&options())).expect_err("two meanings");
+    let said = refused.to_string();
+    let line = 1 + text.lines().position(|line| line.contains("<joint name=\"base\"")).expect("the joint");
+    assert!(said.contains("the joint `base` has the name") && said.contains(&format!("torso.urdf:{line}:")), "{said}");
+}
