@@ -279,10 +279,11 @@ impl<'w> Lowering<'w> {
     /// term is a part of one equation of the lecture, and keeps its name.
     fn summand_of_another_unit(&self, id: Ref, name: Name) -> Option<Name> {
         let (Form::Reduced, Op::Sum(a, b)) = (self.form, self.written.graph.op(id)) else { return None };
-        let unit = |name: Name| name.quantity.unit(JointKind::Revolute);
+        // an angle has no unit of its own: U adds ω̇
+        let unit = |name: Name| name.quantity.unit(JointKind::Revolute).replace("rad", "1");
         [a, b].map(Ref::magnitude).into_iter().find_map(|summand| match self.names[summand.index()] {
             None => self.summand_of_another_unit(summand, name),
-            Some(given) if [unit(name), unit(given.name)].contains(&"") => None,
+            Some(given) if unit(name).is_empty() || unit(given.name).is_empty() => None,
             Some(given) => (unit(name) != unit(given.name)).then_some(Name { part: 0, ..given.name }),
         })
     }

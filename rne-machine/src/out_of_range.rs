@@ -1,16 +1,16 @@
 //! Numbers that an argument cannot have: one check for all doors at which arguments come in.
 
-use std::{array, fmt};
+use std::fmt;
 
-use rne_runtime::{ImpossiblePayload, Pose};
+use rne_runtime::{NegativeMass, Pose};
 
-/// Numbers that an argument cannot have. A number that is not a number passes in a rotation and in a payload: results show
+/// Numbers that an argument cannot have. A number that is not a number passes in a rotation and as a mass: results show
 /// it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum OutOfRange {
-    /// The mass or a moment of inertia of a payload is below zero.
-    Payload(ImpossiblePayload),
+    /// The mass of a payload is below zero.
+    Mass(NegativeMass),
     /// The duration of a step is not a finite number above zero, s.
     Step(f64),
     /// The rotation of this argument is not a rotation.
@@ -22,8 +22,7 @@ impl OutOfRange {
     #[must_use]
     pub fn elements(argument: &str) -> usize {
         match argument {
-            "payload" => 10,
-            "step" => 1,
+            "payload" | "step" => 1,
             // a pose begins with its rotation
             "pose" | "base_rotation" => 9,
             _ => 0,
@@ -37,7 +36,7 @@ impl OutOfRange {
     pub fn check(argument: &str, number: impl Fn(usize) -> Option<f64>) -> Result<(), Self> {
         let at = |element| number(element).unwrap_or(f64::NAN);
         match argument {
-            "payload" => ImpossiblePayload::check(array::from_fn(at)).map_err(Self::Payload),
+            "payload" => NegativeMass::check(at(0)).map_err(Self::Mass),
             "step" if !(at(0) > 0.0 && at(0).is_finite()) => Err(Self::Step(at(0))),
             "pose" | "base_rotation" => {
                 let rotation = [0, 3, 6].map(|row| [row, row + 1, row + 2].map(at));
@@ -52,7 +51,7 @@ impl OutOfRange {
 impl fmt::Display for OutOfRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Payload(payload) => payload.fmt(f),
+            Self::Mass(mass) => mass.fmt(f),
             Self::Step(step) => write!(f, "the step is {step} s, but it must be a finite number above 0"),
             Self::Rotation(argument) => write!(
                 f,

@@ -182,7 +182,7 @@ pub use operations::Operations;
 pub use optimisation::{AccelerationDerivatives, ForwardDynamicsDerivatives, InverseDynamicsGradient, TorqueGradient};
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use optimisation::{DynAccelerationDerivatives, DynTorqueGradient};
-pub use payload::{ImpossiblePayload, Payload};
+pub use payload::{NegativeMass, Payload};
 pub use pose::Pose;
 pub use quaternion::Quaternion;
 pub use runge_kutta::{RungeKuttaStep, RungeKuttaStepDerivatives};

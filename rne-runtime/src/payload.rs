@@ -13,8 +13,8 @@ use crate::{Dual, Scalar};
 /// The torques with a payload are those of the arm whose last link has the payload's mass, first moment and inertia
 /// too. The default is no payload.
 ///
-/// Neither the mass nor a principal moment of inertia is below zero. Compiled arms, the Python package, the C library and
-/// the command line refuse a payload where one is. Derived and emitted code, `Arm` and `DynArm` compute with the numbers that they are given, without a
+/// The mass is not below zero. Compiled arms, the Python package, the C library and the command line refuse a payload
+/// whose mass is. Derived and emitted code, `Arm` and `DynArm` compute with the numbers that they are given, without a
 /// branch that looks at them: call [`check`](Self::check) where a payload comes from outside of the program.
 ///
 /// ```
@@ -78,7 +78,7 @@ impl<T: Scalar> Payload<T> {
 }
 
 impl<T: Scalar + Into<f64>> Payload<T> {
-    /// Refuses a mass or a principal moment of inertia below zero. What is not a number passes: results show it.
+    /// Refuses a mass below zero. A mass that is not a number passes: results show it.
     ///
     /// ```
     /// use rne_runtime::Payload;
@@ -88,61 +88,38 @@ impl<T: Scalar + Into<f64>> Payload<T> {
     /// ```
     ///
     /// # Errors
-    /// What is below zero.
-    pub fn check(&self) -> Result<(), ImpossiblePayload> {
-        ImpossiblePayload::check(self.to_array().map(Into::into))
+    /// When the mass is below zero.
+    pub fn check(&self) -> Result<(), NegativeMass> {
+        NegativeMass::check(self.mass)
     }
 }
 
-/// A payload that no body is.
+/// A payload whose mass is below zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum ImpossiblePayload {
-    /// The mass is below zero, kg.
-    Mass(f64),
-    /// The smallest principal moment of inertia is below zero, kg m².
-    Moment(f64),
+pub struct NegativeMass {
+    /// The mass, kg.
+    pub mass: f64,
 }
 
-/// A principal moment below zero by this part of the largest one is rounding.
-const ROUNDED: f64 = 1e-6;
-
-impl ImpossiblePayload {
-    /// Checks the ten numbers of [`Payload::to_array`].
+impl NegativeMass {
+    /// Refuses a payload's mass that is below zero.
     ///
     /// # Errors
-    /// What is below zero.
-    pub fn check(numbers: [f64; 10]) -> Result<(), Self> {
-        let Payload { mass, inertia, .. } = Payload::from_array(numbers);
-        if mass < 0.0 {
-            return Err(Self::Mass(mass));
-        }
-        let Inertia { xx, yy, zz, xy, xz, yz } = inertia;
-        let two = [xx * yy - xy * xy, yy * zz - yz * yz, zz * xx - xz * xz];
-        let three = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
-        // a tensor without a negative minor about its diagonal has no negative moment (Sylvester)
-        if [xx, yy, zz, three].into_iter().chain(two).all(|minor| minor >= 0.0) {
-            return Ok(());
-        }
-        let negative = |&[least, _, most]: &[f64; 3]| least < -ROUNDED * most.abs();
-        inertia.principal_moments().filter(negative).map_or(Ok(()), |[least, ..]| Err(Self::Moment(least)))
+    /// When it is below zero.
+    pub fn check(mass: impl Into<f64>) -> Result<(), Self> {
+        let mass = mass.into();
+        if mass < 0.0 { Err(Self { mass }) } else { Ok(()) }
     }
 }
 
-impl fmt::Display for ImpossiblePayload {
+impl fmt::Display for NegativeMass {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Mass(mass) => write!(f, "the payload's mass is {mass} kg: no body has less than 0"),
-            Self::Moment(moment) => write!(
-                f,
-                "the payload's inertia has a principal moment of {moment:.3e} kg m²: no body has less than 0; write \
-                 the inertia about the centre of mass, not about the tip"
-            ),
-        }
+        write!(f, "the payload's mass is {} kg: no body has less than 0", self.mass)
     }
 }
 
-impl Error for ImpossiblePayload {}
+impl Error for NegativeMass {}
 
 /// [`Payload::none`].
 impl<T: Scalar> Default for Payload<T> {

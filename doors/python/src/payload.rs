@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat};
-use rne::ImpossiblePayload;
+use rne::NegativeMass;
 use rne_identify::{ArmLog, JointError, MotionError, Part, PassError, Payload, PayloadReply, Purpose};
 use rne_model::Inertia;
 
@@ -33,14 +33,21 @@ pub(crate) fn payload<'py>(
     let [x, y, z] = numbers("com", com, &[3], "three numbers x, y, z, in m")?;
     let allowed = "a symmetric tensor of shape (3, 3), in kg m²";
     let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = numbers("inertia", inertia, &[3, 3], allowed)?;
+    NegativeMass::check(mass).map_err(|error| PyValueError::new_err(error.to_string()))?;
     // as far as digits of a file say
     let is_other = |(one, other): (f64, f64)| (one - other).abs() > 1e-8 + 1e-5 * one.abs().min(other.abs());
     if [(xy, yx), (xz, zx), (yz, zy)].into_iter().any(is_other) {
         return Err(PyValueError::new_err("`inertia` is a symmetric tensor of shape (3, 3)"));
     }
-    let all = [mass, x, y, z, xx, yy, zz, xy, xz, yz];
-    ImpossiblePayload::check(all).map_err(|error| PyValueError::new_err(error.to_string()))?;
-    array_of(py, &[], &[10], all.to_vec())
+    let moments = Inertia { xx, yy, zz, xy, xz, yz }.principal_moments();
+    if let Some([least, ..]) = moments.filter(|&[least, _, most]| least < -1e-6 * most.abs()) {
+        return Err(PyValueError::new_err(format!(
+            "`inertia` has a principal moment of {least:.3e} kg m²: no body has less than 0; write the inertia about \
+             the \
+             centre of mass, not about the tip"
+        )));
+    }
+    array_of(py, &[], &[10], vec![mass, x, y, z, xx, yy, zz, xy, xz, yz])
 }
 
 /// Finite numbers of a shape, or an error that names the argument and what it may be. What is left out is zero.
