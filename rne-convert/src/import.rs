@@ -232,8 +232,9 @@ impl Urdf {
         };
         robot.notes = notes(&told, change.as_ref());
         let text = robot_file::write(&robot);
-        let reader = Reader::new(&format!("{}, imported", self.source.file)).trees().couplings().loops();
-        let checked = reader.read(&text).map_err(|report| self.joint_called_base().unwrap_or(report))?;
+        let file = format!("{}, imported", self.source.file);
+        let checked = Reader::new(&file).trees().couplings().loops().read(&text);
+        let checked = checked.map_err(|report| self.joint_called_base().unwrap_or(report))?;
         let rounding = Difference::of_table(&exact, &checked.robot);
         let joints = chain.joints.iter().map(|joint| joint.name.clone());
         let mut all: Vec<Remark> = self.ignored(&told).into_iter().map(Remark::from).collect();
