@@ -10,12 +10,13 @@ import rne
 
 ROOT = Path(__file__).parents[3]
 
-#: An arm, a robot with four legs on a floating base, one with contacts, and a closed loop.
+#: An arm, a robot with four legs on a floating base, one with contacts, and closed loops that are held and that fly.
 ROBOTS = {
     "panda": "panda",
     "hyq": ROOT / "tests/functions/floating/grid_hyq.yaml",
     "standing": ROOT / "docs/standing_hyq.yaml",
     "four_bar": ROOT / "docs/four_bar.yaml",
+    "flying": Path(__file__).parent / "flying_four_bar.yaml",
 }
 
 #: Methods with a state that search or compose for seconds, and functions of the package that take no state.
