@@ -3,7 +3,7 @@
 
 mod common;
 
-use rne_codegen::{Axis, CompileError, Compiler, Form, Function, Name, Operator, Program, Quantity, Value};
+use rne_codegen::{Axis, CompileError, Compiler, Form, Function, Name, Operator, Program, Quantity, Value, ValueId};
 use rne_model::{JointKind, Reader, Robot};
 
 #[test]
@@ -65,6 +65,13 @@ fn shared_terms_name_the_links_of_their_joint() {
     assert!(shared > 0, "no shared term of a joint whose parent is not the joint before");
 }
 
+/// The names that a sum adds, those of sums within it, too.
+fn summands(program: &Program, sum: ValueId) -> Vec<Name> {
+    let Value::Binary(Operator::Sum | Operator::Difference, a, b) = program.values.get(sum) else { return Vec::new() };
+    let of = |id: ValueId| program.values.name(id).map_or_else(|| summands(program, id), |name| vec![name]);
+    [a, b].into_iter().flat_map(of).collect()
+}
+
 /// A part of a force that is a moment over a length is called a moment: whoever reads the code adds moments there.
 #[test]
 fn a_shared_sum_has_the_unit_of_what_it_adds() {
@@ -74,11 +81,8 @@ fn a_shared_sum_has_the_unit_of_what_it_adds() {
     for robot in common::all() {
         let program = Compiler::new(&robot).compile(Function::InverseDynamics, Form::Reduced).expect("a program");
         for statement in program.statements.iter().filter(|statement| statement.name.part > 0) {
-            let Value::Binary(Operator::Sum | Operator::Difference, a, b) = program.values.get(statement.value) else {
-                continue;
-            };
             let Some(own) = unit(statement.name) else { continue };
-            let added: Vec<String> = [a, b].into_iter().filter_map(|id| unit(program.values.name(id)?)).collect();
+            let added: Vec<String> = summands(&program, statement.value).into_iter().filter_map(unit).collect();
             assert!(added.is_empty() || added.contains(&own), "{}: {}", robot.name, statement.name);
             renamed += usize::from(statement.place.quantity != statement.name.quantity);
         }
