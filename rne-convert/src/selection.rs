@@ -135,8 +135,9 @@ fn listed(urdf: &Urdf, leaves: &[(usize, usize)]) -> String {
 const OF_TIPS: [&str; 8] = ["foot", "hand", "flange", "end_effector", "endeffector", "ee", "tool", "tcp"];
 
 /// How probable it is that a leaf is the tip, by its name: `tool0` is the tip by convention (ROS REP 199, and
-/// ROS-Industrial before it), as is `tip`, the name that `rne export` writes, then names with the words of tips, `tcp` (tool centre point) first. `ee` and `hand` end a
-/// name, but for `_link`, because other words and fingers contain them. A leaf that follows another joint, such as the
+/// ROS-Industrial before it), as is `tip`, the name that `rne export` writes, then names with the words of tips, `tcp`
+/// (tool centre point) first. `ee` and `hand` end a name, but for `_link`, because other words and fingers contain
+/// them. A leaf that follows another joint, such as the
 /// second finger of a gripper, comes after the others, and what is drawn or spins in a motor last.
 fn rank(urdf: &Urdf, base: usize, leaf: usize) -> usize {
     const OTHER: usize = 2;

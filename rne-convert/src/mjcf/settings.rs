@@ -10,7 +10,8 @@ use crate::geometry::Rotation;
 use crate::scan::{LARGEST, end_of_range};
 use crate::source::{Source, names, quoted};
 
-/// Actuators: all share the values of a class, whatever their element is (`Default` in MuJoCo's `xml_native_reader.cc`).
+/// Actuators: all share the values of a class, whatever their element is (`Default` in `xml_native_reader.cc` of
+/// MuJoCo).
 const ACTUATORS: [&str; 12] = [
     "general",
     "motor",
