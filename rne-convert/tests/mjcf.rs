@@ -233,8 +233,7 @@ fn what_is_left_out_is_told() {
     }
 }
 
-/// Actuators of all kinds take the values of the class of one of them, as in MuJoCo. A rotor that turns with a tendon is
-/// told.
+/// Actuators of all kinds take the values of the class of one of them, as in MuJoCo. A rotor on a tendon is told.
 #[test]
 fn actuators_of_all_kinds_have_rotors() {
     let of = |actuator: &str| {
