@@ -274,7 +274,7 @@ impl<'w> Lowering<'w> {
         }
     }
 
-    /// A summand of a sum, where its unit is not that of `name`: a moment that is part of a force divided by a length is
+    /// A summand of a sum, where its unit is not that of `name`: a moment in a force (over a length) is
     /// called a moment. Units are those of a revolute joint; a quantity without one says nothing. In the seven steps, a
     /// term is a part of one equation of the lecture, and keeps its name.
     fn summand_of_another_unit(&self, id: Ref, name: Name) -> Option<Name> {
