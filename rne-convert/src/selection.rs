@@ -137,8 +137,8 @@ const OF_TIPS: [&str; 8] = ["foot", "hand", "flange", "end_effector", "endeffect
 /// How probable it is that a leaf is the tip, by its name: `tool0` is the tip by convention (ROS REP 199, and
 /// ROS-Industrial before it), as is `tip`, the name that `rne export` writes, then names with the words of tips, `tcp`
 /// (tool centre point) first. `ee` and `hand` end a name, but for `_link`, because other words and fingers contain
-/// them. A leaf that follows another joint, such as the
-/// second finger of a gripper, comes after the others, and what is drawn or spins in a motor last.
+/// them. A leaf that follows another joint, such as the second finger of a gripper, comes after the others, and what is
+/// drawn or spins in a motor last.
 fn rank(urdf: &Urdf, base: usize, leaf: usize) -> usize {
     const OTHER: usize = 2;
     let name = urdf.links[leaf].name.to_lowercase();
@@ -180,14 +180,14 @@ pub(crate) fn tip(urdf: &Urdf, base: usize, selection: &Selection) -> Result<End
     }
     // leaves without a movable joint are sensors on the base, or marks on it
     let moved: Vec<usize> = leaves.iter().filter(|(_, joints)| *joints > 0).map(|(leaf, _)| *leaf).collect();
-    // of leaves that are equally probable, the last of those whose last joint moves no other joint's leaf
-    let carries_none = |leaf: usize, leaves: &[usize]| {
+    // among equally probable leaves, those at the end of a chain come first: their last joint moves no further joint
+    let is_outermost = |leaf: usize, leaves: &[usize]| {
         let Some(joint) = last_movable(urdf, base, leaf) else { return false };
         leaves.iter().all(|&other| last_movable(urdf, base, other) == Some(joint) || !is_beyond(urdf, joint, other))
     };
     let end = |mut others: Vec<usize>| {
         let likeliest =
-            (0..others.len()).max_by_key(|&at| (rank(urdf, base, others[at]), carries_none(others[at], &others)));
+            (0..others.len()).max_by_key(|&at| (rank(urdf, base, others[at]), is_outermost(others[at], &others)));
         let link = others.remove(likeliest.unwrap_or(others.len() - 1));
         Ok(End { link, others })
     };

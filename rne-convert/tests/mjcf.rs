@@ -233,7 +233,8 @@ fn what_is_left_out_is_told() {
     }
 }
 
-/// Actuators of all kinds take the values of the class of one of them, as in MuJoCo. A rotor on a tendon is told.
+/// The defaults of `general` hold for all kinds of actuators, as in MuJoCo. An import warns of a rotor that drives a
+/// tendon.
 #[test]
 fn actuators_of_all_kinds_have_rotors() {
     let of = |actuator: &str| {

@@ -55,7 +55,7 @@ mod integrator;
 #[cfg(feature = "std")]
 #[doc(hidden)]
 pub mod integrator_of_lists;
-/// Steps and their derivatives of a robot whose base nothing holds, with lists of joints: the Python package has robots
+/// Steps and their derivatives of a robot with a floating base, with lists of joints: the Python package has robots
 /// of any number of joints.
 #[doc(hidden)]
 pub mod floating_integrator_of_lists {

@@ -10,7 +10,7 @@ import rne
 
 ROOT = Path(__file__).parents[3]
 
-#: An arm, a robot with four legs on a floating base, one with contacts, and closed loops that are held and that fly.
+#: An arm, a robot with four legs on a floating base, one with contacts, and closed loops on a fixed and on a floating base.
 ROBOTS = {
     "panda": "panda",
     "hyq": ROOT / "tests/functions/floating/grid_hyq.yaml",

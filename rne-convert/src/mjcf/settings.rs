@@ -10,8 +10,8 @@ use crate::geometry::Rotation;
 use crate::scan::{LARGEST, end_of_range};
 use crate::source::{Source, names, quoted};
 
-/// Actuators: all share the values of a class, whatever their element is (`Default` in `xml_native_reader.cc` of
-/// MuJoCo).
+/// The kinds of actuators. A class has one set of default values for all of them (`Default` in MuJoCo's
+/// `xml_native_reader.cc`).
 const ACTUATORS: [&str; 12] = [
     "general",
     "motor",
