@@ -274,9 +274,9 @@ impl<'w> Lowering<'w> {
         }
     }
 
-    /// The name of a summand whose unit is not that of `name`: a force may contain a moment, divided by a length, and this
-    /// part is called a moment. Units are those of a revolute joint. A quantity without a unit gives no name. In the
-    /// seven steps, a term is a part of one equation of the lecture, and keeps its name.
+    /// The name of a summand whose unit is not that of `name`. A force may contain a moment over a length; this part is
+    /// called a moment. Units are those of a revolute joint. A quantity without a unit gives no name. In the seven
+    /// steps, a term is a part of one equation of the lecture, and keeps its name.
     fn summand_of_another_unit(&self, id: Ref, name: Name) -> Option<Name> {
         let (Form::Reduced, Op::Sum(a, b)) = (self.form, self.written.graph.op(id)) else { return None };
         // an angle has no unit of its own: U adds ω̇
