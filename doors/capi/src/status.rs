@@ -62,11 +62,14 @@ fn in_arguments(remedy: &Remedy) -> Option<String> {
     Some(match remedy {
         Remedy::ImportUrdf { .. } => "rne_arm_load_urdf() reads a URDF".to_owned(),
         Remedy::NameTip => "name the tip by `tip`".to_owned(),
-        Remedy::LockJoint { joint } => format!("write `{joint}` into `lock_names` to hold this joint still"),
+        // it loads an arm, so it has no whole robot
+        Remedy::LockJoint { joint } | Remedy::WholeOrLock { joint } => {
+            format!("write `{joint}` into `lock_names` to hold this joint still")
+        }
         Remedy::LockOthers => {
             "`lock_names` and `lock_values` hold some of the joints, `lock_others` holds all of them at zero".to_owned()
         }
-        Remedy::KeepUnphysical => return None,
+        Remedy::KeepUnphysical | Remedy::Whole | Remedy::Float | Remedy::Rotors => return None,
     })
 }
 
