@@ -90,10 +90,15 @@ fn all_that_is_found_is_said() {
 #[test]
 fn a_remark_stands_beside_the_page() {
     let odd = PENDULUM.replace("zz: 0.1", "zz: 0.3");
-    let said = answer(&odd);
-    assert!(said["page"].is_string());
-    assert_eq!(first(&said)["severity"], "note", "{}", said["diagnostics"]);
-    assert_eq!(underlined(&odd, first(&said)), "{yy: 0.1, zz: 0.3}");
+    // a published table says that no body has its inertia
+    let published = odd.replace("zz: 0.3}", "zz: 0.3}, physical: false");
+    assert!(published != odd);
+    for (odd, severity) in [(odd, "warning"), (published, "note")] {
+        let said = answer(&odd);
+        assert!(said["page"].is_string());
+        assert_eq!(first(&said)["severity"], severity, "{}", said["diagnostics"]);
+        assert_eq!(underlined(&odd, first(&said)), "{yy: 0.1, zz: 0.3}");
+    }
 }
 
 #[test]
