@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     urdf: bool,
     /// Write an FMU of FMI 2 or 3 [default: 3]; docs/fmi.md explains it
-    #[arg(long, value_name = "VERSION", num_args = 0..=1, default_missing_value = "3", value_parser = ["2", "3"],
+    #[arg(long, value_name = "VERSION", num_args = 0..=1, default_missing_value = "3", value_parser = ["2", "3", "2.0", "3.0"],
         hide_possible_values = true)]
     fmu: Option<String>,
     #[command(flatten)]
@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
                 "{TYPED}--fmu{TYPED:#} needs the name of the file that it writes: add {TYPED}-o {name}{TYPED:#}"
             )));
         };
-        let version = if version == "2" { FmiVersion::Two } else { FmiVersion::Three };
+        let version = if version.starts_with('2') { FmiVersion::Two } else { FmiVersion::Three };
         return fmu::write(&arguments.file, version, arguments.options, out, arguments.output.force);
     }
     if let Some(option) = arguments.options.given() {

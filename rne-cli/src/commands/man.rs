@@ -1,5 +1,6 @@
 //! `rne man`: the manual pages.
 
+use std::fs;
 use std::io;
 use std::path::PathBuf;
 
@@ -21,7 +22,7 @@ pub(crate) struct Arguments {
     /// Print the page of this command [default: the page of rne]
     #[arg(value_name = "COMMAND", conflicts_with = "output")]
     command: Option<String>,
-    /// Write the pages of rne and of all its commands to this folder
+    /// Write the pages of rne and of all its commands to this folder; it is made where there is none
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
 }
@@ -45,7 +46,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
                  COMMAND{TYPED:#} print one page"
             )));
         }
-        Existing::Nothing => return Err(Failure::input(format_args!("there is no folder {shown}; make it first"))),
+        Existing::Nothing => fs::create_dir_all(folder).map_err(|error| output_file::unwritable(folder, &error))?,
         Existing::Unreadable(error) => return Err(output_file::unreadable(folder, &error)),
         Existing::Text(_) | Existing::Other | Existing::Special => {
             return Err(Failure::usage(format_args!("{shown} is not a folder; name the folder of the pages")));

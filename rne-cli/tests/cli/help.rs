@@ -155,5 +155,10 @@ fn every_command_has_a_page_of_the_manual() {
     }
     assert!(fs::read_to_string(folder.join("rne.1")).expect("a page").contains("rne\\-search(1)"));
     fails(2, &["man", "nothing"], &["rne-nothing has no page", "check, show, emit"]);
-    fails(1, &["man", "-o", "nowhere"], &["there is no folder nowhere"]);
+    // a folder that is not there yet is made, and not where a file is in its way
+    let new = folder.join("share/man1");
+    assert_eq!(crate::call::rne(&["man", "-o", new.to_str().expect("UTF-8")]).status, 0);
+    assert!(new.join("rne-eval.1").exists());
+    let below_a_file = folder.join("rne.1/man1");
+    fails(1, &["man", "-o", below_a_file.to_str().expect("UTF-8")], &["cannot be written"]);
 }
