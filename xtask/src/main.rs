@@ -36,6 +36,7 @@ mod ros2;
 mod sbom;
 mod single_calls;
 mod site;
+mod surface;
 mod tool;
 mod tree_counts;
 mod urdf;
@@ -90,6 +91,7 @@ enum Task {
     Fleet(fleet::Fleet),
     Sbom(sbom::Sbom),
     Frozen(frozen::Frozen),
+    Surface(surface::Surface),
     Doors(doors::Doors),
     Fuzz(fuzz::Fuzz),
     Gpu(gpu::Gpu),
@@ -142,6 +144,7 @@ impl Task {
             Self::Fleet(_) => ("fleet", false, fleet::Fleet::run()),
             Self::Sbom(task) => ("sbom", false, task.run()),
             Self::Frozen(task) => ("frozen", false, task.run()),
+            Self::Surface(task) => ("surface", false, task.run()),
             Self::Doors(task) => ("doors", task.install, task.run()),
             Self::Gpu(task) => ("gpu", task.install, task.run()),
             Self::Fuzz(task) => ("fuzz", false, task.run()),

@@ -485,3 +485,19 @@ fn a_key_is_that_of_the_files_that_are_read() {
     std::fs::write(&path, "format: 3").expect("a file");
     assert!(held().expect_err("no robot").to_string().contains("planar2.yaml:1:"));
 }
+
+/// The names of SQL are those of the list that `cargo xtask surface` compares for the other doors.
+#[test]
+fn names_are_those_of_the_surface() {
+    let robots = robots();
+    let names =
+        rne_datafusion::functions(&robots).iter().map(|function| function.name().to_owned()).collect::<Vec<_>>();
+    let aggregates = rne_datafusion::aggregates(&robots).into_iter().map(|function| function.name().to_owned());
+    let windows = rne_datafusion::windows(&robots).into_iter().map(|function| function.name().to_owned());
+    let mut names: Vec<String> = names.into_iter().chain(aggregates).chain(windows).collect();
+    names.sort();
+    let list = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/surface.txt"));
+    let list = list.expect("the list");
+    let listed: Vec<&str> = list.lines().filter_map(|line| line.strip_prefix("sql ")).collect();
+    assert_eq!(names, listed);
+}
