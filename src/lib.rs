@@ -151,7 +151,7 @@ pub use rne_runtime::{
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]
-pub use rne_runtime::{Arm, LinkTrace, Trace};
+pub use rne_runtime::{Arm, ArmWithTips, LinkTrace, Trace};
 #[cfg(all(feature = "arm", feature = "std"))]
 #[doc(inline)]
 pub use rne_runtime::{

@@ -55,8 +55,9 @@ fn both_forms_are_the_runtime() {
     // `Arm` does not read the tips of a file: they are an argument
     let arm = rne::Arm::<5>::from_yaml(YAML).unwrap_or_else(|report| panic!("{report}"));
     let tips: [_; 2] = DynArm::from_yaml(YAML).expect("valid").tips().try_into().expect("two");
-    assert_eq!(arm.inverse_dynamics_with_wrenches(&Q, &QD, &QDD, &tips, &wrenches), tau);
-    near(&arm.forward_dynamics_with_wrenches(&Q, &QD, &tau, &tips, &wrenches), &QDD);
+    let arm = arm.with_tips::<11, 2>(&tips);
+    assert_eq!(arm.inverse_dynamics_with_wrenches(&Q, &QD, &QDD, &wrenches), tau);
+    near(&arm.forward_dynamics_with_wrenches(&Q, &QD, &tau, &wrenches), &QDD);
 }
 
 /// What the wrenches add to the torques does the work that the wrenches do: Σ w · (velocity of the tip), in world axes

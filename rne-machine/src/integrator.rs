@@ -1,6 +1,6 @@
 //! The step of the classical Runge-Kutta method, by calls of the accelerations and of their derivatives.
 
-use rne_runtime::integrator_of_lists;
+use rne_runtime::steps;
 
 use crate::results::{NextState, NextStateDerivatives, StepDerivatives};
 use crate::{CompiledArm, EvaluationError, Number, OutOfRange};
@@ -26,8 +26,8 @@ impl CompiledArm {
         step: T,
     ) -> Result<NextState<T>, EvaluationError> {
         check(step)?;
-        let accelerations = |q: &[T], qd: &[T]| self.forward_dynamics(q, qd, tau);
-        let [q, qd] = integrator_of_lists::runge_kutta_step(accelerations, q, qd, |_| step)?;
+        let accelerations = |q: &Vec<T>, qd: &Vec<T>| self.forward_dynamics(q, qd, tau);
+        let [q, qd] = steps::runge_kutta_step(accelerations, [&q.to_vec(), &qd.to_vec()], |_| step)?;
         Ok(NextState { q, qd })
     }
 
@@ -45,10 +45,10 @@ impl CompiledArm {
         step: T,
     ) -> Result<NextStateDerivatives<T>, EvaluationError> {
         check(step)?;
-        let accelerations = |q: &[T], qd: &[T]| self.forward_dynamics(q, qd, tau);
+        let accelerations = |q: &Vec<T>, qd: &Vec<T>| self.forward_dynamics(q, qd, tau);
         let derivatives =
-            |q: &[T], qd: &[T]| self.forward_dynamics_derivatives(q, qd, tau).map(|by| [by.dq, by.dqd, by.dtau]);
-        let found = integrator_of_lists::runge_kutta_step_derivatives(accelerations, derivatives, q, qd, step)?;
+            |q: &Vec<T>, qd: &Vec<T>| self.forward_dynamics_derivatives(q, qd, tau).map(|by| [by.dq, by.dqd, by.dtau]);
+        let found = steps::runge_kutta_step_derivatives(accelerations, derivatives, [&q.to_vec(), &qd.to_vec()], step)?;
         let [q, qd] = found.map(|[dq, dqd, dtau]| StepDerivatives { dq, dqd, dtau });
         Ok(NextStateDerivatives { q, qd })
     }

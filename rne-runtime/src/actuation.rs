@@ -7,15 +7,12 @@
 
 use rne_model::Motor;
 
+use crate::coordinates::Coordinates as _;
+use crate::definition::{Definition, definitions};
 use crate::mechanism::Mechanism;
-#[cfg(feature = "std")]
-use crate::optimisation::dyn_rows_by;
 use crate::per_joint::PerJoint;
-#[cfg(feature = "std")]
 use crate::smooth_sign::SmoothSign;
-use crate::{Actuation, Arm, Constant, Scalar};
-#[cfg(feature = "std")]
-use crate::{Dual, DynArm, WrongLength};
+use crate::{Actuation, Arm, Constant, Dual, Scalar};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn actuator_torques<T: Scalar>(self, qd: &[T], qdd: &[T]) -> J::Of<T> {
@@ -33,45 +30,29 @@ fn torque<S: Constant, T: Scalar>(motor: &Motor<S>, qd: T, qdd: T) -> T {
     ((square * inertia).to::<T>() * qdd + (square * viscous).to::<T>() * qd) + qd.by_sign(positive, negative)
 }
 
-impl<const DOF: usize, S: Constant> Actuation<DOF> for Arm<DOF, S> {
-    fn actuator_torques<T: Scalar>(&self, qd: &[T; DOF], qdd: &[T; DOF]) -> [T; DOF] {
-        self.mechanism().actuator_torques(qd, qdd)
-    }
-}
-
-#[cfg(feature = "std")]
-impl<S: Constant> DynArm<S> {
+definitions! { Actuation<DOF> {
     /// As [`Actuation::actuator_torques`]: the motor terms alone.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn actuator_torques<T: Scalar>(&self, qd: &[T], qdd: &[T]) -> Result<Vec<T>, WrongLength> {
-        let qd = &*self.of_joints("qd", qd)?;
-        let qdd = &*self.of_joints("qdd", qdd)?;
-        Ok(self.couplings.torques(self.mechanism().actuator_torques(qd, qdd)))
-    }
-
+    fn actuator_torques(qd: joints, qdd: joints) -> vector = |robot| robot.actuator_torques(qd, qdd);
     /// As [`Actuation::actuator_torques_smooth`]: friction that changes its sign within about `width`.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn actuator_torques_smooth<T: Scalar>(&self, qd: &[T], qdd: &[T], width: T) -> Result<Vec<T>, WrongLength> {
-        let smooth = |values: &[T]| -> Vec<_> { values.iter().map(|&value| SmoothSign { value, width }).collect() };
-        let torques = self.actuator_torques(&smooth(qd), &smooth(qdd))?;
-        Ok(torques.into_iter().map(|torque| torque.value).collect())
+    fn actuator_torques_smooth(qd: joints, qdd: joints, width: number) -> vector =
+        |robot| robot.smooth_torques(qd, qdd, width);
+    /// As [`Actuation::actuator_torques_smooth_derivatives`].
+    fn actuator_torques_smooth_derivatives(qd: joints, width: number) -> matrix = |robot| {
+        let (still, width) = (robot.still(robot.zeros().as_ref()), Dual::constant(width));
+        robot.rows_by(qd, |qd| robot.smooth_torques(qd, still.as_ref(), width))
+    };
+} }
+
+impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
+    fn actuator_torques<T: Scalar>(self, qd: &[T], qdd: &[T]) -> J::Of<T> {
+        let [qd, qdd] = [qd, qdd].map(|values| self.of_joints(values));
+        self.coordinates.torques(self.mechanism.actuator_torques(qd.as_ref(), qdd.as_ref()))
     }
 
-    /// As [`Actuation::actuator_torques_smooth_derivatives`].
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn actuator_torques_smooth_derivatives<T: Scalar>(
-        &self,
-        qd: &[T],
-        width: T,
-    ) -> Result<Vec<Vec<T>>, WrongLength> {
-        self.has_length("qd", qd)?;
-        let (still, width) = (vec![Dual::constant(T::zero()); qd.len()], Dual::constant(width));
-        dyn_rows_by(qd, |qd| self.actuator_torques_smooth(qd, &still, width))
+    fn smooth_torques<T: Scalar>(self, qd: &[T], qdd: &[T], width: T) -> J::Of<T> {
+        let each = self.coordinates.each();
+        let [qd, qdd] = [qd, qdd].map(|x| each.of(|i| SmoothSign { value: x[i], width }));
+        let torques = self.actuator_torques(qd.as_ref(), qdd.as_ref());
+        each.of(|i| torques.as_ref()[i].value)
     }
 }

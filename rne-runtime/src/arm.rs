@@ -1,10 +1,14 @@
 //! The runtime robot with a number of joints known at compile time.
 
 use core::array;
+use core::marker::PhantomData;
 
-use rne_model::{FixedFrame, Link, Model, Motor};
+use rne_model::{Contact, ContactKind, FixedFrame, Link, Model, Motor};
 
-use crate::at_tip::AtTip;
+use crate::at_tip::{AtTip, Tip};
+use crate::coordinates::Joints;
+use crate::definition::{Definition, definitions};
+use crate::floating_base::BASE;
 use crate::link_frame::{Chain, LinkFrame, Table};
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
@@ -149,8 +153,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         base: &BaseMotion<T>,
         wrench: Option<&Wrench<T>>,
     ) -> [T; DOF] {
-        let (_, loads) = self.mechanism().passes(JointMotions::new(q, qd, qdd), base, wrench.into());
-        loads.map(|load| load.tau)
+        self.definition().torques_on([q, qd, qdd], base, wrench.into())
     }
 
     /// Every vector of the seven steps, in the axes of form P. Arguments as in
@@ -177,10 +180,66 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         let floating_base = self.floating_base;
         let table = Table { floating_base, ..table_of(&self.model, &self.branches, self.tip_on) };
         let (links, tip, tip_link, spins) = (&self.links, &self.tip, table.tip().on, Spins::NONE);
-        let chain = Chain { links, tip, tip_link, spins, floating_base };
+        let chain = Chain { links, tip, tip_link, tips: &[], spins, floating_base };
         let (motors, rotors, at) = (&self.motors, self.rotors, self.at.as_ref());
         let Model { gravity, base, .. } = &self.model;
-        Mechanism { per_joint: Known, chain, table, motors, rotors, gravity, base, at }
+        Mechanism { per_joint: Known, chain, table, frames: &[], motors, rotors, gravity, base, at }
+    }
+
+    pub(crate) fn definition(&self) -> Definition<'_, Known<DOF>, Known<0>, Known<0>, S> {
+        let mechanism = self.mechanism();
+        Definition { mechanism, coordinates: Joints(PhantomData), velocities: Known, tips: Known, contacts: &[] }
+    }
+
+    /// This arm with its named tips, for the functions that take wrenches at tips and for those of a floating base; `NV`
+    /// is `DOF` + 6. A tip on a link that the arm does not have is on the base, and carries no load.
+    #[must_use]
+    pub fn with_tips<const NV: usize, const TIPS: usize>(
+        &self,
+        tips: &[FixedFrame<S>; TIPS],
+    ) -> ArmWithTips<'_, DOF, NV, TIPS, S> {
+        const { assert!(NV == DOF + BASE, "there is a velocity for each joint, and there are six for the base") };
+        let table = self.mechanism().table;
+        let on_a_link = |tip: &FixedFrame<S>| FixedFrame { on: tip.on.filter(|on| *on < DOF), ..*tip };
+        let frames = tips.each_ref().map(on_a_link);
+        let tips = frames.each_ref().map(|tip| Tip::new(table, tip));
+        ArmWithTips { arm: self, frames, tips, contacts: [Contact { tip: TIPS, kind: ContactKind::Point }; TIPS] }
+    }
+}
+
+/// An arm with its named tips, and with those that something outside the robot holds.
+#[derive(Clone, Debug)]
+pub struct ArmWithTips<'a, const DOF: usize, const NV: usize, const TIPS: usize, S = f64> {
+    arm: &'a Arm<DOF, S>,
+    frames: [FixedFrame<S>; TIPS],
+    tips: [Tip<S>; TIPS],
+    /// The held tips come first; a contact of a tip that there is not holds nothing.
+    contacts: [Contact; TIPS],
+}
+
+impl<const DOF: usize, const NV: usize, const TIPS: usize, S: Constant> ArmWithTips<'_, DOF, NV, TIPS, S> {
+    /// This arm while something outside the robot holds some of its tips; `None` is a tip that nothing holds.
+    #[must_use]
+    pub fn in_contact(mut self, held: &[Option<ContactKind>; TIPS]) -> Self {
+        let contacts = held.iter().enumerate().filter_map(|(tip, kind)| Some(Contact { tip, kind: (*kind)? }));
+        for (place, contact) in self.contacts.iter_mut().zip(contacts) {
+            *place = contact;
+        }
+        self
+    }
+
+    pub(crate) fn definition(&self) -> Definition<'_, Known<DOF>, Known<NV>, Known<TIPS>, S> {
+        let mechanism = self.arm.mechanism();
+        let chain = Chain { tips: &self.tips, ..mechanism.chain };
+        let held = self.contacts.iter().take_while(|contact| contact.tip < TIPS).count();
+        let mechanism = Mechanism { chain, frames: &self.frames, ..mechanism };
+        Definition {
+            mechanism,
+            coordinates: Joints(PhantomData),
+            velocities: Known,
+            tips: Known,
+            contacts: &self.contacts[..held],
+        }
     }
 }
 
@@ -193,64 +252,28 @@ fn table_of<'a, const DOF: usize, S>(
     Table { convention: *convention, rows, branches, tool, tip_on, floating_base: None }
 }
 
-impl<const DOF: usize, S: Constant> InverseDynamics<DOF> for Arm<DOF, S> {
-    fn inverse_dynamics<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], qdd: &[T; DOF]) -> [T; DOF] {
-        self.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, &self.fixed_base(), None)
-    }
+definitions! { InverseDynamics<DOF> {
+    /// Torques with a free tip, τ(q, q̇, q̈).
+    fn inverse_dynamics(q: joints, qd: joints, qdd: joints) -> vector =
+        |robot| robot.torques([q, qd, qdd], AtTip::Nothing);
+    /// Torques when the last link exerts `wrench` on its environment: τ = τ_free + Jᵀ w.
+    fn inverse_dynamics_with_wrench(q: joints, qd: joints, qdd: joints, wrench: wrench) -> vector =
+        |robot| robot.torques([q, qd, qdd], AtTip::Wrench(wrench));
+    /// Torques when `payload` is fixed to the tip: those of the arm whose last link has the payload too.
+    fn inverse_dynamics_with_payload(q: joints, qd: joints, qdd: joints, payload: payload) -> vector =
+        |robot| robot.torques([q, qd, qdd], AtTip::Payload(payload));
+    /// Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints, and for joints that
+    /// follow others.
+    fn inverse_dynamics_from_sin_cos(sin: joints, cos: joints, q: joints, qd: joints, qdd: joints) -> vector =
+        |robot| robot.torques_from_turns([sin, cos], [q, qd, qdd]);
+    /// Torques that hold the arm still against gravity, τ(q, 0, 0).
+    fn gravity_torques(q: joints) -> vector = |robot| robot.gravity(q, AtTip::Nothing);
+    /// Coriolis, centrifugal and gravity torques, τ(q, q̇, 0).
+    fn bias_torques(q: joints, qd: joints) -> vector = |robot| robot.bias(q, qd, AtTip::Nothing);
+} }
 
-    fn inverse_dynamics_with_wrench<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        qdd: &[T; DOF],
-        wrench: &Wrench<T>,
-    ) -> [T; DOF] {
-        self.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, &self.fixed_base(), Some(wrench))
-    }
-
-    fn inverse_dynamics_with_payload<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        qdd: &[T; DOF],
-        payload: &Payload<T>,
-    ) -> [T; DOF] {
-        let joints = JointMotions::new(q, qd, qdd);
-        let (_, loads) = self.mechanism().passes(joints, &self.fixed_base(), AtTip::Payload(payload));
-        loads.map(|load| load.tau)
-    }
-
-    fn inverse_dynamics_from_sin_cos<T: Scalar>(
-        &self,
-        sin: &[T; DOF],
-        cos: &[T; DOF],
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        qdd: &[T; DOF],
-    ) -> [T; DOF] {
-        let joints = JointMotions { turns: Some((sin, cos)), ..JointMotions::new(q, qd, qdd) };
-        let (_, loads) = self.mechanism().passes(joints, &self.fixed_base(), AtTip::Nothing);
-        loads.map(|load| load.tau)
-    }
-
-    fn gravity_torques<T: Scalar>(&self, q: &[T; DOF]) -> [T; DOF] {
-        let zero = [T::zero(); DOF];
-        self.inverse_dynamics(q, &zero, &zero)
-    }
-
-    fn bias_torques<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> [T; DOF] {
-        self.inverse_dynamics(q, qd, &[T::zero(); DOF])
-    }
-}
-
-impl<const DOF: usize, S: Constant> MovingBase<DOF> for Arm<DOF, S> {
-    fn inverse_dynamics_on_moving_base<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        qdd: &[T; DOF],
-        base: &BaseMotion<T>,
-    ) -> [T; DOF] {
-        self.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, base, None)
-    }
-}
+definitions! { MovingBase<DOF> {
+    /// Torques on a moving base with a free tip: `base` replaces the robot's gravity and the base at rest.
+    fn inverse_dynamics_on_moving_base(q: joints, qd: joints, qdd: joints, base: motion) -> vector =
+        |robot| robot.torques_on([q, qd, qdd], base, AtTip::Nothing);
+} }

@@ -20,18 +20,6 @@ impl<S: Constant> Tip<S> {
     pub(crate) fn new(table: Table<'_, S>, frame: &FixedFrame<S>) -> Self {
         Self { link: frame.on, mount: Mount::of_frame(table.convention, table.rows, frame) }
     }
-
-    /// With the wrench that the robot exerts there.
-    pub(crate) fn with<T: Scalar>(self, wrench: &Wrench<T>) -> WrenchAtTip<T> {
-        WrenchAtTip { tip: Tip { link: self.link, mount: self.mount.to() }, wrench: wrench.into() }
-    }
-}
-
-/// A wrench at a named tip, in its axes.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct WrenchAtTip<T> {
-    tip: Tip<T>,
-    wrench: ForceMoment<T>,
 }
 
 impl<T: Scalar> Payload<T> {
@@ -62,8 +50,8 @@ pub(crate) enum AtTip<'a, T> {
     Nothing,
     /// A force and a moment.
     Wrench(&'a Wrench<T>),
-    /// Forces and moments at named tips.
-    Wrenches(&'a [WrenchAtTip<T>]),
+    /// A force and a moment at each named tip, in its axes.
+    Wrenches(&'a [Wrench<T>]),
     /// The wrench that moves a payload.
     Payload(&'a Payload<T>),
 }
@@ -78,9 +66,10 @@ impl<T: Scalar> AtTip<'_, T> {
     /// Puts the load on the links of the tips.
     pub(crate) fn put<S: Constant>(self, chain: Chain<'_, S>, motions: &[LinkMotion<T>], loads: &mut [LinkLoad<T>]) {
         if let Self::Wrenches(wrenches) = self {
-            for WrenchAtTip { tip: Tip { link, mount }, wrench } in wrenches {
+            for (Tip { link, mount }, wrench) in chain.tips.iter().zip(wrenches) {
                 if let Some(load) = link.and_then(|link| loads.get_mut(link)) {
-                    load.carry(&mount.rotation, &mount.r, wrench);
+                    let mount = mount.to();
+                    load.carry(&mount.rotation, &mount.r, &wrench.into());
                 }
             }
         } else if let Some((load, motion)) =

@@ -16,6 +16,7 @@ pub use floating_base::{
 use crate::jacobian_derivatives::{derivatives_of_rows, rate_of_rows};
 use crate::ldlt::{factor, inverse_of, solve};
 use crate::optimisation::{rows_by, still};
+use crate::shapes::records;
 use crate::smooth_sign::SmoothSign;
 use crate::{AccelerationDerivatives, BaseMotion, Dual, Payload, Pose, Scalar, Wrench};
 
@@ -341,15 +342,16 @@ pub trait Regressor<const DOF: usize> {
     fn regressor<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], qdd: &[T; DOF]) -> [[[T; 10]; DOF]; DOF];
 }
 
-/// ∂τ/∂q and ∂τ/∂q̇ of one state. Row i is torque i, column j is joint j.
-///
-/// Units: of a torque (N m, or N for a prismatic joint) per rad or m, and per rad/s or m/s.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TorqueDerivatives<const DOF: usize, T> {
-    /// ∂τ_i/∂q_j.
-    pub dq: [[T; DOF]; DOF],
-    /// ∂τ_i/∂q̇_j.
-    pub dqd: [[T; DOF]; DOF],
+records! {
+    /// ∂τ/∂q and ∂τ/∂q̇ of one state. Row i is torque i, column j is joint j.
+    ///
+    /// Units: of a torque (N m, or N for a prismatic joint) per rad or m, and per rad/s or m/s.
+    TorqueDerivatives<DOF>, DynTorqueDerivatives {
+        /// ∂τ_i/∂q_j.
+        dq: [[T; DOF]; DOF] | Vec<Vec<T>>,
+        /// ∂τ_i/∂q̇_j.
+        dqd: [[T; DOF]; DOF] | Vec<Vec<T>>,
+    }
 }
 
 /// How the torques change with the state.
@@ -389,6 +391,13 @@ pub struct MomentumAndRate<const DOF: usize, T> {
     pub momentum: [T; DOF],
     /// τ + C(q, q̇)ᵀ q̇ - g(q), which is τ + ∂T/∂q - ∂V/∂q, N m or N.
     pub rate: [T; DOF],
+}
+
+#[cfg(feature = "arm")]
+impl<const DOF: usize, T> From<[[T; DOF]; 2]> for MomentumAndRate<DOF, T> {
+    fn from([momentum, rate]: [[T; DOF]; 2]) -> Self {
+        Self { momentum, rate }
+    }
 }
 
 /// External torques without accelerations: what a momentum observer asks of the arm at every tick. Its state, gain and
@@ -459,7 +468,7 @@ pub trait TipWrenches<const DOF: usize, const TIPS: usize> {
         let (still_q, still_qd, still_tau, wrenches) = (still(q), still(qd), still(tau), wrenches.map(Wrench::still));
         let by_tau = rows_by(tau, |tau| self.forward_dynamics_with_wrenches(&still_q, &still_qd, tau, &wrenches));
         let accelerations = |q: &_, qd: &_| self.forward_dynamics_with_wrenches(q, qd, &still_tau, &wrenches);
-        AccelerationDerivatives::of(q, qd, accelerations, by_tau)
+        AccelerationDerivatives::by_dual_numbers(q, qd, accelerations, by_tau)
     }
 }
 
@@ -525,7 +534,7 @@ pub trait PayloadDynamics<const DOF: usize> {
         let inverse = inverse_of(self.mass_matrix_with_payload(q, payload), &[T::zero(); DOF]);
         let (tau, payload) = (still(tau), payload.still());
         let accelerations = |q: &_, qd: &_| self.forward_dynamics_with_payload(q, qd, &tau, &payload);
-        AccelerationDerivatives::of(q, qd, accelerations, inverse)
+        AccelerationDerivatives::by_dual_numbers(q, qd, accelerations, inverse)
     }
 }
 

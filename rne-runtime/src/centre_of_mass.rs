@@ -14,12 +14,12 @@
 use nalgebra::Vector3;
 use rne_model::JointKind;
 
+use crate::coordinates::Coordinates as _;
+use crate::definition::definitions;
 use crate::kinematics::Placement;
 use crate::mechanism::Mechanism;
 use crate::per_joint::PerJoint;
 use crate::{Arm, CentreOfMass, Constant, Scalar};
-#[cfg(feature = "std")]
-use crate::{DynArm, WrongLength};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     /// One by the mass of all links.
@@ -84,33 +84,10 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 }
 
-impl<const DOF: usize, S: Constant> CentreOfMass<DOF> for Arm<DOF, S> {
-    fn centre_of_mass<T: Scalar>(&self, q: &[T; DOF]) -> [T; 3] {
-        self.mechanism().centre_of_mass(q)
-    }
-
-    fn centre_of_mass_jacobian<T: Scalar>(&self, q: &[T; DOF]) -> [[T; DOF]; 3] {
-        self.mechanism().centre_of_mass_jacobian(q)
-    }
-}
-
-#[cfg(feature = "std")]
-impl<S: Constant> DynArm<S> {
+definitions! { CentreOfMass<DOF> {
     /// As [`CentreOfMass::centre_of_mass`].
-    ///
-    /// # Errors
-    /// When the argument does not have one element per joint.
-    pub fn centre_of_mass<T: Scalar>(&self, q: &[T]) -> Result<[T; 3], WrongLength> {
-        let q = &*self.of_joints("q", q)?;
-        Ok(self.mechanism().centre_of_mass(q))
-    }
-
+    fn centre_of_mass(q: joints) -> triple = |robot| robot.mechanism.centre_of_mass(robot.of_joints(q).as_ref());
     /// As [`CentreOfMass::centre_of_mass_jacobian`]: three rows with one element per joint.
-    ///
-    /// # Errors
-    /// When the argument does not have one element per joint.
-    pub fn centre_of_mass_jacobian<T: Scalar>(&self, q: &[T]) -> Result<[Vec<T>; 3], WrongLength> {
-        let q = &*self.of_joints("q", q)?;
-        Ok(self.couplings.rows(self.mechanism().centre_of_mass_jacobian(q)))
-    }
-}
+    fn centre_of_mass_jacobian(q: joints) -> rows3 =
+        |robot| robot.coordinates.rows(robot.mechanism.centre_of_mass_jacobian(robot.of_joints(q).as_ref()));
+} }

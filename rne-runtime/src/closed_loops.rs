@@ -13,6 +13,7 @@
 use nalgebra::{Matrix3, Vector3};
 use rne_model::{ClosedLoops, Cut, FixedFrame, JointKind, Pivot, Robot};
 
+use crate::coordinates::Coordinates as _;
 use crate::floating_base::{BASE, of_base, solve_from_the_ends, turning};
 use crate::{BaseAcceleration, BaseMotion, Constant, DynArm, Scalar, Wrench, WrongLength};
 
@@ -329,12 +330,10 @@ impl<S: Constant> DynArm<S> {
         rates: Option<(&[T], &[T])>,
     ) -> Result<Equations<T>, WrongLength> {
         has_length("passive", passive, self.closed.passive.len())?;
-        let q = self.couplings.of_joints(&self.closed.of_tree(self.of_closed("q", q)?, passive)).into_owned();
+        let q = self.couplings.of_joints(&self.closed.of_tree(self.of_closed("q", q)?, passive));
         let zero = vec![T::zero(); q.len()];
         let qd = match rates {
-            Some((qd, passive)) => {
-                self.couplings.of_joints(&self.closed.of_tree(self.of_closed("qd", qd)?, passive)).into_owned()
-            }
+            Some((qd, passive)) => self.couplings.of_joints(&self.closed.of_tree(self.of_closed("qd", qd)?, passive)),
             None => zero.clone(),
         };
         let mut equations = Equations { residuals: Vec::new(), rows: Vec::new(), biases: Vec::new() };

@@ -7,13 +7,13 @@
 //!
 //! J, J̇ v and f are in world axes. The columns of X are solved one by one.
 
-use rne_model::{Contact, ContactKind, FixedFrame};
+use rne_model::Contact;
 
-use crate::floating_base::{BASE, of_base};
+use crate::at_tip::AtTip;
+use crate::definition::{Definition, definitions};
 use crate::ldlt::{factor, solve};
-use crate::{AccelerationsAndWrenches, Arm, Constant, FloatingAccelerations, Scalar, Wrench};
-#[cfg(feature = "std")]
-use crate::{BaseAcceleration, DynArm, WrongLength};
+use crate::per_joint::PerJoint;
+use crate::{AccelerationsAndWrenches, ArmWithTips, BaseAcceleration, Constant, ContactDynamics, Scalar, Wrench};
 
 fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
     a.iter().zip(b).fold(T::zero(), |sum, (&a, &b)| sum + a * b)
@@ -64,126 +64,67 @@ where
 }
 
 /// A number for each row of all tips.
-#[derive(Clone, Copy)]
-struct OfTips<const TIPS: usize, T>([[T; 6]; TIPS]);
+#[derive(Clone)]
+struct OfTips<P: PerJoint, T: Clone>(P::Of<[T; 6]>);
 
-impl<const TIPS: usize, T> AsRef<[T]> for OfTips<TIPS, T> {
+impl<P: PerJoint, T: Clone> AsRef<[T]> for OfTips<P, T> {
     fn as_ref(&self) -> &[T] {
-        self.0.as_flattened()
+        self.0.as_ref().as_flattened()
     }
 }
 
-impl<const TIPS: usize, T> AsMut<[T]> for OfTips<TIPS, T> {
+impl<P: PerJoint, T: Clone> AsMut<[T]> for OfTips<P, T> {
     fn as_mut(&mut self) -> &mut [T] {
-        self.0.as_flattened_mut()
+        self.0.as_mut().as_flattened_mut()
     }
 }
 
-/// An arm that does not know its tips takes them, with what is held of each.
-impl<const DOF: usize, S: Constant> Arm<DOF, S> {
-    /// As [`ContactDynamics::forward_dynamics_in_contact`](crate::ContactDynamics::forward_dynamics_in_contact), of
-    /// these tips; `NV` is `DOF` + 6. `None` is a tip that nothing holds. A tip on a link that there is not is on the
-    /// base.
-    #[must_use]
-    pub fn forward_dynamics_in_contact<T: Scalar, const NV: usize, const TIPS: usize>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        tau: &[T; DOF],
-        omega: &[T; 3],
-        base_rotation: &[[T; 3]; 3],
-        (tips, held): (&[FixedFrame<S>; TIPS], &[Option<ContactKind>; TIPS]),
-    ) -> AccelerationsAndWrenches<DOF, TIPS, T> {
-        let free = self.floating_forward_dynamics::<T, NV, 0>(q, qd, tau, omega, (&[], &[]));
-        let FloatingAccelerations { base, qdd } = free;
-        let mut numbers = base.linear.into_iter().chain(base.angular).chain(qdd);
-        let mut x = [(); NV].map(|()| numbers.next().unwrap_or_else(T::zero));
-        // the held rows come to the front
-        let mut jacobians = self.tip_jacobians::<T, NV, TIPS>(q, base_rotation, tips);
-        let lacking = self.tip_accelerations(q, qd, omega, base_rotation, tips);
-        let gravity = self.fixed_base::<T>().gravity;
-        let (zeros, mut forces) = (OfTips([[T::zero(); 6]; TIPS]), OfTips([[T::zero(); 6]; TIPS]));
-        let (columns, forces_of_tips) = (jacobians.as_flattened_mut(), forces.as_mut());
-        let rows = |tip: usize| held[tip].map_or(0, |kind| Contact { tip, kind }.rows());
-        let mut count = 0;
-        for tip in 0..TIPS {
-            for row in 0..rows(tip) {
-                columns[count] = columns[6 * tip + row];
-                let lacking = lacking[tip][row];
-                forces_of_tips[count] = if row < 3 { lacking + gravity[row] } else { lacking };
-                count += 1;
-            }
-        }
-        Held {
-            mass: &mut self.floating_mass_matrix::<T, NV>(q),
-            inverse_of_mass: &mut [T::zero(); NV],
-            columns: &mut columns[..count],
-            a: &mut [[zeros; 6]; TIPS].as_flattened_mut()[..count],
-            inverse: &mut zeros.clone().as_mut()[..count],
-            forces: &mut forces_of_tips[..count],
-        }
-        .hold(&mut x);
-        let mut forces = forces_of_tips.iter().copied();
-        let wrenches_on_robot = core::array::from_fn(|tip| {
-            let mut part = |first: usize| {
-                [(); 3].map(|()| if rows(tip) > first { forces.next().unwrap_or_else(T::zero) } else { T::zero() })
-            };
-            Wrench { force: part(0), moment: part(3) }
-        });
-        let qdd = core::array::from_fn(|joint| x[BASE + joint]);
-        AccelerationsAndWrenches { accelerations: FloatingAccelerations { base: of_base(&x), qdd }, wrenches_on_robot }
-    }
-}
-
-#[cfg(feature = "std")]
-impl<S: Constant> DynArm<S> {
-    /// The tips that something outside the robot holds.
-    #[must_use]
-    pub fn contacts(&self) -> &[Contact] {
-        &self.contacts
-    }
-
-    /// As [`ContactDynamics::forward_dynamics_in_contact`](crate::ContactDynamics::forward_dynamics_in_contact): the
-    /// acceleration of the base, those of the joints, and the wrench on the robot at each of the [tips](Self::tips).
-    ///
-    /// # Errors
-    /// When a joint argument does not have one element per joint.
+impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
     #[allow(clippy::type_complexity)] // base, joints, tips
-    pub fn forward_dynamics_in_contact<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        tau: &[T],
+    fn forward_dynamics_in_contact<T: Scalar>(
+        self,
+        [q, qd, tau]: [&[T]; 3],
         omega: &[T; 3],
         base_rotation: &[[T; 3]; 3],
-    ) -> Result<(BaseAcceleration<T>, Vec<T>, Vec<Wrench<T>>), WrongLength> {
-        let mut wrenches = vec![Wrench::zero(); self.tips().len()];
-        let (base, qdd) = self.floating_forward_dynamics(q, qd, tau, omega, &wrenches)?;
-        let mut x: Vec<T> = base.linear.into_iter().chain(base.angular).chain(qdd).collect();
-        let jacobians = self.tip_jacobians(q, base_rotation)?;
-        let lacking = self.tip_accelerations(q, qd, omega, base_rotation)?;
+    ) -> (BaseAcceleration<T>, J::Of<T>, P::Of<Wrench<T>>) {
+        let mut x = self.floating_accelerations([q, qd, tau], omega, AtTip::Wrenches(&[]));
+        let mut jacobians = self.each_tip(|tip| self.tip_jacobian(q, base_rotation, tip));
+        let lacking = self.each_tip(|tip| self.tip_acceleration([q, qd], omega, base_rotation, tip));
         let gravity = self.fixed_base::<T>().gravity;
-        let held: Vec<(usize, usize)> =
-            self.contacts.iter().flat_map(|&it| (0..it.rows()).map(move |row| (it.tip, row))).collect();
-        let lacking = held.iter().map(|&(tip, row)| {
-            let lacking = lacking[tip][row];
-            if row < 3 { lacking + gravity[row] } else { lacking }
-        });
-        let mut forces: Vec<T> = lacking.collect();
-        let zeros = vec![T::zero(); held.len()];
-        Held {
-            mass: &mut self.floating_mass_matrix(q)?,
-            inverse_of_mass: &mut x.clone(),
-            columns: &mut held.iter().map(|&(tip, row)| jacobians[tip][row].clone()).collect::<Vec<_>>(),
-            a: &mut vec![zeros.clone(); held.len()],
-            inverse: &mut zeros.clone(),
-            forces: &mut forces,
+        let zeros = OfTips::<P, T>(self.tips.all(&[T::zero(); 6]));
+        let (mut forces, mut a, mut inverse) =
+            (zeros.clone(), self.tips.of(|_| [(); 6].map(|()| zeros.clone())), zeros);
+        // the held rows come to the front
+        let (columns, mut count) = (jacobians.as_mut().as_flattened_mut(), 0);
+        let held = || self.contacts.iter().flat_map(|contact| (0..contact.rows()).map(|row| (contact.tip, row)));
+        for (tip, row) in held() {
+            columns[count] = columns[6 * tip + row].clone();
+            let lacking = lacking.as_ref()[tip][row];
+            forces.as_mut()[count] = if row < 3 { lacking + gravity[row] } else { lacking };
+            count += 1;
         }
-        .hold(&mut x);
-        for (&(tip, row), &force) in held.iter().zip(&forces) {
-            let Wrench { force: linear, moment } = &mut wrenches[tip];
+        Held {
+            mass: self.floating_mass_matrix(q).as_mut(),
+            inverse_of_mass: self.velocities.all(&T::zero()).as_mut(),
+            columns: &mut columns[..count],
+            a: &mut a.as_mut().as_flattened_mut()[..count],
+            inverse: &mut inverse.as_mut()[..count],
+            forces: &mut forces.as_mut()[..count],
+        }
+        .hold(x.as_mut());
+        let mut wrenches = self.tips.all(&Wrench::zero());
+        for ((tip, row), &force) in held().zip(forces.as_ref()) {
+            let Wrench { force: linear, moment } = &mut wrenches.as_mut()[tip];
             if row < 3 { linear[row] = force } else { moment[row - 3] = force }
         }
-        Ok((of_base(&x), x.split_off(BASE), wrenches))
+        let (base, qdd) = self.of_velocities(x.as_ref());
+        (base, qdd, wrenches)
     }
 }
+
+definitions! { ContactDynamics<DOF, NV, TIPS> {
+    /// As [`ContactDynamics::forward_dynamics_in_contact`]: the acceleration of the base, those of the joints, and the
+    /// wrench on the robot at each of the [tips](Self::tips).
+    fn forward_dynamics_in_contact(q: joints, qd: joints, tau: joints, omega: omega, base_rotation: rotation)
+        -> AccelerationsAndWrenches = |robot| robot.forward_dynamics_in_contact([q, qd, tau], omega, base_rotation);
+} }

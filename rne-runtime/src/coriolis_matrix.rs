@@ -13,12 +13,12 @@
 //! the same matrix.
 
 use crate::at_tip::AtTip;
+use crate::coordinates::Coordinates as _;
+use crate::definition::definitions;
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::per_joint::{PerJoint, Square};
 use crate::{Arm, BaseMotion, Constant, CoriolisMatrix, Scalar};
-#[cfg(feature = "std")]
-use crate::{DynArm, WrongLength};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn coriolis_matrix<T: Scalar>(self, q: &[T], qd: &[T]) -> Square<J, T> {
@@ -40,21 +40,10 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 }
 
-impl<const DOF: usize, S: Constant> CoriolisMatrix<DOF> for Arm<DOF, S> {
-    fn coriolis_matrix<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> [[T; DOF]; DOF] {
-        self.mechanism().coriolis_matrix(q, qd)
-    }
-}
-
-#[cfg(feature = "std")]
-impl<S: Constant> DynArm<S> {
+definitions! { CoriolisMatrix<DOF> {
     /// As [`CoriolisMatrix::coriolis_matrix`]: rows of C(q, q̇).
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn coriolis_matrix<T: Scalar>(&self, q: &[T], qd: &[T]) -> Result<Vec<Vec<T>>, WrongLength> {
-        let q = &*self.of_joints("q", q)?;
-        let qd = &*self.of_joints("qd", qd)?;
-        Ok(self.couplings.matrix(self.mechanism().coriolis_matrix(q, qd)))
-    }
-}
+    fn coriolis_matrix(q: joints, qd: joints) -> matrix = |robot| {
+        let [q, qd] = [q, qd].map(|values| robot.of_joints(values));
+        robot.coordinates.matrix(robot.mechanism.coriolis_matrix(q.as_ref(), qd.as_ref()))
+    };
+} }

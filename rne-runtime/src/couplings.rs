@@ -1,14 +1,12 @@
-//! Joints that follow others: from the coordinates of a robot to all its joints, and from the torques of all joints to
-//! those that work on the coordinates.
+//! Joints that follow others, of a robot with a number of joints known at run time.
 //!
-//! With the ratios of the couplings in the matrix G: the joints have G q, G q̇ and G q̈, the torques are Gᵀ τ, the mass
-//! matrix is Gᵀ M G. The order of the operations is part of the contract; generated code repeats it: terms in the order
-//! of the joints, one after the other.
-
-use std::borrow::Cow;
+//! The order of the operations is part of the contract; generated code repeats it: terms in the order of the joints, one
+//! after the other.
 
 use rne_model::Robot;
 
+use crate::coordinates::Coordinates;
+use crate::per_joint::Counted;
 use crate::{Constant, Scalar};
 
 /// The joints that are coordinates, and those that follow them.
@@ -51,63 +49,50 @@ impl<S: Constant> Couplings<S> {
     pub(crate) fn dof(&self) -> usize {
         self.coordinates.len()
     }
+}
 
-    fn is_empty(&self) -> bool {
+impl<S: Constant> Coordinates<Counted, S> for &Couplings<S> {
+    fn each(self) -> Counted {
+        Counted(self.dof())
+    }
+
+    fn are_joints(self) -> bool {
         self.coordinates.len() == self.follows.len()
     }
 
-    /// The values of all joints, from one for each coordinate.
-    pub(crate) fn of_joints<'a, T: Scalar>(&self, values: &'a [T]) -> Cow<'a, [T]> {
-        if self.is_empty() {
-            return Cow::Borrowed(values);
-        }
-        let mut all = self.only(values);
+    fn of_joints<T: Scalar>(self, values: &[T]) -> Vec<T> {
+        let mut all = self.applied(values);
         for (joint, follows) in self.follows.iter().enumerate() {
             if let Some(follows) = follows {
                 let terms = follows.iter().map(|(followed, ratio)| all[*followed] * ratio.to());
                 all[joint] = terms.reduce(|sum, term| sum + term).unwrap_or_else(T::zero);
             }
         }
-        Cow::Owned(all)
+        all
     }
 
-    /// Sines and cosines of all joints, from those of the coordinates and the positions `q` of all joints.
-    pub(crate) fn turns<'a, T: Scalar>(&self, sin: &'a [T], cos: &'a [T], q: &[T]) -> (Cow<'a, [T]>, Cow<'a, [T]>) {
-        if self.is_empty() {
-            return (Cow::Borrowed(sin), Cow::Borrowed(cos));
-        }
-        let (mut sin, mut cos) = (self.only(sin), self.only(cos));
+    fn turns<T: Scalar>(self, sin: &[T], cos: &[T], q: &[T]) -> [Vec<T>; 2] {
+        let [mut sin, mut cos] = [self.applied(sin), self.applied(cos)];
         for (joint, _) in self.follows.iter().enumerate().filter(|(_, follows)| follows.is_some()) {
             (sin[joint], cos[joint]) = T::sin_cos(q[joint]);
         }
-        (Cow::Owned(sin), Cow::Owned(cos))
+        [sin, cos]
     }
 
-    /// The elements of the coordinates, from one element for each joint.
-    pub(crate) fn of_coordinates<X: Clone>(&self, of_joints: Vec<X>) -> Vec<X> {
-        if self.is_empty() {
-            of_joints
-        } else {
-            self.coordinates.iter().map(|&joint| of_joints[joint].clone()).collect()
-        }
-    }
-
-    /// The torques of the actuators of all joints, from one for each coordinate: a follower has no actuator.
-    pub(crate) fn applied<'a, T: Scalar>(&self, torques: &'a [T]) -> Cow<'a, [T]> {
-        if self.is_empty() { Cow::Borrowed(torques) } else { Cow::Owned(self.only(torques)) }
-    }
-
-    fn only<T: Scalar>(&self, values: &[T]) -> Vec<T> {
+    fn applied<T: Scalar>(self, torques: &[T]) -> Vec<T> {
         let mut all = vec![T::zero(); self.follows.len()];
-        for (&joint, &value) in self.coordinates.iter().zip(values) {
+        for (&joint, &value) in self.coordinates.iter().zip(torques) {
             all[joint] = value;
         }
         all
     }
 
-    /// Gᵀ x, of numbers or rows x of all joints: `plus` adds the second, times the ratio, to the first.
-    pub(crate) fn gathered<X: Clone>(&self, of_joints: Vec<X>, plus: impl Fn(X, &X, &S) -> X) -> Vec<X> {
-        if self.is_empty() {
+    fn only<X: Clone>(self, of_joints: Vec<X>) -> Vec<X> {
+        self.coordinates.iter().map(|&joint| of_joints[joint].clone()).collect()
+    }
+
+    fn gathered<X: Clone>(self, of_joints: Vec<X>, plus: impl Fn(X, &X, &S) -> X) -> Vec<X> {
+        if self.are_joints() {
             return of_joints;
         }
         let of_coordinate = |&coordinate: &usize| {
@@ -118,31 +103,5 @@ impl<S: Constant> Couplings<S> {
             followers.fold(of_joints[coordinate].clone(), |sum, (x, ratio)| plus(sum, x, ratio))
         };
         self.coordinates.iter().map(of_coordinate).collect()
-    }
-
-    /// Gᵀ τ
-    pub(crate) fn torques<T: Scalar>(&self, of_joints: Vec<T>) -> Vec<T> {
-        self.gathered(of_joints, |sum, &torque, ratio| sum + torque * ratio.to())
-    }
-
-    /// Gᵀ A G, by rows.
-    pub(crate) fn matrix<T: Scalar>(&self, of_joints: Vec<Vec<T>>) -> Vec<Vec<T>> {
-        let rows = of_joints.into_iter().map(|row| self.torques(row)).collect();
-        self.gathered(rows, |sum, row, ratio| sum.into_iter().zip(row).map(|(a, &b)| a + b * ratio.to()).collect())
-    }
-
-    /// Gᵀ M G of a symmetric matrix, symmetric to the last bit.
-    pub(crate) fn symmetric<T: Scalar>(&self, of_joints: Vec<Vec<T>>) -> Vec<Vec<T>> {
-        let mut matrix = self.matrix(of_joints);
-        for index in 1..matrix.len() {
-            let (above, rest) = matrix.split_at_mut(index);
-            rest[0].iter_mut().zip(above).for_each(|(element, row)| *element = row[index]);
-        }
-        matrix
-    }
-
-    /// A G, by rows.
-    pub(crate) fn rows<T: Scalar, const ROWS: usize>(&self, of_joints: [Vec<T>; ROWS]) -> [Vec<T>; ROWS] {
-        of_joints.map(|row| self.torques(row))
     }
 }

@@ -1,39 +1,30 @@
 //! Derivatives of the torques, and of the wrench on a base that nothing holds, by dual numbers through the seven steps:
 //! exact up to rounding, one direction at a time.
 
-use rne_model::FixedFrame;
-
-use crate::at_tip::{AtTip, WrenchAtTip};
+use crate::at_tip::AtTip;
+use crate::coordinates::Coordinates as _;
+use crate::definition::{Definition, definitions};
 use crate::floating_base::BASE;
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::per_joint::{PerJoint, Square};
+use crate::wrench::AllStill as _;
 use crate::{
-    Arm, BaseMotion, Constant, Dual, FloatingTorqueDerivatives, InverseDynamicsDerivatives, Payload, Scalar,
-    TorqueDerivatives, Wrench,
+    Arm, ArmWithTips, BaseMotion, Constant, Dual, FloatingInverseDynamicsDerivatives, FloatingTorqueDerivatives,
+    InverseDynamicsDerivatives, Scalar, TorqueDerivatives, Wrench,
 };
 #[cfg(feature = "std")]
-use crate::{DynArm, DynFloatingTorqueDerivatives, WrongLength};
-
-/// [`TorqueDerivatives`] of a [`DynArm`](crate::DynArm).
-#[cfg(feature = "std")]
-#[derive(Clone, Debug, PartialEq)]
-pub struct DynTorqueDerivatives<T> {
-    /// ∂τ_i/∂q_j.
-    pub dq: Vec<Vec<T>>,
-    /// ∂τ_i/∂q̇_j.
-    pub dqd: Vec<Vec<T>>,
-}
+use crate::{DynFloatingTorqueDerivatives, DynTorqueDerivatives};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    /// ∂τ/∂q and ∂τ/∂q̇ of an arm with or without a payload.
+    /// ∂τ/∂q and ∂τ/∂q̇ under a load that does not change.
     pub(crate) fn torque_derivatives<T: Scalar>(
         self,
         q: &[T],
         qd: &[T],
         qdd: &[T],
-        payload: Option<&Payload<T>>,
-    ) -> (Square<J, T>, Square<J, T>) {
+        load: AtTip<'_, Dual<T>>,
+    ) -> [Square<J, T>; 2] {
         let constant = |x: &[T]| self.per_joint.of(|i| Dual::constant(x[i]));
         // x, with joint j on its way
         let along = |x: &[T], j: usize| {
@@ -41,11 +32,9 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
             self.per_joint.of(|i| Dual { value: x[i], derivative: unit.as_ref()[i] })
         };
         let base = self.fixed_base();
-        let payload = payload.map(Payload::still);
-        let tip = payload.as_ref().map_or(AtTip::Nothing, AtTip::Payload);
         let torques = |q: &J::Of<Dual<T>>, qd: &J::Of<Dual<T>>| {
             let qdd = constant(qdd);
-            self.torques(JointMotions::new(q.as_ref(), qd.as_ref(), qdd.as_ref()), &base, tip)
+            self.torques(JointMotions::new(q.as_ref(), qd.as_ref(), qdd.as_ref()), &base, load)
         };
         let (still_q, still_qd) = (constant(q), constant(qd));
         // Columns first.
@@ -54,7 +43,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let rows = |columns: Square<J, Dual<T>>| {
             self.per_joint.of(|i| self.per_joint.of(|j| columns.as_ref()[j].as_ref()[i].derivative))
         };
-        (rows(dq), rows(dqd))
+        [dq, dqd].map(rows)
     }
 }
 
@@ -73,7 +62,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         self,
         JointMotions { q, qd, qdd, .. }: JointMotions<'_, T>,
         base: &BaseMotion<T>,
-        at_tips: &[WrenchAtTip<Dual<T>>],
+        wrenches: &[Wrench<Dual<T>>],
     ) -> OfFloatingBase<J, T> {
         let along = |x: &[T], direction: Option<usize>| {
             let derivative = |i| if direction == Some(i) { T::one() } else { T::zero() };
@@ -90,7 +79,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let column = |by_q, by_qd, base: &BaseMotion<Dual<T>>| {
             let (q, qd, qdd) = (along(q, by_q), along(qd, by_qd), along(qdd, None));
             let joints = JointMotions::new(q.as_ref(), qd.as_ref(), qdd.as_ref());
-            let (wrench, tau) = self.of_floating_base(joints, base, AtTip::Wrenches(at_tips));
+            let (wrench, tau) = self.of_floating_base(joints, base, AtTip::Wrenches(wrenches));
             let of_base = core::array::from_fn(|row| {
                 (if row < 3 { wrench.force[row] } else { wrench.moment[row - 3] }).derivative
             });
@@ -107,92 +96,60 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 }
 
-impl<const DOF: usize, S: Constant> InverseDynamicsDerivatives<DOF> for Arm<DOF, S> {
-    fn inverse_dynamics_derivatives<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        qdd: &[T; DOF],
-    ) -> TorqueDerivatives<DOF, T> {
-        let (dq, dqd) = self.mechanism().torque_derivatives(q, qd, qdd, None);
-        TorqueDerivatives { dq, dqd }
+impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
+    /// ∂τ/∂q and ∂τ/∂q̇.
+    pub(crate) fn torque_derivatives<T: Scalar>(
+        self,
+        [q, qd, qdd]: [&[T]; 3],
+        load: AtTip<'_, Dual<T>>,
+    ) -> (Square<J, T>, Square<J, T>) {
+        let [q, qd, qdd] = [q, qd, qdd].map(|values| self.of_joints(values));
+        let found = self.mechanism.torque_derivatives(q.as_ref(), qd.as_ref(), qdd.as_ref(), load);
+        let [dq, dqd] = found.map(|matrix| self.coordinates.matrix(matrix));
+        (dq, dqd)
     }
-}
 
-/// An arm that does not know its tips takes them with the wrenches.
-impl<const DOF: usize, S: Constant> Arm<DOF, S> {
-    /// As [`FloatingInverseDynamicsDerivatives`](crate::FloatingInverseDynamicsDerivatives), at these tips; `NV` is
-    /// `DOF` + 6.
-    #[must_use]
-    pub fn floating_inverse_dynamics_derivatives<T: Scalar, const NV: usize, const TIPS: usize>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        qdd: &[T; DOF],
+    /// Rows of the base and of the coordinates, by the positions, by the rates, and by the angular velocity of the base.
+    #[allow(clippy::type_complexity)] // three matrices
+    pub(crate) fn floating_derivatives<T: Scalar>(
+        self,
+        [q, qd, qdd]: [&[T]; 3],
         base: &BaseMotion<T>,
-        (tips, wrenches): (&[FixedFrame<S>; TIPS], &[Wrench<T>; TIPS]),
-    ) -> FloatingTorqueDerivatives<DOF, NV, T> {
-        const { assert!(NV == DOF + BASE, "the matrices have a row for each joint and six for the base") };
-        let wrenches = wrenches.map(Wrench::still);
-        let at_tips = self.at_tips(tips, &wrenches);
-        let OfFloatingBase { joints, omega } =
-            self.mechanism().floating_derivatives(JointMotions::new(q, qd, qdd), base, &at_tips);
-        let element = |(of_base, of_joints): &([T; BASE], [T; DOF]), row: usize| match row.checked_sub(BASE) {
-            Some(joint) => of_joints[joint],
-            None => of_base[row],
-        };
-        let [dq, dqd] =
-            joints.map(|columns| core::array::from_fn(|row| core::array::from_fn(|j| element(&columns[j], row))));
-        let domega = core::array::from_fn(|row| [0, 1, 2].map(|axis| element(&omega[axis], row)));
-        FloatingTorqueDerivatives { dq, dqd, domega }
-    }
-}
-
-#[cfg(feature = "std")]
-impl<S: Constant> DynArm<S> {
-    /// As [`FloatingInverseDynamicsDerivatives`](crate::FloatingInverseDynamicsDerivatives), with one of `wrenches` for
-    /// each of the [tips](Self::tips): 6 + n rows.
-    ///
-    /// # Errors
-    /// When a joint argument does not have one element per joint, or `wrenches` not one element per tip.
-    pub fn floating_inverse_dynamics_derivatives<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        qdd: &[T],
-        base: &BaseMotion<T>,
-        wrenches: &[Wrench<T>],
-    ) -> Result<DynFloatingTorqueDerivatives<T>, WrongLength> {
-        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
-        let wrenches: Vec<_> = wrenches.iter().copied().map(Wrench::still).collect();
-        let at_tips = self.at_tips(&wrenches)?;
-        let OfFloatingBase { joints, omega } =
-            self.mechanism().floating_derivatives(JointMotions::new(&q, &qd, &qdd), base, &at_tips);
+        wrenches: &[Wrench<Dual<T>>],
+    ) -> (V::Of<J::Of<T>>, V::Of<J::Of<T>>, V::Of<[T; 3]>) {
+        let [q, qd, qdd] = [q, qd, qdd].map(|values| self.of_joints(values));
+        let joints = JointMotions::new(q.as_ref(), qd.as_ref(), qdd.as_ref());
+        let OfFloatingBase { joints, omega } = self.mechanism.floating_derivatives(joints, base, wrenches);
         let [dq, dqd] = joints.map(|columns| {
-            let of_base: [Vec<T>; BASE] =
-                core::array::from_fn(|row| columns.iter().map(|(of_base, _)| of_base[row]).collect());
-            let row = |joint: usize| columns.iter().map(|(_, of_joints)| of_joints[joint]).collect();
-            let of_joints = (0..columns.len()).map(row).collect();
-            let rows = self.couplings.rows(of_base).into_iter();
-            rows.chain(self.couplings.matrix(of_joints)).collect()
+            let all = self.mechanism.per_joint;
+            let of_base: [J::Of<T>; BASE] = core::array::from_fn(|row| all.of(|j| columns.as_ref()[j].0[row]));
+            let of_joints = all.of(|row| all.of(|j| columns.as_ref()[j].1.as_ref()[row]));
+            let (of_base, of_joints) = (self.coordinates.rows(of_base), self.coordinates.matrix(of_joints));
+            self.velocities.of(|row| match row.checked_sub(BASE) {
+                Some(joint) => of_joints.as_ref()[joint].clone(),
+                None => of_base[row].clone(),
+            })
         });
-        let omega = omega.map(|(of_base, of_joints)| [of_base.to_vec(), self.couplings.torques(of_joints)].concat());
-        let domega = (0..BASE + self.dof()).map(|row| [0, 1, 2].map(|axis| omega[axis][row])).collect();
-        Ok(DynFloatingTorqueDerivatives { dq, dqd, domega })
-    }
-
-    /// As [`InverseDynamicsDerivatives::inverse_dynamics_derivatives`]: rows of ∂τ/∂q and ∂τ/∂q̇.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn inverse_dynamics_derivatives<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        qdd: &[T],
-    ) -> Result<DynTorqueDerivatives<T>, WrongLength> {
-        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
-        let (dq, dqd) = self.mechanism().torque_derivatives(&q, &qd, &qdd, None);
-        Ok(DynTorqueDerivatives { dq: self.couplings.matrix(dq), dqd: self.couplings.matrix(dqd) })
+        let omega = omega.map(|(of_base, of_joints)| (of_base, self.coordinates.torques(of_joints)));
+        let domega = self.velocities.of(|row| {
+            omega.each_ref().map(|(of_base, of_joints)| match row.checked_sub(BASE) {
+                Some(joint) => of_joints.as_ref()[joint],
+                None => of_base[row],
+            })
+        });
+        (dq, dqd, domega)
     }
 }
+
+definitions! { InverseDynamicsDerivatives<DOF> {
+    /// As [`InverseDynamicsDerivatives::inverse_dynamics_derivatives`]: rows of ∂τ/∂q and ∂τ/∂q̇.
+    fn inverse_dynamics_derivatives(q: joints, qd: joints, qdd: joints) -> TorqueDerivatives =
+        |robot| robot.torque_derivatives([q, qd, qdd], AtTip::Nothing);
+} }
+
+definitions! { FloatingInverseDynamicsDerivatives<DOF, NV, TIPS> {
+    /// As [`FloatingInverseDynamicsDerivatives`], with one of `wrenches` for each of the [tips](Self::tips): 6 + n rows.
+    fn floating_inverse_dynamics_derivatives(q: joints, qd: joints, qdd: joints, base: motion, wrenches: wrenches)
+        -> FloatingTorqueDerivatives =
+        |robot| robot.floating_derivatives([q, qd, qdd], base, wrenches.all_still().as_ref());
+} }

@@ -1,12 +1,13 @@
 //! The runtime robot with a number of joints known at run time.
 
-use std::borrow::Cow;
-
 use rne_model::{Contact, Convention, FixedFrame, Joint, Link, Model, Motor, Robot, Row, Transform};
 
-use crate::at_tip::AtTip;
+use crate::at_tip::{AtTip, Tip};
 use crate::closed_loops::Loops;
+use crate::coordinates::Coordinates as _;
 use crate::couplings::Couplings;
+use crate::definition::Definition;
+use crate::floating_base::BASE;
 use crate::link_frame::{Chain, LinkFrame, Table};
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
@@ -41,7 +42,8 @@ pub struct DynArm<S = f64> {
     pub(crate) drives: Motors<S>,
     pub(crate) at: Option<FixedFrame<S>>,
     /// The frames that carry wrenches.
-    pub(crate) tips: Vec<FixedFrame<S>>,
+    tips: Vec<FixedFrame<S>>,
+    prepared_tips: Vec<Tip<S>>,
     /// The tips that are held.
     pub(crate) contacts: Vec<Contact>,
     /// The closed loops.
@@ -68,14 +70,13 @@ impl DynArm {
         let at = robot.at.map(|frame| robot.fixed_frame(frame));
         let (couplings, drives) = (Couplings::of(robot), Motors::of(robot));
         let rotors = robot.rotors;
-        let parts = Self::of_table(table, robot.gravity, robot.base);
+        let parts = Self::of_table(table, robot.gravity, robot.base, robot.wrench_frames());
         Self {
             motors,
             rotors,
             couplings,
             drives,
             at,
-            tips: robot.wrench_frames(),
             contacts: robot.contacts.clone(),
             closed: Loops::of(robot),
             ..parts
@@ -90,10 +91,10 @@ impl<S: Constant> DynArm<S> {
         let Model { convention, gravity, base, tool, rows } = model;
         let convention = *convention;
         let table = Table { convention, rows, branches: &[], tool, tip_on: None, floating_base: None };
-        Self::of_table(table, *gravity, *base)
+        Self::of_table(table, *gravity, *base, vec![table.tip()])
     }
 
-    fn of_table(table: Table<'_, S>, gravity: [S; 3], base: Transform<S>) -> Self {
+    fn of_table(table: Table<'_, S>, gravity: [S; 3], base: Transform<S>, tips: Vec<FixedFrame<S>>) -> Self {
         let Table { convention, rows, tool, tip_on, floating_base, .. } = table;
         Self {
             convention,
@@ -111,7 +112,8 @@ impl<S: Constant> DynArm<S> {
             couplings: Couplings::none(rows.len()),
             drives: Motors::NONE,
             at: None,
-            tips: vec![table.tip()],
+            prepared_tips: tips.iter().map(|tip| Tip::new(table, tip)).collect(),
+            tips,
             contacts: Vec::new(),
             closed: Loops::none(),
         }
@@ -173,100 +175,23 @@ impl<S: Constant> DynArm<S> {
         &self.tool
     }
 
+    /// The frames that carry wrenches, in the order of these: those of the list `tips` of the robot file, or the tip
+    /// frame alone.
+    #[must_use]
+    pub fn tips(&self) -> &[FixedFrame<S>] {
+        &self.tips
+    }
+
+    /// The tips that something outside the robot holds.
+    #[must_use]
+    pub fn contacts(&self) -> &[Contact] {
+        &self.contacts
+    }
+
     /// The base at rest under the robot's gravity.
     #[must_use]
     pub fn fixed_base<T: Scalar>(&self) -> BaseMotion<T> {
         BaseMotion::fixed(self.gravity.map(S::to))
-    }
-
-    /// Torques with a free tip, τ(q, q̇, q̈).
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn inverse_dynamics<T: Scalar>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Result<Vec<T>, WrongLength> {
-        self.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, &self.fixed_base(), None)
-    }
-
-    /// Torques when the last link exerts `wrench` on its environment: τ = τ_free + Jᵀ w.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn inverse_dynamics_with_wrench<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        qdd: &[T],
-        wrench: &Wrench<T>,
-    ) -> Result<Vec<T>, WrongLength> {
-        self.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, &self.fixed_base(), Some(wrench))
-    }
-
-    /// Torques when `payload` is fixed to the tip: those of the arm whose last link has the payload too.
-    ///
-    /// # Errors
-    /// When a joint argument does not have one element per joint.
-    pub fn inverse_dynamics_with_payload<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        qdd: &[T],
-        payload: &Payload<T>,
-    ) -> Result<Vec<T>, WrongLength> {
-        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
-        let joints = JointMotions::new(&q, &qd, &qdd);
-        Ok(self.couplings.torques(self.mechanism().torques(joints, &self.fixed_base(), AtTip::Payload(payload))))
-    }
-
-    /// Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints, and for joints that
-    /// follow others.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn inverse_dynamics_from_sin_cos<T: Scalar>(
-        &self,
-        sin: &[T],
-        cos: &[T],
-        q: &[T],
-        qd: &[T],
-        qdd: &[T],
-    ) -> Result<Vec<T>, WrongLength> {
-        self.has_length("sin", sin)?;
-        self.has_length("cos", cos)?;
-        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
-        let (sin, cos) = self.couplings.turns(sin, cos, &q);
-        let joints = JointMotions { turns: Some((&sin, &cos)), ..JointMotions::new(&q, &qd, &qdd) };
-        Ok(self.couplings.torques(self.mechanism().torques(joints, &self.fixed_base(), AtTip::Nothing)))
-    }
-
-    /// Torques that hold the arm still against gravity, τ(q, 0, 0).
-    ///
-    /// # Errors
-    /// When the argument does not have one element per joint.
-    pub fn gravity_torques<T: Scalar>(&self, q: &[T]) -> Result<Vec<T>, WrongLength> {
-        let zero = vec![T::zero(); self.dof()];
-        self.inverse_dynamics(q, &zero, &zero)
-    }
-
-    /// Coriolis, centrifugal and gravity torques, τ(q, q̇, 0).
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn bias_torques<T: Scalar>(&self, q: &[T], qd: &[T]) -> Result<Vec<T>, WrongLength> {
-        self.inverse_dynamics(q, qd, &vec![T::zero(); self.dof()])
-    }
-
-    /// Torques on a moving base with a free tip: `base` replaces the robot's gravity and the base at rest.
-    ///
-    /// # Errors
-    /// When a joint argument does not have one element per joint.
-    pub fn inverse_dynamics_on_moving_base<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        qdd: &[T],
-        base: &BaseMotion<T>,
-    ) -> Result<Vec<T>, WrongLength> {
-        self.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, base, None)
     }
 
     /// Torques on a moving base: `base` replaces the robot's gravity and the base at rest. `wrench` is what the last
@@ -282,9 +207,8 @@ impl<S: Constant> DynArm<S> {
         base: &BaseMotion<T>,
         wrench: Option<&Wrench<T>>,
     ) -> Result<Vec<T>, WrongLength> {
-        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
-        let joints = JointMotions::new(&q, &qd, &qdd);
-        Ok(self.couplings.torques(self.mechanism().torques(joints, base, wrench.into())))
+        self.have_lengths(&[("q", q), ("qd", qd), ("qdd", qdd)])?;
+        Ok(self.definition().torques_on([q, qd, qdd], base, wrench.into()))
     }
 
     /// Every vector of the seven steps, in the axes of form P. Arguments as in
@@ -300,8 +224,7 @@ impl<S: Constant> DynArm<S> {
         base: &BaseMotion<T>,
         wrench: Option<&Wrench<T>>,
     ) -> Result<DynTrace<T>, WrongLength> {
-        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
-        Ok(self.traced(JointMotions::new(&q, &qd, &qdd), base, wrench.into()))
+        self.traced([q, qd, qdd], base, wrench.into())
     }
 
     /// Traces the seven steps on a base at rest, with `payload` fixed to the tip.
@@ -315,43 +238,34 @@ impl<S: Constant> DynArm<S> {
         qdd: &[T],
         payload: &Payload<T>,
     ) -> Result<DynTrace<T>, WrongLength> {
-        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
-        Ok(self.traced(JointMotions::new(&q, &qd, &qdd), &self.fixed_base(), AtTip::Payload(payload)))
+        self.traced([q, qd, qdd], &self.fixed_base(), AtTip::Payload(payload))
     }
 
-    fn traced<T: Scalar>(&self, joints: JointMotions<'_, T>, base: &BaseMotion<T>, tip: AtTip<'_, T>) -> DynTrace<T> {
-        let (motions, loads) = self.mechanism().passes(joints, base, tip);
+    fn traced<T: Scalar>(
+        &self,
+        [q, qd, qdd]: [&[T]; 3],
+        base: &BaseMotion<T>,
+        tip: AtTip<'_, T>,
+    ) -> Result<DynTrace<T>, WrongLength> {
+        self.have_lengths(&[("q", q), ("qd", qd), ("qdd", qdd)])?;
+        let [q, qd, qdd] = [q, qd, qdd].map(|values| self.couplings.of_joints(values));
+        let (joints, mechanism) = (JointMotions::new(&q, &qd, &qdd), self.mechanism());
+        let (motions, loads) = mechanism.passes(joints, base, tip);
         let mut links = vec![LinkTrace::empty(); self.rows.len()];
-        let velocities = self.mechanism().velocities(joints, base, &motions);
-        trace::record(self.mechanism().chain, joints.q, &velocities, &motions, &loads, &mut links);
-        DynTrace { links }
+        let velocities = mechanism.velocities(joints, base, &motions);
+        trace::record(mechanism.chain, joints.q, &velocities, &motions, &loads, &mut links);
+        Ok(DynTrace { links })
     }
 
-    /// The positions, rates and accelerations of all joints, from those of the coordinates.
-    #[allow(clippy::type_complexity)] // three arrays
-    pub(crate) fn of_all_joints<'a, T: Scalar>(
-        &self,
-        q: &'a [T],
-        qd: &'a [T],
-        qdd: &'a [T],
-    ) -> Result<(Cow<'a, [T]>, Cow<'a, [T]>, Cow<'a, [T]>), WrongLength> {
-        Ok((self.of_joints("q", q)?, self.of_joints("qd", qd)?, self.of_joints("qdd", qdd)?))
+    /// Whether each list has one element for each coordinate.
+    pub(crate) fn have_lengths<T>(&self, lists: &[(&'static str, &[T])]) -> Result<(), WrongLength> {
+        lists.iter().try_for_each(|(argument, values)| self.has_length(argument, values))
     }
 
-    /// An argument with an element for each joint, from one with an element for each coordinate.
-    pub(crate) fn of_joints<'a, T: Scalar>(
-        &self,
-        argument: &'static str,
-        values: &'a [T],
-    ) -> Result<Cow<'a, [T]>, WrongLength> {
-        self.has_length(argument, values)?;
-        Ok(self.couplings.of_joints(values))
-    }
-
-    /// The torques of the actuators of all joints.
-    pub(crate) fn applied<'a, T: Scalar>(&self, tau: &'a [T]) -> Result<Cow<'a, [T]>, WrongLength> {
-        self.has_length("tau", tau)?;
-        Ok(self.couplings.applied(tau))
+    /// Whether there is a wrench for each tip.
+    pub(crate) fn has_tips<T>(&self, wrenches: &[Wrench<T>]) -> Result<(), WrongLength> {
+        let (expected, found) = (self.tips.len(), wrenches.len());
+        if expected == found { Ok(()) } else { Err(WrongLength { argument: "wrenches", expected, found }) }
     }
 
     pub(crate) fn has_length<T>(&self, argument: &'static str, values: &[T]) -> Result<(), WrongLength> {
@@ -377,13 +291,22 @@ impl<S: Constant> DynArm<S> {
             rotors,
             drives,
             at,
+            tips: frames,
+            prepared_tips,
             ..
         } = self;
         let (convention, tip_on, floating_base) = (*convention, *tip_on, *floating_base);
         let table = Table { convention, rows, branches, tool, tip_on, floating_base };
-        let chain = Chain { links, tip, tip_link: table.tip().on, spins: drives.spins(), floating_base };
+        let (tip_link, spins) = (table.tip().on, drives.spins());
+        let chain = Chain { links, tip, tip_link, tips: prepared_tips, spins, floating_base };
         let (per_joint, rotors, at) = (Counted(rows.len()), *rotors, at.as_ref());
-        Mechanism { per_joint, chain, table, motors, rotors, gravity, base, at }
+        Mechanism { per_joint, chain, table, frames, motors, rotors, gravity, base, at }
+    }
+
+    pub(crate) fn definition(&self) -> Definition<'_, Counted, Counted, Counted, S> {
+        let [velocities, tips] = [BASE + self.dof(), self.tips.len()].map(Counted);
+        let (mechanism, coordinates) = (self.mechanism(), &self.couplings);
+        Definition { mechanism, coordinates, velocities, tips, contacts: &self.contacts }
     }
 }
 
@@ -399,6 +322,7 @@ impl DynArm<f64> {
         let (convention, tool, tip_on) = (self.convention, &self.tool.to_f32(), self.tip_on);
         let (rotors, couplings, at) = (self.rotors, self.couplings.to_f32(), self.at.map(FixedFrame::to_f32));
         let floating_base = self.floating_base.map(Link::to_f32);
+        let tips = self.tips.iter().map(|tip| tip.to_f32()).collect();
         let table = Table { convention, rows: &rows, branches: &branches, tool, tip_on, floating_base };
         DynArm {
             motors,
@@ -406,10 +330,9 @@ impl DynArm<f64> {
             couplings,
             drives: self.drives.to_f32(),
             at,
-            tips: self.tips.iter().map(|tip| tip.to_f32()).collect(),
             contacts: self.contacts.clone(),
             closed: self.closed.to_f32(),
-            ..DynArm::of_table(table, self.gravity.map(|x| x as f32), self.base.to_f32())
+            ..DynArm::of_table(table, self.gravity.map(|x| x as f32), self.base.to_f32(), tips)
         }
     }
 }

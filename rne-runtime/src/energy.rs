@@ -20,14 +20,13 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::definition::{Definition, definitions};
 use crate::kinematics::Placement;
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::per_joint::PerJoint;
 use crate::seven_steps;
 use crate::{Arm, BaseMotion, BaseTwist, Constant, Energy, FloatingEnergy, Pose, Scalar};
-#[cfg(feature = "std")]
-use crate::{DynArm, WrongLength};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     /// The kinetic energy on a base that moves as told, or stands still.
@@ -94,68 +93,25 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 }
 
-impl<const DOF: usize, S: Constant> Energy<DOF> for Arm<DOF, S> {
-    fn kinetic_energy<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> T {
-        self.mechanism().kinetic_energy(q, qd, None)
-    }
-
-    fn potential_energy<T: Scalar>(&self, q: &[T; DOF]) -> T {
-        self.mechanism().potential_energy(q)
-    }
-}
-
-impl<const DOF: usize, S: Constant> FloatingEnergy<DOF> for Arm<DOF, S> {
-    fn floating_kinetic_energy<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], twist: &BaseTwist<T>) -> T {
-        self.mechanism().kinetic_energy(q, qd, Some(twist))
-    }
-
-    fn floating_potential_energy<T: Scalar>(&self, q: &[T; DOF], pose: &Pose<T>) -> T {
-        self.mechanism().floating_potential_energy(q, pose)
-    }
-}
-
-#[cfg(feature = "std")]
-impl<S: Constant> DynArm<S> {
+definitions! { Energy<DOF> {
     /// As [`Energy::kinetic_energy`].
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn kinetic_energy<T: Scalar>(&self, q: &[T], qd: &[T]) -> Result<T, WrongLength> {
-        let q = &*self.of_joints("q", q)?;
-        let qd = &*self.of_joints("qd", qd)?;
-        Ok(self.mechanism().kinetic_energy(q, qd, None))
-    }
-
-    /// As [`FloatingEnergy::floating_kinetic_energy`].
-    ///
-    /// # Errors
-    /// When a joint argument does not have one element per joint.
-    pub fn floating_kinetic_energy<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        twist: &BaseTwist<T>,
-    ) -> Result<T, WrongLength> {
-        let q = &*self.of_joints("q", q)?;
-        let qd = &*self.of_joints("qd", qd)?;
-        Ok(self.mechanism().kinetic_energy(q, qd, Some(twist)))
-    }
-
-    /// As [`FloatingEnergy::floating_potential_energy`].
-    ///
-    /// # Errors
-    /// When `q` does not have one element per joint.
-    pub fn floating_potential_energy<T: Scalar>(&self, q: &[T], pose: &Pose<T>) -> Result<T, WrongLength> {
-        let q = &*self.of_joints("q", q)?;
-        Ok(self.mechanism().floating_potential_energy(q, pose))
-    }
-
+    fn kinetic_energy(q: joints, qd: joints) -> number = |robot| robot.kinetic_energy(q, qd, None);
     /// As [`Energy::potential_energy`].
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn potential_energy<T: Scalar>(&self, q: &[T]) -> Result<T, WrongLength> {
-        let q = &*self.of_joints("q", q)?;
-        Ok(self.mechanism().potential_energy(q))
+    fn potential_energy(q: joints) -> number = |robot| robot.mechanism.potential_energy(robot.of_joints(q).as_ref());
+} }
+
+definitions! { FloatingEnergy<DOF> {
+    /// As [`FloatingEnergy::floating_kinetic_energy`].
+    fn floating_kinetic_energy(q: joints, qd: joints, twist: twist) -> number =
+        |robot| robot.kinetic_energy(q, qd, Some(twist));
+    /// As [`FloatingEnergy::floating_potential_energy`].
+    fn floating_potential_energy(q: joints, pose: pose) -> number =
+        |robot| robot.mechanism.floating_potential_energy(robot.of_joints(q).as_ref(), pose);
+} }
+
+impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
+    fn kinetic_energy<T: Scalar>(self, q: &[T], qd: &[T], twist: Option<&BaseTwist<T>>) -> T {
+        let [q, qd] = [q, qd].map(|values| self.of_joints(values));
+        self.mechanism.kinetic_energy(q.as_ref(), qd.as_ref(), twist)
     }
 }

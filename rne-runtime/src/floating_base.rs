@@ -14,16 +14,18 @@
 //! in L. The order of the operations is otherwise that of [`ForwardDynamics`](crate::ForwardDynamics).
 
 use nalgebra::Vector3;
-use rne_model::FixedFrame;
 
 use crate::at_tip::AtTip;
+use crate::coordinates::Coordinates as _;
+use crate::definition::{Definition, definitions};
 use crate::ldlt::{factor, solve};
 use crate::link_state::{ForceMoment, JointMotions};
 use crate::mechanism::Mechanism;
 use crate::per_joint::{PerJoint, Square};
-use crate::{Arm, BaseAcceleration, BaseMotion, Constant, FloatingAccelerations, FloatingTorques, Scalar, Wrench};
-#[cfg(feature = "std")]
-use crate::{DynArm, WrongLength};
+use crate::{
+    ArmWithTips, BaseAcceleration, BaseMotion, BaseTwist, CentroidalMomentum, Constant, FloatingAccelerations,
+    FloatingBase, FloatingTorques, Scalar, Wrench,
+};
 
 /// Rows of the base: x, y, z, then about x, y, z.
 pub(crate) const BASE: usize = 6;
@@ -115,25 +117,6 @@ impl<T: Scalar> Centre<T> {
     }
 }
 
-/// Puts a matrix together, row by row into zeros.
-fn fill<T: Scalar, R: AsMut<[T]>, V: AsRef<[T]>>(
-    matrix: &mut [R],
-    base: &[[T; BASE]; BASE],
-    rows: &[V; BASE],
-    joints: &[V],
-) {
-    for (row, (base, of_joints)) in base.iter().zip(rows).enumerate() {
-        matrix[row].as_mut()[..BASE].copy_from_slice(base);
-        matrix[row].as_mut()[BASE..].copy_from_slice(of_joints.as_ref());
-        for (column, &element) in of_joints.as_ref().iter().enumerate() {
-            matrix[BASE + column].as_mut()[row] = element;
-        }
-    }
-    for (row, of_joints) in joints.iter().enumerate() {
-        matrix[BASE + row].as_mut()[BASE..].copy_from_slice(of_joints.as_ref());
-    }
-}
-
 /// Makes the solution x of M x = b from b; `inverse` is a place for the reciprocals of D.
 pub(crate) fn solve_from_the_ends<T: Scalar, R: AsRef<[T]> + AsMut<[T]>>(
     matrix: &mut [R],
@@ -155,194 +138,109 @@ pub(crate) fn of_base<T: Scalar>(x: &[T]) -> BaseAcceleration<T> {
     BaseAcceleration { linear: [x[0], x[1], x[2]], angular: [x[3], x[4], x[5]] }
 }
 
-/// An arm that does not know its tips takes them with the wrenches.
-impl<const DOF: usize, S: Constant> Arm<DOF, S> {
-    /// As [`FloatingBase::inverse_dynamics_of_floating_base`](crate::FloatingBase::inverse_dynamics_of_floating_base),
-    /// at these tips. A tip on the base, or on a link that there is not, carries no load.
-    #[must_use]
-    pub fn inverse_dynamics_of_floating_base<T: Scalar, const TIPS: usize>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        qdd: &[T; DOF],
-        base: &BaseMotion<T>,
-        (tips, wrenches): (&[FixedFrame<S>; TIPS], &[Wrench<T>; TIPS]),
-    ) -> FloatingTorques<DOF, T> {
-        let (joints, at_tips) = (JointMotions::new(q, qd, qdd), self.at_tips(tips, wrenches));
-        let (wrench, tau) = self.mechanism().of_floating_base(joints, base, AtTip::Wrenches(&at_tips));
-        FloatingTorques { wrench: Wrench::from_vectors(wrench.force, wrench.moment), tau }
+impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
+    /// Six rows and columns of the base, and those of the coordinates.
+    pub(crate) fn floating_mass_matrix<T: Scalar>(self, q: &[T]) -> Square<V, T> {
+        let FloatingMass { base, rows, joints } = self.mechanism.floating_mass(self.of_joints(q).as_ref());
+        let (rows, joints) = (self.coordinates.rows(rows), self.coordinates.symmetric(joints));
+        self.velocities.of(|row| {
+            self.velocities.of(|column| match (row.checked_sub(BASE), column.checked_sub(BASE)) {
+                (None, None) => base[row][column],
+                (None, Some(joint)) => rows[row].as_ref()[joint],
+                (Some(joint), None) => rows[column].as_ref()[joint],
+                (Some(i), Some(j)) => joints.as_ref()[i].as_ref()[j],
+            })
+        })
     }
 
-    /// As [`FloatingBase::floating_mass_matrix`](crate::FloatingBase::floating_mass_matrix); `NV` is `DOF` + 6.
-    #[must_use]
-    pub fn floating_mass_matrix<T: Scalar, const NV: usize>(&self, q: &[T; DOF]) -> [[T; NV]; NV] {
-        const { assert!(NV == DOF + BASE, "the matrix has a row for each joint and six for the base") };
-        let FloatingMass { base, rows, joints } = self.mechanism().floating_mass(q);
-        let mut matrix = [[T::zero(); NV]; NV];
-        fill(&mut matrix, &base, &rows, &joints);
-        matrix
+    /// The wrench on the base, then the torques, where nothing accelerates.
+    pub(crate) fn floating_bias<T: Scalar>(self, [q, qd]: [&[T]; 2], omega: &[T; 3], load: AtTip<'_, T>) -> V::Of<T> {
+        let zeros = self.zeros();
+        let (Wrench { force, moment }, tau) = self.torques_and_wrench([q, qd, zeros.as_ref()], &turning(omega), load);
+        self.velocities.of(|row| match row {
+            0..3 => force[row],
+            3..BASE => moment[row - 3],
+            _ => tau.as_ref()[row - BASE],
+        })
     }
 
-    /// As [`FloatingBase::floating_bias`](crate::FloatingBase::floating_bias), at these tips; `NV` is `DOF` + 6.
-    #[must_use]
-    pub fn floating_bias<T: Scalar, const NV: usize, const TIPS: usize>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
+    /// The acceleration of the base less gravity, then those of the coordinates.
+    pub(crate) fn floating_accelerations<T: Scalar>(
+        self,
+        [q, qd, tau]: [&[T]; 3],
         omega: &[T; 3],
-        at_tips: (&[FixedFrame<S>; TIPS], &[Wrench<T>; TIPS]),
-    ) -> [T; NV] {
-        const { assert!(NV == DOF + BASE, "the vector has an element for each joint and six for the base") };
-        let zeros = [T::zero(); DOF];
-        let FloatingTorques { wrench: Wrench { force, moment }, tau } =
-            self.inverse_dynamics_of_floating_base(q, qd, &zeros, &turning(omega), at_tips);
-        let mut numbers = force.into_iter().chain(moment).chain(tau);
-        [(); NV].map(|()| numbers.next().unwrap_or_else(T::zero))
+        load: AtTip<'_, T>,
+    ) -> V::Of<T> {
+        let bias = self.floating_bias([q, qd], omega, load);
+        let applied = |row: usize| row.checked_sub(BASE).map_or_else(T::zero, |joint| tau[joint]);
+        let mut x = self.velocities.of(|row| applied(row) - bias.as_ref()[row]);
+        let mut inverse = self.velocities.all(&T::zero());
+        solve_from_the_ends(self.floating_mass_matrix(q).as_mut(), inverse.as_mut(), x.as_mut());
+        x
     }
 
-    /// As [`CentroidalMomentum::centroidal_momentum_matrix`](crate::CentroidalMomentum::centroidal_momentum_matrix);
-    /// `NV` is `DOF` + 6.
-    #[must_use]
-    pub fn centroidal_momentum_matrix<T: Scalar, const NV: usize>(&self, q: &[T; DOF]) -> [[T; NV]; 6] {
-        const { assert!(NV == DOF + BASE, "the matrix has a column for each joint and six for the base") };
-        let mass = self.mechanism().floating_mass(q);
-        let (centre, FloatingMass { mut base, mut rows, .. }) = (mass.centre(), mass);
-        centre.take_base(&mut base);
-        centre.take(&mut rows);
-        let element = |row: usize, column: usize| match column.checked_sub(BASE) {
-            Some(joint) => rows[row].as_ref()[joint],
-            None => base[row][column],
-        };
-        core::array::from_fn(|row| core::array::from_fn(|column| element(row, column)))
-    }
-
-    /// As [`CentroidalMomentum::centroidal_bias`](crate::CentroidalMomentum::centroidal_bias).
-    #[must_use]
-    pub fn centroidal_bias<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], omega: &[T; 3]) -> [T; 6] {
-        let FloatingTorques { wrench: Wrench { force, moment }, .. } =
-            self.inverse_dynamics_of_floating_base(q, qd, &[T::zero(); DOF], &turning(omega), (&[], &[]));
-        self.mechanism().floating_mass(q).centre().rate(force, moment)
-    }
-
-    /// As [`FloatingBase::floating_forward_dynamics`](crate::FloatingBase::floating_forward_dynamics), at these tips;
-    /// `NV` is `DOF` + 6.
-    #[must_use]
-    pub fn floating_forward_dynamics<T: Scalar, const NV: usize, const TIPS: usize>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        tau: &[T; DOF],
+    /// The acceleration of the base less gravity, and those of the coordinates.
+    pub(crate) fn floating_forward_dynamics<T: Scalar>(
+        self,
+        arguments: [&[T]; 3],
         omega: &[T; 3],
-        at_tips: (&[FixedFrame<S>; TIPS], &[Wrench<T>; TIPS]),
-    ) -> FloatingAccelerations<DOF, T> {
-        let bias = self.floating_bias::<T, NV, TIPS>(q, qd, omega, at_tips);
-        let applied = |row: usize| if row < BASE { T::zero() } else { tau[row - BASE] };
-        let mut x: [T; NV] = core::array::from_fn(|row| applied(row) - bias[row]);
-        let mut matrix = self.floating_mass_matrix::<T, NV>(q);
-        solve_from_the_ends(&mut matrix, &mut [T::zero(); NV], &mut x);
-        FloatingAccelerations { base: of_base(&x), qdd: core::array::from_fn(|joint| x[BASE + joint]) }
-    }
-}
-
-#[cfg(feature = "std")]
-impl<S: Constant> DynArm<S> {
-    /// As [`FloatingBase::inverse_dynamics_of_floating_base`](crate::FloatingBase::inverse_dynamics_of_floating_base),
-    /// with one of `wrenches` for each of the [tips](Self::tips): the wrench on the base, and the torques.
-    ///
-    /// # Errors
-    /// When a joint argument does not have one element per joint, or `wrenches` not one element per tip.
-    pub fn inverse_dynamics_of_floating_base<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        qdd: &[T],
-        base: &BaseMotion<T>,
-        wrenches: &[Wrench<T>],
-    ) -> Result<(Wrench<T>, Vec<T>), WrongLength> {
-        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
-        let (joints, at_tips) = (JointMotions::new(&q, &qd, &qdd), self.at_tips(wrenches)?);
-        let (wrench, of_joints) = self.mechanism().of_floating_base(joints, base, AtTip::Wrenches(&at_tips));
-        Ok((Wrench::from_vectors(wrench.force, wrench.moment), self.couplings.torques(of_joints)))
+        load: AtTip<'_, T>,
+    ) -> (BaseAcceleration<T>, J::Of<T>) {
+        self.of_velocities(self.floating_accelerations(arguments, omega, load).as_ref())
     }
 
-    /// As [`FloatingBase::floating_mass_matrix`](crate::FloatingBase::floating_mass_matrix): 6 + n rows.
-    ///
-    /// # Errors
-    /// When the argument does not have one element per joint.
-    pub fn floating_mass_matrix<T: Scalar>(&self, q: &[T]) -> Result<Vec<Vec<T>>, WrongLength> {
-        let q = &*self.of_joints("q", q)?;
-        let FloatingMass { base, rows, joints } = self.mechanism().floating_mass(q);
-        let (rows, joints) = (self.couplings.rows(rows), self.couplings.symmetric(joints));
-        let size = BASE + self.dof();
-        let mut matrix = vec![vec![T::zero(); size]; size];
-        fill(&mut matrix, &base, &rows, &joints);
-        Ok(matrix)
+    /// The acceleration of the base, and those of the coordinates.
+    pub(crate) fn of_velocities<T: Scalar>(self, x: &[T]) -> (BaseAcceleration<T>, J::Of<T>) {
+        (of_base(x), self.coordinates.each().of(|joint| x[BASE + joint]))
     }
 
-    /// As [`FloatingBase::floating_bias`](crate::FloatingBase::floating_bias), with one of `wrenches` for each of the
-    /// [tips](Self::tips): 6 + n numbers.
-    ///
-    /// # Errors
-    /// When a joint argument does not have one element per joint, or `wrenches` not one element per tip.
-    pub fn floating_bias<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        omega: &[T; 3],
-        wrenches: &[Wrench<T>],
-    ) -> Result<Vec<T>, WrongLength> {
-        let zeros = vec![T::zero(); self.dof()];
-        let (Wrench { force, moment }, tau) =
-            self.inverse_dynamics_of_floating_base(q, qd, &zeros, &turning(omega), wrenches)?;
-        Ok(force.into_iter().chain(moment).chain(tau).collect())
-    }
-
-    /// As [`CentroidalMomentum::centroidal_momentum_matrix`](crate::CentroidalMomentum::centroidal_momentum_matrix):
-    /// six rows of 6 + n numbers.
-    ///
-    /// # Errors
-    /// When the argument does not have one element per joint.
-    pub fn centroidal_momentum_matrix<T: Scalar>(&self, q: &[T]) -> Result<Vec<Vec<T>>, WrongLength> {
-        let q = &*self.of_joints("q", q)?;
-        let mass = self.mechanism().floating_mass(q);
+    fn centroidal_momentum_matrix<T: Scalar>(self, q: &[T]) -> [V::Of<T>; BASE] {
+        let mass = self.mechanism.floating_mass(self.of_joints(q).as_ref());
         let (centre, FloatingMass { mut base, rows, .. }) = (mass.centre(), mass);
-        let mut rows = self.couplings.rows(rows);
+        let mut rows = self.coordinates.rows(rows);
         centre.take_base(&mut base);
         centre.take(&mut rows);
-        Ok(base.iter().zip(rows).map(|(base, joints)| [base.as_slice(), joints.as_ref()].concat()).collect())
+        core::array::from_fn(|row| {
+            self.velocities.of(|column| match column.checked_sub(BASE) {
+                Some(joint) => rows[row].as_ref()[joint],
+                None => base[row][column],
+            })
+        })
     }
 
-    /// As [`CentroidalMomentum::centroidal_bias`](crate::CentroidalMomentum::centroidal_bias).
-    ///
-    /// # Errors
-    /// When a joint argument does not have one element per joint.
-    pub fn centroidal_bias<T: Scalar>(&self, q: &[T], qd: &[T], omega: &[T; 3]) -> Result<[T; 6], WrongLength> {
-        let (zeros, free) = (vec![T::zero(); self.dof()], vec![Wrench::zero(); self.tips().len()]);
-        let (Wrench { force, moment }, _) =
-            self.inverse_dynamics_of_floating_base(q, qd, &zeros, &turning(omega), &free)?;
-        let q = &*self.of_joints("q", q)?;
-        Ok(self.mechanism().floating_mass(q).centre().rate(force, moment))
-    }
-
-    /// As [`FloatingBase::floating_forward_dynamics`](crate::FloatingBase::floating_forward_dynamics), with one of
-    /// `wrenches` for each of the [tips](Self::tips): the acceleration of the base, and those of the joints.
-    ///
-    /// # Errors
-    /// When a joint argument does not have one element per joint, or `wrenches` not one element per tip.
-    pub fn floating_forward_dynamics<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        tau: &[T],
-        omega: &[T; 3],
-        wrenches: &[Wrench<T>],
-    ) -> Result<(BaseAcceleration<T>, Vec<T>), WrongLength> {
-        self.has_length("tau", tau)?;
-        let bias = self.floating_bias(q, qd, omega, wrenches)?;
-        let applied = [T::zero(); BASE].into_iter().chain(tau.iter().copied());
-        let mut x: Vec<T> = applied.zip(bias).map(|(applied, bias)| applied - bias).collect();
-        let mut matrix = self.floating_mass_matrix(q)?;
-        solve_from_the_ends(&mut matrix, &mut vec![T::zero(); x.len()], &mut x);
-        Ok((of_base(&x), x.split_off(BASE)))
+    fn centroidal_bias<T: Scalar>(self, q: &[T], qd: &[T], omega: &[T; 3]) -> [T; BASE] {
+        let zeros = self.zeros();
+        let motion = [q, qd, zeros.as_ref()];
+        let (Wrench { force, moment }, _) = self.torques_and_wrench(motion, &turning(omega), AtTip::Wrenches(&[]));
+        self.mechanism.floating_mass(self.of_joints(q).as_ref()).centre().rate(force, moment)
     }
 }
+
+definitions! { FloatingBase<DOF, NV, TIPS> {
+    /// As [`FloatingBase::inverse_dynamics_of_floating_base`], with one of `wrenches` for each of the
+    /// [tips](Self::tips): the wrench on the base, and the torques.
+    fn inverse_dynamics_of_floating_base(q: joints, qd: joints, qdd: joints, base: motion, wrenches: wrenches)
+        -> FloatingTorques = |robot| robot.torques_and_wrench([q, qd, qdd], base, AtTip::Wrenches(wrenches));
+    /// As [`FloatingBase::floating_mass_matrix`]: 6 + n rows.
+    fn floating_mass_matrix(q: joints) -> velocity_matrix = |robot| robot.floating_mass_matrix(q);
+    /// As [`FloatingBase::floating_bias`], with one of `wrenches` for each of the [tips](Self::tips): 6 + n numbers.
+    fn floating_bias(q: joints, qd: joints, omega: omega, wrenches: wrenches) -> velocities =
+        |robot| robot.floating_bias([q, qd], omega, AtTip::Wrenches(wrenches));
+    /// As [`FloatingBase::floating_forward_dynamics`], with one of `wrenches` for each of the [tips](Self::tips): the
+    /// acceleration of the base, and those of the joints.
+    fn floating_forward_dynamics(q: joints, qd: joints, tau: joints, omega: omega, wrenches: wrenches)
+        -> FloatingAccelerations =
+        |robot| robot.floating_forward_dynamics([q, qd, tau], omega, AtTip::Wrenches(wrenches));
+} }
+
+definitions! { CentroidalMomentum<DOF, NV> {
+    /// As [`CentroidalMomentum::centroidal_momentum_matrix`]: six rows of 6 + n numbers.
+    fn centroidal_momentum_matrix(q: joints) -> velocity_rows = |robot| robot.centroidal_momentum_matrix(q);
+    /// As [`CentroidalMomentum::centroidal_bias`].
+    fn centroidal_bias(q: joints, qd: joints, omega: omega) -> six = |robot| robot.centroidal_bias(q, qd, omega);
+    /// As [`CentroidalMomentum::centroidal_momentum`].
+    fn centroidal_momentum(q: joints, qd: joints, twist: twist) -> six = |robot| {
+        let [q, qd] = [q, qd].map(|values| robot.of_joints(values));
+        robot.mechanism.centroidal_momentum(q.as_ref(), qd.as_ref(), twist)
+    };
+} }

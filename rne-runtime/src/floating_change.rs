@@ -3,16 +3,22 @@
 
 use core::array::from_fn;
 
-use rne_model::FixedFrame;
-
+#[cfg(feature = "std")]
+use crate::DynFloatingStepDerivatives;
+use crate::at_tip::AtTip;
+use crate::definition::{Definition, definitions};
 use crate::floating_base::BASE;
 use crate::floating_euler_step::next_of_base;
-use crate::floating_integrator::{moved, turn, turn_by_change};
+use crate::floating_integrator::{turn, turn_by_change};
 use crate::ldlt::{factor, solve};
+use crate::per_joint::{PerJoint, Square};
 use crate::pose_log::{cross, times, transposed};
-use crate::{Arm, BaseAcceleration, BaseMotion, BaseTwist, Constant, FloatingStepDerivatives, Pose, Scalar, Wrench};
-#[cfg(feature = "std")]
-use crate::{DynArm, DynFloatingStepDerivatives, WrongLength};
+use crate::steps::moved;
+use crate::wrench::AllStill as _;
+use crate::{
+    ArmWithTips, BaseAcceleration, BaseMotion, BaseTwist, Constant, Dual, FloatingEulerStepDerivatives,
+    FloatingStepDerivatives, Pose, Scalar, Wrench,
+};
 
 /// The motion at which the forces are derived. It has the acceleration of the base less gravity, so its field `gravity`
 /// stays zero.
@@ -116,77 +122,56 @@ impl<T: Scalar> Change<T> {
     }
 }
 
-/// An arm that does not know its tips takes them with the wrenches.
-impl<const DOF: usize, S: Constant> Arm<DOF, S> {
-    /// As [`FloatingEulerStepDerivatives`](crate::FloatingEulerStepDerivatives), at these tips; `NV` is `DOF` + 6.
-    #[must_use]
-    pub fn floating_euler_step_derivatives<T: Scalar, const NV: usize, const TIPS: usize>(
-        &self,
-        [q, qd, tau]: [&[T; DOF]; 3],
+/// Derivatives of the positions and of the velocities after a step, each by positions, by velocities and by torques.
+type Blocks<J, V, T> = (
+    Square<V, T>,
+    Square<V, T>,
+    <V as PerJoint>::Of<<J as PerJoint>::Of<T>>,
+    Square<V, T>,
+    Square<V, T>,
+    <V as PerJoint>::Of<<J as PerJoint>::Of<T>>,
+);
+
+impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
+    fn floating_step_derivatives<T: Scalar>(
+        self,
+        [q, qd, tau]: [&[T]; 3],
         (pose, twist): (&Pose<T>, &BaseTwist<T>),
         step: T,
-        at_tips: (&[FixedFrame<S>; TIPS], &[Wrench<T>; TIPS]),
-    ) -> FloatingStepDerivatives<DOF, NV, T> {
-        let found = self.floating_forward_dynamics::<T, NV, TIPS>(q, qd, tau, &twist.angular, at_tips);
-        let base = motion(twist, &found.base);
-        let forces = self.floating_inverse_dynamics_derivatives::<T, NV, TIPS>(q, qd, &found.qdd, &base, at_tips);
-        let next = next_of_base((pose, twist), &found.base, &self.mechanism().gravity.map(S::to), step).1;
-        let (zeros, of_torques) = ([[T::zero(); NV]; NV], [[T::zero(); DOF]; NV]);
-        let mut result = FloatingStepDerivatives {
-            q_dq: zeros,
-            q_dv: zeros,
-            q_dtau: of_torques,
-            v_dq: zeros,
-            v_dv: zeros,
-            v_dtau: of_torques,
-        };
-        let mut lists = [[T::zero(); NV]; 4];
-        let mut mass = self.floating_mass_matrix::<T, NV>(q);
-        let forces = Forces { mass: &mut mass, dq: &forces.dq, dqd: &forces.dqd, domega: &forces.domega };
-        let change = Change::new(twist, &next, &found.base.linear, step);
-        forces.derivatives(&change, lists.each_mut().map(|list| &mut list[..]), |[half, kind], [row, column], x| {
-            let FloatingStepDerivatives { q_dq, q_dv, q_dtau, v_dq, v_dv, v_dtau } = &mut result;
-            match ([[q_dq, q_dv], [v_dq, v_dv]][half].get_mut(kind), [q_dtau, v_dtau]) {
-                (Some(matrix), _) => matrix[row][column] = x,
-                (None, of_torques) => of_torques[half][row][column] = x,
-            }
-        });
-        result
+        wrenches: &[Wrench<T>],
+        still: &[Wrench<Dual<T>>],
+    ) -> Blocks<J, V, T> {
+        let load = AtTip::Wrenches(wrenches);
+        let (found, qdd) = self.floating_forward_dynamics([q, qd, tau], &twist.angular, load);
+        let (dq, dqd, domega) = self.floating_derivatives([q, qd, qdd.as_ref()], &motion(twist, &found), still);
+        let next = next_of_base((pose, twist), &found, &self.mechanism.gravity.map(S::to), step).1;
+        let zeros = self.velocities.all(&T::zero());
+        let square = || self.velocities.all(&zeros);
+        let (mut by_state, mut by_torques) =
+            ([[square(), square()], [square(), square()]], [(); 2].map(|()| self.velocities.all(&self.zeros())));
+        let mut lists = [(); 4].map(|()| zeros.clone());
+        let mut mass = self.floating_mass_matrix(q);
+        let forces = Forces { mass: mass.as_mut(), dq: dq.as_ref(), dqd: dqd.as_ref(), domega: domega.as_ref() };
+        let change = Change::new(twist, &next, &found.linear, step);
+        forces.derivatives(
+            &change,
+            lists.each_mut().map(AsMut::as_mut),
+            |[half, kind], [row, column], x| match by_state[half].get_mut(kind) {
+                Some(matrix) => matrix.as_mut()[row].as_mut()[column] = x,
+                None => by_torques[half].as_mut()[row].as_mut()[column] = x,
+            },
+        );
+        let ([[q_dq, q_dv], [v_dq, v_dv]], [q_dtau, v_dtau]) = (by_state, by_torques);
+        (q_dq, q_dv, q_dtau, v_dq, v_dv, v_dtau)
     }
 }
 
-#[cfg(feature = "std")]
-impl<S: Constant> DynArm<S> {
-    /// As [`FloatingEulerStepDerivatives`](crate::FloatingEulerStepDerivatives), with one of `wrenches` for each of the
-    /// [tips](Self::tips): 6 + n rows.
-    ///
-    /// # Errors
-    /// When a joint argument does not have one element per joint, or `wrenches` not one element per tip.
-    #[allow(clippy::too_many_arguments)] // a state and what acts on it
-    pub fn floating_euler_step_derivatives<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        tau: &[T],
-        pose: &Pose<T>,
-        twist: &BaseTwist<T>,
-        step: T,
-        wrenches: &[Wrench<T>],
-    ) -> Result<DynFloatingStepDerivatives<T>, WrongLength> {
-        let (found, qdd) = self.floating_forward_dynamics(q, qd, tau, &twist.angular, wrenches)?;
-        let forces = self.floating_inverse_dynamics_derivatives(q, qd, &qdd, &motion(twist, &found), wrenches)?;
-        let next = next_of_base((pose, twist), &found, &self.mechanism().gravity.map(S::to), step).1;
-        let mut mass = self.floating_mass_matrix(q)?;
-        let size = mass.len();
-        let mut lists: [Vec<T>; 4] = from_fn(|_| vec![T::zero(); size]);
-        let mut blocks =
-            [[size, size, size - BASE]; 2].map(|of| of.map(|columns| vec![vec![T::zero(); columns]; size]));
-        let forces = Forces { mass: &mut mass, dq: &forces.dq, dqd: &forces.dqd, domega: &forces.domega };
-        let change = Change::new(twist, &next, &found.linear, step);
-        forces.derivatives(&change, lists.each_mut().map(|list| &mut list[..]), |[half, kind], [row, column], x| {
-            blocks[half][kind][row][column] = x;
-        });
-        let [[q_dq, q_dv, q_dtau], [v_dq, v_dv, v_dtau]] = blocks;
-        Ok(DynFloatingStepDerivatives { q_dq, q_dv, q_dtau, v_dq, v_dv, v_dtau })
-    }
-}
+definitions! { FloatingEulerStepDerivatives<DOF, NV, TIPS> {
+    /// As [`FloatingEulerStepDerivatives`], with one of `wrenches` for each of the [tips](Self::tips): 6 + n rows.
+    fn floating_euler_step_derivatives(
+        q: joints, qd: joints, tau: joints, pose: pose, twist: twist, step: number, wrenches: wrenches
+    ) -> FloatingStepDerivatives = |robot| {
+        let still = wrenches.all_still();
+        robot.floating_step_derivatives([q, qd, tau], (pose, twist), step, wrenches, still.as_ref())
+    };
+} }

@@ -1,26 +1,28 @@
 //! How the torques of a robot whose base nothing holds change with its state, and the matrices of Pinocchio.
 
 use crate::pose_log::cross;
+use crate::shapes::records;
 use crate::{BaseMotion, Scalar, Wrench};
 
 /// Columns of the base: three linear ones, then three angular ones.
 const BASE: usize = 6;
 
-/// The derivatives of the wrench on a base that nothing holds and of the torques, for one state.
-///
-/// `NV` = `DOF` + 6 rows: the force on the base (N), the moment about the origin of frame 0 (N m), both in axes of
-/// frame 0, then the torques (N m, or N for a prismatic joint). Columns are per rad or m, and per rad/s or m/s.
-///
-/// Elements that no state makes differ from zero are zero, and cost no operation: those of joints on different
-/// branches.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FloatingTorqueDerivatives<const DOF: usize, const NV: usize, T> {
-    /// By the positions of the joints.
-    pub dq: [[T; DOF]; NV],
-    /// By the velocities of the joints.
-    pub dqd: [[T; DOF]; NV],
-    /// By the angular velocity of the base, in axes of frame 0.
-    pub domega: [[T; 3]; NV],
+records! {
+    /// The derivatives of the wrench on a base that nothing holds and of the torques, for one state.
+    ///
+    /// `NV` = `DOF` + 6 rows: the force on the base (N), the moment about the origin of frame 0 (N m), both in axes of
+    /// frame 0, then the torques (N m, or N for a prismatic joint). Columns are per rad or m, and per rad/s or m/s.
+    ///
+    /// Elements that no state makes differ from zero are zero, and cost no operation: those of joints on different
+    /// branches.
+    FloatingTorqueDerivatives<DOF, NV>, DynFloatingTorqueDerivatives {
+        /// By the positions of the joints.
+        dq: [[T; DOF]; NV] | Vec<Vec<T>>,
+        /// By the velocities of the joints.
+        dqd: [[T; DOF]; NV] | Vec<Vec<T>>,
+        /// By the angular velocity of the base, in axes of frame 0.
+        domega: [[T; 3]; NV] | Vec<[T; 3]>,
+    }
 }
 
 /// How the torques of a robot whose base nothing holds change with its state. The base, `NV` and the tips are those of
@@ -73,18 +75,6 @@ impl<const DOF: usize, const NV: usize, T: Scalar> FloatingTorqueDerivatives<DOF
         };
         [0, 1].map(|kind| core::array::from_fn(|row| core::array::from_fn(|column| element(kind, row, column))))
     }
-}
-
-/// [`FloatingTorqueDerivatives`] of a [`DynArm`](crate::DynArm): 6 + n rows.
-#[cfg(feature = "std")]
-#[derive(Clone, Debug, PartialEq)]
-pub struct DynFloatingTorqueDerivatives<T> {
-    /// By the positions of the joints.
-    pub dq: Vec<Vec<T>>,
-    /// By the velocities of the joints.
-    pub dqd: Vec<Vec<T>>,
-    /// By the angular velocity of the base, in axes of frame 0.
-    pub domega: Vec<[T; 3]>,
 }
 
 #[cfg(feature = "std")]

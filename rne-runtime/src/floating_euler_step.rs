@@ -5,29 +5,26 @@
 use core::array::from_fn;
 
 #[cfg(feature = "arm")]
-use rne_model::FixedFrame;
-
-#[cfg(feature = "arm")]
-use crate::floating_integrator::moved;
-#[cfg(feature = "arm")]
 use crate::pose_log::{dot, times, transposed};
+use crate::shapes::records;
 #[cfg(feature = "arm")]
-use crate::{Arm, BaseAcceleration, Constant};
+use crate::steps::moved;
+#[cfg(feature = "arm")]
+use crate::{ArmWithTips, BaseAcceleration, Constant, at_tip::AtTip, definition::definitions};
 use crate::{BaseTwist, Pose, Scalar, Wrench};
-#[cfg(all(feature = "arm", feature = "std"))]
-use crate::{DynArm, WrongLength};
 
-/// The state of a robot whose base nothing holds, after a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FloatingNextState<const DOF: usize, T> {
-    /// The pose of frame 0 in the world.
-    pub pose: Pose<T>,
-    /// The velocity of frame 0, in its axes, m/s and rad/s.
-    pub twist: BaseTwist<T>,
-    /// Positions of the joints, rad or m.
-    pub q: [T; DOF],
-    /// Velocities of the joints, rad/s or m/s.
-    pub qd: [T; DOF],
+records! {
+    /// The state of a robot whose base nothing holds, after a step.
+    FloatingNextState<DOF>, DynFloatingNextState {
+        /// The pose of frame 0 in the world.
+        pose: Pose<T> | Pose<T>,
+        /// The velocity of frame 0, in its axes, m/s and rad/s.
+        twist: BaseTwist<T> | BaseTwist<T>,
+        /// Positions of the joints, rad or m.
+        q: [T; DOF] | Vec<T>,
+        /// Velocities of the joints, rad/s or m/s.
+        qd: [T; DOF] | Vec<T>,
+    }
 }
 
 /// A step of the semi-implicit Euler method of a robot whose base nothing holds, under torques and wrenches that do not
@@ -107,60 +104,16 @@ fn next_rotation<T: Scalar>(near: &[[T; 3]; 3]) -> [[T; 3]; 3] {
     product(near, &from_fn(|row| from_fn(|column| element(row, column))))
 }
 
-/// An arm that does not know its tips takes them with the wrenches.
 #[cfg(feature = "arm")]
-impl<const DOF: usize, S: Constant> Arm<DOF, S> {
-    /// As [`FloatingEulerStep::floating_euler_step`], at these tips; `NV` is `DOF` + 6.
-    #[must_use]
-    pub fn floating_euler_step<T: Scalar, const NV: usize, const TIPS: usize>(
-        &self,
-        [q, qd, tau]: [&[T; DOF]; 3],
-        base: (&Pose<T>, &BaseTwist<T>),
-        step: T,
-        at_tips: (&[FixedFrame<S>; TIPS], &[Wrench<T>; TIPS]),
-    ) -> FloatingNextState<DOF, T> {
-        let found = self.floating_forward_dynamics::<T, NV, TIPS>(q, qd, tau, &base.1.angular, at_tips);
-        let (pose, twist) = next_of_base(base, &found.base, &self.mechanism().gravity.map(S::to), step);
-        let qd = moved(qd, &found.qdd, step);
-        FloatingNextState { pose, twist, q: moved(q, &qd, step), qd }
-    }
-}
-
-/// [`FloatingNextState`] of an arm that is known at run time.
-#[cfg(feature = "std")]
-#[derive(Clone, Debug, PartialEq)]
-pub struct DynFloatingNextState<T> {
-    /// The pose of frame 0 in the world.
-    pub pose: Pose<T>,
-    /// The velocity of frame 0, in its axes, m/s and rad/s.
-    pub twist: BaseTwist<T>,
-    /// Positions of the joints, rad or m.
-    pub q: Vec<T>,
-    /// Velocities of the joints, rad/s or m/s.
-    pub qd: Vec<T>,
-}
-
-#[cfg(all(feature = "arm", feature = "std"))]
-impl<S: Constant> DynArm<S> {
+definitions! { FloatingEulerStep<DOF, TIPS> {
     /// As [`FloatingEulerStep::floating_euler_step`], with one of `wrenches` for each of the [tips](Self::tips).
-    ///
-    /// # Errors
-    /// When a joint argument does not have one element per joint, or `wrenches` not one element per tip.
-    #[allow(clippy::too_many_arguments)] // a state and what acts on it
-    pub fn floating_euler_step<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        tau: &[T],
-        pose: &Pose<T>,
-        twist: &BaseTwist<T>,
-        step: T,
-        wrenches: &[Wrench<T>],
-    ) -> Result<DynFloatingNextState<T>, WrongLength> {
-        let (base, qdd) = self.floating_forward_dynamics(q, qd, tau, &twist.angular, wrenches)?;
-        let (pose, twist) = next_of_base((pose, twist), &base, &self.mechanism().gravity.map(S::to), step);
-        let moved = |x: &[T], change: &[T]| -> Vec<T> { x.iter().zip(change).map(|(&x, &by)| x + step * by).collect() };
-        let qd = moved(qd, &qdd);
-        Ok(DynFloatingNextState { pose, twist, q: moved(q, &qd), qd })
-    }
-}
+    fn floating_euler_step(
+        q: joints, qd: joints, tau: joints, pose: pose, twist: twist, step: number, wrenches: wrenches
+    ) -> FloatingNextState = |robot| {
+        let (base, qdd) = robot.floating_forward_dynamics([q, qd, tau], &twist.angular, AtTip::Wrenches(wrenches));
+        let (pose, twist) = next_of_base((pose, twist), &base, &robot.mechanism.gravity.map(S::to), step);
+        let [q, qd] = [q, qd].map(|x| robot.list(x));
+        let qd = moved(&qd, &qdd, step);
+        (pose, twist, moved(&q, &qd, step), qd)
+    };
+} }

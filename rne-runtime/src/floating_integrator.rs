@@ -3,6 +3,7 @@
 use core::array::from_fn;
 
 use crate::pose_log::{cross, dot, times, transposed};
+use crate::steps::moved;
 use crate::{BaseAcceleration, BaseTwist, FloatingBase, Quaternion, Scalar, Wrench};
 
 /// The state of a robot whose base nothing holds.
@@ -132,17 +133,12 @@ impl<J: AsRef<[T]> + AsMut<[T]> + Clone, T: Scalar> Stage<J, T> {
 
     /// These and h times other ones.
     fn moved(&self, by: &Self, step: T) -> Self {
-        let joints = |x: &J, by: &J| {
-            let mut next = x.clone();
-            next.as_mut().iter_mut().zip(by.as_ref()).for_each(|(x, &change)| *x += step * change);
-            next
-        };
         Self {
             u: moved(&self.u, &by.u, step),
             linear: moved(&self.linear, &by.linear, step),
             omega: moved(&self.omega, &by.omega, step),
-            q: joints(&self.q, &by.q),
-            qd: joints(&self.qd, &by.qd),
+            q: moved(&self.q, &by.q, step),
+            qd: moved(&self.qd, &by.qd, step),
         }
     }
 }
@@ -187,12 +183,6 @@ fn rate_of_turn<T: Scalar>(u: &[T; 3], omega: &[T; 3]) -> [T; 3] {
 impl<const DOF: usize, const NV: usize, const TIPS: usize, R: FloatingBase<DOF, NV, TIPS> + ?Sized>
     FloatingIntegratorStep<DOF, NV, TIPS> for R
 {
-}
-
-/// x + h times what changes it.
-#[doc(hidden)]
-pub fn moved<const N: usize, T: Scalar>(x: &[T; N], change: &[T; N], step: T) -> [T; N] {
-    from_fn(|i| x[i] + step * change[i])
 }
 
 /// The rotation by which a step turns the base.

@@ -11,15 +11,15 @@
 use nalgebra::{Matrix3, Vector3};
 use rne_model::FixedFrame;
 
+use crate::coordinates::Coordinates as _;
+use crate::definition::{Definition, definitions};
 use crate::floating_base::{BASE, turning};
 use crate::kinematics::Placement;
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::mount::Mount;
 use crate::per_joint::PerJoint;
-use crate::{Arm, Constant, Scalar};
-#[cfg(feature = "std")]
-use crate::{DynArm, WrongLength};
+use crate::{ArmWithTips, Constant, FloatingKinematics, Scalar};
 
 /// The six columns of the base in a row of a Jacobian, and those of the joints.
 type Row<J, T> = ([T; BASE], <J as PerJoint>::Of<T>);
@@ -80,87 +80,40 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 }
 
-/// An arm that does not know its tips takes them.
-impl<const DOF: usize, S: Constant> Arm<DOF, S> {
-    /// As [`FloatingKinematics::tip_jacobians`](crate::FloatingKinematics::tip_jacobians), of these tips; `NV` is
-    /// `DOF` +
-    /// 6. A tip on a link that there is not is on the base.
-    #[must_use]
-    pub fn tip_jacobians<T: Scalar, const NV: usize, const TIPS: usize>(
-        &self,
-        q: &[T; DOF],
+impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
+    pub(crate) fn tip_jacobian<T: Scalar>(
+        self,
+        q: &[T],
         base_rotation: &[[T; 3]; 3],
-        tips: &[FixedFrame<S>; TIPS],
-    ) -> [[[T; NV]; 6]; TIPS] {
-        const { assert!(NV == DOF + BASE, "the matrix has a column for each joint and six for the base") };
-        core::array::from_fn(|tip| {
-            let rows = self.mechanism().tip_jacobian(q, matrix(base_rotation), &on_a_link(&tips[tip], DOF));
-            rows.map(|(base, joints)| {
-                core::array::from_fn(|column| if column < BASE { base[column] } else { joints[column - BASE] })
+        tip: &FixedFrame<S>,
+    ) -> [V::Of<T>; 6] {
+        let rows = self.mechanism.tip_jacobian(self.of_joints(q).as_ref(), matrix(base_rotation), tip);
+        rows.map(|(base, joints)| {
+            let joints = self.coordinates.torques(joints);
+            self.velocities.of(|column| match column.checked_sub(BASE) {
+                Some(joint) => joints.as_ref()[joint],
+                None => base[column],
             })
         })
     }
 
-    /// As [`FloatingKinematics::tip_accelerations`](crate::FloatingKinematics::tip_accelerations), of these tips. A tip
-    /// on a link that there is not is on the base.
-    #[must_use]
-    pub fn tip_accelerations<T: Scalar, const TIPS: usize>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
+    pub(crate) fn tip_acceleration<T: Scalar>(
+        self,
+        [q, qd]: [&[T]; 2],
         omega: &[T; 3],
         base_rotation: &[[T; 3]; 3],
-        tips: &[FixedFrame<S>; TIPS],
-    ) -> [[T; 6]; TIPS] {
-        let of_tip = |tip: &FixedFrame<S>| {
-            self.mechanism().tip_acceleration((q, qd), omega, matrix(base_rotation), &on_a_link(tip, DOF))
-        };
-        core::array::from_fn(|tip| of_tip(&tips[tip]))
+        tip: &FixedFrame<S>,
+    ) -> [T; 6] {
+        let [q, qd] = [q, qd].map(|values| self.of_joints(values));
+        self.mechanism.tip_acceleration((q.as_ref(), qd.as_ref()), omega, matrix(base_rotation), tip)
     }
 }
 
-/// The tip, on the base if its link is not there.
-fn on_a_link<S: Constant>(tip: &FixedFrame<S>, links: usize) -> FixedFrame<S> {
-    FixedFrame { on: tip.on.filter(|on| *on < links), ..*tip }
-}
-
-#[cfg(feature = "std")]
-impl<S: Constant> DynArm<S> {
-    /// As [`FloatingKinematics::tip_jacobians`](crate::FloatingKinematics::tip_jacobians): for each of the
-    /// [tips](Self::tips) six rows of 6 + n numbers.
-    ///
-    /// # Errors
-    /// When the argument does not have one element per joint.
-    pub fn tip_jacobians<T: Scalar>(
-        &self,
-        q: &[T],
-        base_rotation: &[[T; 3]; 3],
-    ) -> Result<Vec<Vec<Vec<T>>>, WrongLength> {
-        let q = &*self.of_joints("q", q)?;
-        let of_tip = |tip: &FixedFrame<S>| {
-            let rows = self.mechanism().tip_jacobian(q, matrix(base_rotation), tip);
-            let bases = rows.each_ref().map(|(base, _)| *base);
-            let joints = self.couplings.rows(rows.map(|(_, joints)| joints));
-            bases.iter().zip(joints).map(|(base, joints)| [base.as_slice(), joints.as_ref()].concat()).collect()
-        };
-        Ok(self.tips().iter().map(of_tip).collect())
-    }
-
-    /// As [`FloatingKinematics::tip_accelerations`](crate::FloatingKinematics::tip_accelerations), of the
-    /// [tips](Self::tips).
-    ///
-    /// # Errors
-    /// When a joint argument does not have one element per joint.
-    pub fn tip_accelerations<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        omega: &[T; 3],
-        base_rotation: &[[T; 3]; 3],
-    ) -> Result<Vec<[T; 6]>, WrongLength> {
-        let (q, qd) = (&*self.of_joints("q", q)?, &*self.of_joints("qd", qd)?);
-        let rotation = matrix(base_rotation);
-        let of_tip = |tip| self.mechanism().tip_acceleration((q, qd), omega, rotation, tip);
-        Ok(self.tips().iter().map(of_tip).collect())
-    }
-}
+definitions! { FloatingKinematics<DOF, NV, TIPS> {
+    /// As [`FloatingKinematics::tip_jacobians`]: for each of the [tips](Self::tips) six rows of 6 + n numbers.
+    fn tip_jacobians(q: joints, base_rotation: rotation) -> tip_rows =
+        |robot| robot.each_tip(|tip| robot.tip_jacobian(q, base_rotation, tip));
+    /// As [`FloatingKinematics::tip_accelerations`], of the [tips](Self::tips).
+    fn tip_accelerations(q: joints, qd: joints, omega: omega, base_rotation: rotation) -> tip_vectors =
+        |robot| robot.each_tip(|tip| robot.tip_acceleration([q, qd], omega, base_rotation, tip));
+} }

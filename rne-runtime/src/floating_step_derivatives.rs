@@ -1,28 +1,30 @@
 //! The derivatives of a step of a robot whose base nothing holds, on the manifold of its positions.
 
+use crate::shapes::records;
 use crate::{BaseTwist, Pose, Scalar, Wrench};
 
-/// The linear model of a step of a robot whose base nothing holds: rows belong to the next state, columns to the state
-/// and to the torques.
-///
-/// `NV` = `DOF` + 6. A change of the positions has three components of the origin of frame 0 and three of its rotation
-/// vector, both in axes of frame 0, and one for each joint: position + R δp and R exp(δθ). These are the axes before
-/// the step for the columns, and after it for the rows. A change of the velocities has the linear and the angular
-/// velocity of frame 0 in its axes, then the joints.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FloatingStepDerivatives<const DOF: usize, const NV: usize, T> {
-    /// Derivatives of the next positions by the positions.
-    pub q_dq: [[T; NV]; NV],
-    /// Derivatives of the next positions by the velocities.
-    pub q_dv: [[T; NV]; NV],
-    /// Derivatives of the next positions by the torques.
-    pub q_dtau: [[T; DOF]; NV],
-    /// Derivatives of the next velocities by the positions.
-    pub v_dq: [[T; NV]; NV],
-    /// Derivatives of the next velocities by the velocities.
-    pub v_dv: [[T; NV]; NV],
-    /// Derivatives of the next velocities by the torques.
-    pub v_dtau: [[T; DOF]; NV],
+records! {
+    /// The linear model of a step of a robot whose base nothing holds: rows belong to the next state, columns to the state
+    /// and to the torques.
+    ///
+    /// `NV` = `DOF` + 6. A change of the positions has three components of the origin of frame 0 and three of its rotation
+    /// vector, both in axes of frame 0, and one for each joint: position + R δp and R exp(δθ). These are the axes before
+    /// the step for the columns, and after it for the rows. A change of the velocities has the linear and the angular
+    /// velocity of frame 0 in its axes, then the joints.
+    FloatingStepDerivatives<DOF, NV>, DynFloatingStepDerivatives {
+        /// Derivatives of the next positions by the positions.
+        q_dq: [[T; NV]; NV] | Vec<Vec<T>>,
+        /// Derivatives of the next positions by the velocities.
+        q_dv: [[T; NV]; NV] | Vec<Vec<T>>,
+        /// Derivatives of the next positions by the torques.
+        q_dtau: [[T; DOF]; NV] | Vec<Vec<T>>,
+        /// Derivatives of the next velocities by the positions.
+        v_dq: [[T; NV]; NV] | Vec<Vec<T>>,
+        /// Derivatives of the next velocities by the velocities.
+        v_dv: [[T; NV]; NV] | Vec<Vec<T>>,
+        /// Derivatives of the next velocities by the torques.
+        v_dtau: [[T; DOF]; NV] | Vec<Vec<T>>,
+    }
 }
 
 /// Derivatives of a step of the semi-implicit Euler method of a robot whose base nothing holds, for optimisers. The
@@ -45,22 +47,4 @@ pub trait FloatingEulerStepDerivatives<const DOF: usize, const NV: usize, const 
         step: T,
         wrenches: &[Wrench<T>; TIPS],
     ) -> FloatingStepDerivatives<DOF, NV, T>;
-}
-
-/// [`FloatingStepDerivatives`] of an arm that is known at run time: 6 + n rows.
-#[cfg(feature = "std")]
-#[derive(Clone, Debug, PartialEq)]
-pub struct DynFloatingStepDerivatives<T> {
-    /// Derivatives of the next positions by the positions.
-    pub q_dq: Vec<Vec<T>>,
-    /// Derivatives of the next positions by the velocities.
-    pub q_dv: Vec<Vec<T>>,
-    /// Derivatives of the next positions by the torques.
-    pub q_dtau: Vec<Vec<T>>,
-    /// Derivatives of the next velocities by the positions.
-    pub v_dq: Vec<Vec<T>>,
-    /// Derivatives of the next velocities by the velocities.
-    pub v_dv: Vec<Vec<T>>,
-    /// Derivatives of the next velocities by the torques.
-    pub v_dtau: Vec<Vec<T>>,
 }

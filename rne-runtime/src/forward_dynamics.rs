@@ -15,58 +15,20 @@
 //! ```
 
 use crate::at_tip::AtTip;
-use crate::ldlt::{factor, solve};
-use crate::link_state::JointMotions;
-use crate::mechanism::Mechanism;
+use crate::coordinates::Coordinates as _;
+use crate::definition::{Definition, definitions};
 use crate::per_joint::PerJoint;
 use crate::{Arm, Constant, ForwardDynamics, Scalar};
-#[cfg(feature = "std")]
-use crate::{DynArm, WrongLength};
 
-impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    pub(crate) fn forward_dynamics<T: Scalar>(self, q: &[T], qd: &[T], tau: &[T], tip: AtTip<'_, T>) -> J::Of<T> {
-        let zeros = self.zeros();
-        let bias = self.torques(JointMotions::new(q, qd, zeros.as_ref()), &self.fixed_base(), tip);
-        let mut x = self.per_joint.of(|i| tau[i] - bias.as_ref()[i]);
-        let (mut m, mut inverse) = (self.mass_matrix(q, tip.matter()), zeros);
-        factor(m.as_mut(), inverse.as_mut());
-        solve(m.as_ref(), inverse.as_ref(), x.as_mut());
-        x
+impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
+    pub(crate) fn forward_dynamics<T: Scalar>(self, [q, qd, tau]: [&[T]; 3], load: AtTip<'_, T>) -> J::Of<T> {
+        let bias = self.bias(q, qd, load);
+        self.accelerations(q, self.coordinates.each().of(|i| tau[i] - bias.as_ref()[i]), load)
     }
 }
 
-impl<const DOF: usize, S: Constant> ForwardDynamics<DOF> for Arm<DOF, S> {
-    fn forward_dynamics<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], tau: &[T; DOF]) -> [T; DOF] {
-        self.mechanism().forward_dynamics(q, qd, tau, AtTip::Nothing)
-    }
-}
-
-#[cfg(feature = "std")]
-impl<S: Constant> DynArm<S> {
+definitions! { ForwardDynamics<DOF> {
     /// As [`ForwardDynamics::forward_dynamics`]: accelerations, with a free tip.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn forward_dynamics<T: Scalar>(&self, q: &[T], qd: &[T], tau: &[T]) -> Result<Vec<T>, WrongLength> {
-        self.forward_dynamics_with(q, qd, tau, AtTip::Nothing)
-    }
-
-    pub(crate) fn forward_dynamics_with<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        tau: &[T],
-        tip: AtTip<'_, T>,
-    ) -> Result<Vec<T>, WrongLength> {
-        self.has_length("tau", tau)?;
-        let at_rest = vec![T::zero(); self.dof()];
-        let (q, qd, zeros) = self.of_all_joints(q, qd, &at_rest)?;
-        let bias = self.mechanism().torques(JointMotions::new(&q, &qd, &zeros), &self.fixed_base(), tip);
-        let mut x: Vec<T> = tau.iter().zip(self.couplings.torques(bias)).map(|(&tau, bias)| tau - bias).collect();
-        let mut m = self.couplings.symmetric(self.mechanism().mass_matrix(&q, tip.matter()));
-        let mut inverse = vec![T::zero(); self.dof()];
-        factor(&mut m, &mut inverse);
-        solve(&m, &inverse, &mut x);
-        Ok(x)
-    }
-}
+    fn forward_dynamics(q: joints, qd: joints, tau: joints) -> vector =
+        |robot| robot.forward_dynamics([q, qd, tau], AtTip::Nothing);
+} }

@@ -1,30 +1,32 @@
 //! Second derivatives of weighted torques for optimisers, and those of an [`Arm`] by dual numbers of dual numbers.
 
-#[cfg(feature = "arm")]
-use core::array::from_fn;
-
 use crate::Scalar;
+use crate::shapes::records;
 #[cfg(feature = "arm")]
-use crate::{Arm, Constant, Dual, InverseDynamicsGradient};
-#[cfg(all(feature = "arm", feature = "std"))]
-use crate::{DynArm, WrongLength};
+use crate::{
+    Arm, Constant, Dual,
+    coordinates::Coordinates as _,
+    definition::{Definition, definitions},
+    per_joint::{PerJoint, Square},
+};
 
-/// The second derivatives of λᵀτ for one state: of the torques, each times its multiplier and added up. Element (i, j)
-/// is by the motion of joint i and by that of joint j.
-///
-/// Those by q̇ and q̈ and by q̈ twice are zero: the torques are linear in q̈, with M(q).
-///
-/// Units: of λᵀτ per rad or m, rad/s or m/s, rad/s² or m/s² of both joints.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TorqueHessian<const DOF: usize, T> {
-    /// ∂²(λᵀτ)/∂q_i∂q_j: symmetric.
-    pub dq_dq: [[T; DOF]; DOF],
-    /// ∂²(λᵀτ)/∂q_i∂q̇_j.
-    pub dq_dqd: [[T; DOF]; DOF],
-    /// ∂²(λᵀτ)/∂q̇_i∂q̇_j: symmetric.
-    pub dqd_dqd: [[T; DOF]; DOF],
-    /// ∂²(λᵀτ)/∂q_i∂q̈_j, ∂(M(q) λ)_j/∂q_i.
-    pub dq_dqdd: [[T; DOF]; DOF],
+records! {
+    /// The second derivatives of λᵀτ for one state: of the torques, each times its multiplier and added up. Element (i, j)
+    /// is by the motion of joint i and by that of joint j.
+    ///
+    /// Those by q̇ and q̈ and by q̈ twice are zero: the torques are linear in q̈, with M(q).
+    ///
+    /// Units: of λᵀτ per rad or m, rad/s or m/s, rad/s² or m/s² of both joints.
+    TorqueHessian<DOF>, DynTorqueHessian {
+        /// ∂²(λᵀτ)/∂q_i∂q_j: symmetric.
+        dq_dq: [[T; DOF]; DOF] | Vec<Vec<T>>,
+        /// ∂²(λᵀτ)/∂q_i∂q̇_j.
+        dq_dqd: [[T; DOF]; DOF] | Vec<Vec<T>>,
+        /// ∂²(λᵀτ)/∂q̇_i∂q̇_j: symmetric.
+        dqd_dqd: [[T; DOF]; DOF] | Vec<Vec<T>>,
+        /// ∂²(λᵀτ)/∂q_i∂q̈_j, ∂(M(q) λ)_j/∂q_i.
+        dq_dqdd: [[T; DOF]; DOF] | Vec<Vec<T>>,
+    }
 }
 
 /// How the gradient of a weighted sum of the torques changes with the motion: what a Lagrangian with the equations of
@@ -46,75 +48,31 @@ pub trait InverseDynamicsHessian<const DOF: usize> {
     ) -> TorqueHessian<DOF, T>;
 }
 
-/// Element i of a list, with element j on its way.
 #[cfg(feature = "arm")]
-fn along<T: Scalar>(x: &[T], i: usize, j: usize) -> Dual<T> {
-    Dual { value: x[i], derivative: if i == j { T::one() } else { T::zero() } }
-}
-
-#[cfg(feature = "arm")]
-impl<const DOF: usize, S: Constant> InverseDynamicsHessian<DOF> for Arm<DOF, S> {
+impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
+    #[allow(clippy::type_complexity)] // four matrices
     fn torque_hessian<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        qdd: &[T; DOF],
-        multipliers: &[T; DOF],
-    ) -> TorqueHessian<DOF, T> {
-        let [still_q, still_qd, qdd, multipliers] = [q, qd, qdd, multipliers].map(|x| x.map(Dual::constant));
-        let by_q: [_; DOF] =
-            from_fn(|i| self.torque_gradient(&from_fn(|at| along(q, at, i)), &still_qd, &qdd, &multipliers));
-        let by_qd: [_; DOF] =
-            from_fn(|i| self.torque_gradient(&still_q, &from_fn(|at| along(qd, at, i)), &qdd, &multipliers));
-        let rates = |row: [Dual<T>; DOF]| row.map(|x| x.derivative);
-        TorqueHessian {
-            dq_dq: by_q.map(|row| rates(row.dq)),
-            dq_dqd: by_q.map(|row| rates(row.dqd)),
-            dqd_dqd: by_qd.map(|row| rates(row.dqd)),
-            dq_dqdd: by_q.map(|row| rates(row.dqdd)),
-        }
-    }
-}
-
-/// [`TorqueHessian`] of a [`DynArm`].
-#[cfg(all(feature = "arm", feature = "std"))]
-#[derive(Clone, Debug, PartialEq)]
-pub struct DynTorqueHessian<T> {
-    /// ∂²(λᵀτ)/∂q_i∂q_j.
-    pub dq_dq: Vec<Vec<T>>,
-    /// ∂²(λᵀτ)/∂q_i∂q̇_j.
-    pub dq_dqd: Vec<Vec<T>>,
-    /// ∂²(λᵀτ)/∂q̇_i∂q̇_j.
-    pub dqd_dqd: Vec<Vec<T>>,
-    /// ∂²(λᵀτ)/∂q_i∂q̈_j.
-    pub dq_dqdd: Vec<Vec<T>>,
-}
-
-#[cfg(all(feature = "arm", feature = "std"))]
-impl<S: Constant> DynArm<S> {
-    /// As [`InverseDynamicsHessian::torque_hessian`].
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn torque_hessian<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        qdd: &[T],
+        self,
+        [q, qd, qdd]: [&[T]; 3],
         multipliers: &[T],
-    ) -> Result<DynTorqueHessian<T>, WrongLength> {
-        let still = |x: &[T]| x.iter().copied().map(Dual::constant).collect::<Vec<_>>();
-        let moving = |x: &[T], i: usize| (0..x.len()).map(|at| along(x, at, i)).collect::<Vec<_>>();
-        let (still_qd, qdd, multipliers) = (still(qd), still(qdd), still(multipliers));
-        let rates = |row: Vec<Dual<T>>| row.into_iter().map(|x| x.derivative).collect::<Vec<T>>();
-        let [mut dq_dq, mut dq_dqd, mut dqd_dqd, mut dq_dqdd] = [const { Vec::new() }; 4];
-        for i in 0..self.dof() {
-            let row = self.torque_gradient(&moving(q, i), &still_qd, &qdd, &multipliers)?;
-            dq_dq.push(rates(row.dq));
-            dq_dqd.push(rates(row.dqd));
-            dq_dqdd.push(rates(row.dqdd));
-            dqd_dqd.push(rates(self.torque_gradient(&still(q), &moving(qd, i), &qdd, &multipliers)?.dqd));
-        }
-        Ok(DynTorqueHessian { dq_dq, dq_dqd, dqd_dqd, dq_dqdd })
+    ) -> (Square<J, T>, Square<J, T>, Square<J, T>, Square<J, T>) {
+        let each = self.coordinates.each();
+        let [still_q, still_qd, qdd, multipliers] = [q, qd, qdd, multipliers].map(|x| self.still(x));
+        let gradient = |q: &J::Of<Dual<T>>, qd: &J::Of<Dual<T>>| {
+            let (by_q, by_qd, by_qdd) =
+                self.torque_gradient([q.as_ref(), qd.as_ref(), qdd.as_ref()], multipliers.as_ref());
+            [by_q, by_qd, by_qdd].map(|row| each.of(|j| row.as_ref()[j].derivative))
+        };
+        let by_q = each.of(|i| gradient(&self.along(q, i), &still_qd));
+        let by_qd = each.of(|i| gradient(&still_q, &self.along(qd, i)));
+        let rows = |by: &J::Of<[J::Of<T>; 3]>, place: usize| each.of(|i| by.as_ref()[i][place].clone());
+        (rows(&by_q, 0), rows(&by_q, 1), rows(&by_qd, 1), rows(&by_q, 2))
     }
 }
+
+#[cfg(feature = "arm")]
+definitions! { InverseDynamicsHessian<DOF> {
+    /// As [`InverseDynamicsHessian::torque_hessian`].
+    fn torque_hessian(q: joints, qd: joints, qdd: joints, multipliers: joints) -> TorqueHessian =
+        |robot| robot.torque_hessian([q, qd, qdd], multipliers);
+} }

@@ -1,40 +1,47 @@
 //! The step of the semi-implicit Euler method, and its derivatives by the state and by the torques.
 
-use core::array::from_fn;
-
 use crate::Scalar;
+use crate::shapes::records;
 #[cfg(feature = "arm")]
-use crate::{Arm, Constant, ForwardDynamics, ForwardDynamicsDerivatives};
+use crate::{
+    Arm, Constant,
+    at_tip::AtTip,
+    definition::definitions,
+    steps::{POSITION, RATE, moved, moved_by},
+};
 
-/// The state of a robot after a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NextState<const DOF: usize, T> {
-    /// Positions, rad or m.
-    pub q: [T; DOF],
-    /// Velocities, rad/s or m/s.
-    pub qd: [T; DOF],
+records! {
+    /// The state of a robot after a step.
+    NextState<DOF>, DynNextState {
+        /// Positions, rad or m.
+        q: [T; DOF] | Vec<T>,
+        /// Velocities, rad/s or m/s.
+        qd: [T; DOF] | Vec<T>,
+    }
 }
 
-/// The derivatives of `DOF` positions or velocities after a step. Row i belongs to position or velocity i of the next
-/// state, column j to joint j.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StepDerivatives<const DOF: usize, T> {
-    /// By the positions, per rad or m.
-    pub dq: [[T; DOF]; DOF],
-    /// By the velocities, per rad/s or m/s.
-    pub dqd: [[T; DOF]; DOF],
-    /// By the torques, per N m or N.
-    pub dtau: [[T; DOF]; DOF],
+records! {
+    /// The derivatives of `DOF` positions or velocities after a step. Row i belongs to position or velocity i of the next
+    /// state, column j to joint j.
+    StepDerivatives<DOF>, DynStepDerivatives {
+        /// By the positions, per rad or m.
+        dq: [[T; DOF]; DOF] | Vec<Vec<T>>,
+        /// By the velocities, per rad/s or m/s.
+        dqd: [[T; DOF]; DOF] | Vec<Vec<T>>,
+        /// By the torques, per N m or N.
+        dtau: [[T; DOF]; DOF] | Vec<Vec<T>>,
+    }
 }
 
-/// The linear model of a step: with the state x = (q, q̇), the changes δx' = A δx + B δτ. The rows of A are `dq` beside
-/// `dqd`, those of B are `dtau`, of the positions above the velocities.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NextStateDerivatives<const DOF: usize, T> {
-    /// Derivatives of the next positions.
-    pub q: StepDerivatives<DOF, T>,
-    /// Derivatives of the next velocities.
-    pub qd: StepDerivatives<DOF, T>,
+records! {
+    /// The linear model of a step: with the state x = (q, q̇), the changes δx' = A δx + B δτ. The rows of A are `dq` beside
+    /// `dqd`, those of B are `dtau`, of the positions above the velocities.
+    NextStateDerivatives<DOF>, DynNextStateDerivatives {
+        /// Derivatives of the next positions.
+        q: StepDerivatives<DOF, T> | DynStepDerivatives<T>,
+        /// Derivatives of the next velocities.
+        qd: StepDerivatives<DOF, T> | DynStepDerivatives<T>,
+    }
 }
 
 /// A step of the semi-implicit Euler method under torques that do not change during the step.
@@ -67,49 +74,23 @@ pub trait EulerStepDerivatives<const DOF: usize> {
 }
 
 #[cfg(feature = "arm")]
-impl<const DOF: usize, S: Constant> EulerStep<DOF> for Arm<DOF, S> {
-    fn euler_step<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], tau: &[T; DOF], step: T) -> NextState<DOF, T> {
-        let next = moved(qd, &self.forward_dynamics(q, qd, tau), step);
-        NextState { q: moved(q, &next, step), qd: next }
-    }
-}
+definitions! { EulerStep<DOF> {
+    /// As [`EulerStep::euler_step`].
+    fn euler_step(q: joints, qd: joints, tau: joints, step: number) -> NextState = |robot| {
+        let [position, rate] = [q, qd].map(|x| robot.list(x));
+        let next = moved(&rate, &robot.forward_dynamics([q, qd, tau], AtTip::Nothing), step);
+        (moved(&position, &next, step), next)
+    };
+} }
 
 #[cfg(feature = "arm")]
-impl<const DOF: usize, S: Constant> EulerStepDerivatives<DOF> for Arm<DOF, S> {
-    fn euler_step_derivatives<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        tau: &[T; DOF],
-        step: T,
-    ) -> NextStateDerivatives<DOF, T> {
-        let found = self.forward_dynamics_derivatives(q, qd, tau);
-        let rates = moved_by(RATE, &[found.dq, found.dqd, found.dtau], step);
-        NextStateDerivatives { q: named(moved_by(POSITION, &rates, step)), qd: named(rates) }
-    }
-}
-
-/// Derivatives by q, by q̇ and by τ, each by rows.
-pub(crate) type Blocks<const DOF: usize, T> = [[[T; DOF]; DOF]; 3];
-
-/// The places of the derivatives by q and by q̇ among them.
-pub(crate) const POSITION: usize = 0;
-pub(crate) const RATE: usize = 1;
-
-/// x + h times what changes it.
-pub(crate) fn moved<const DOF: usize, T: Scalar>(x: &[T; DOF], change: &[T; DOF], step: T) -> [T; DOF] {
-    from_fn(|i| x[i] + step * change[i])
-}
-
-pub(crate) fn named<const DOF: usize, T>([dq, dqd, dtau]: Blocks<DOF, T>) -> StepDerivatives<DOF, T> {
-    StepDerivatives { dq, dqd, dtau }
-}
-
-/// The derivatives of x + h times what changes it, where x is the argument of this place.
-pub(crate) fn moved_by<const DOF: usize, T: Scalar>(place: usize, change: &Blocks<DOF, T>, step: T) -> Blocks<DOF, T> {
-    let mut found = change.map(|block| block.map(|row| row.map(|x| step * x)));
-    for (joint, row) in found[place].iter_mut().enumerate() {
-        row[joint] += T::one();
-    }
-    found
-}
+definitions! { EulerStepDerivatives<DOF> {
+    /// As [`EulerStepDerivatives::euler_step_derivatives`].
+    fn euler_step_derivatives(q: joints, qd: joints, tau: joints, step: number) -> NextStateDerivatives = |robot| {
+        let (dq, dqd, dtau) = robot.acceleration_derivatives([q, qd, tau], AtTip::Nothing, AtTip::Nothing);
+        let rates = moved_by(RATE, &[dq, dqd, dtau], step);
+        let [by_q, by_qd, by_tau] = moved_by(POSITION, &rates, step);
+        let [dq, dqd, dtau] = rates;
+        (From::from((by_q, by_qd, by_tau)), From::from((dq, dqd, dtau)))
+    };
+} }

@@ -3,13 +3,14 @@
 use core::array::from_fn;
 
 use crate::optimisation::along;
-#[cfg(all(feature = "arm", feature = "std"))]
-use crate::optimisation::moving;
 #[cfg(feature = "arm")]
-use crate::{Arm, Constant, Kinematics};
+use crate::{
+    Arm, Constant,
+    coordinates::Coordinates as _,
+    definition::{Definition, definitions},
+    per_joint::{PerJoint, Square},
+};
 use crate::{Dual, Scalar};
-#[cfg(all(feature = "arm", feature = "std"))]
-use crate::{DynArm, WrongLength};
 
 /// How the geometric Jacobian J of the tip changes: for tasks in accelerations of the tip, and for their derivatives.
 /// Rows and axes are those of [`jacobian`](crate::Kinematics::jacobian): three linear ones, then three angular ones, in
@@ -49,38 +50,24 @@ pub(crate) fn derivatives_of_rows<T: Scalar, const DOF: usize>(
 }
 
 #[cfg(feature = "arm")]
-impl<const DOF: usize, S: Constant> JacobianDerivatives<DOF> for Arm<DOF, S> {
-    fn jacobian_rate<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> [[T; DOF]; 6] {
-        rate_of_rows(q, qd, |q| self.jacobian(q))
+impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
+    fn jacobian_rate<T: Scalar>(self, q: &[T], qd: &[T]) -> [J::Of<T>; 6] {
+        let each = self.coordinates.each();
+        let moving = each.of(|i| Dual { value: q[i], derivative: qd[i] });
+        self.jacobian(moving.as_ref()).map(|row| each.of(|i| row.as_ref()[i].derivative))
     }
 
-    fn jacobian_derivatives<T: Scalar>(&self, q: &[T; DOF]) -> [[[T; DOF]; DOF]; 6] {
-        derivatives_of_rows(q, |q| self.jacobian(q))
+    fn jacobian_derivatives<T: Scalar>(self, q: &[T]) -> [Square<J, T>; 6] {
+        let each = self.coordinates.each();
+        let by = each.of(|j| self.jacobian(self.along(q, j).as_ref()));
+        from_fn(|row| each.of(|i| each.of(|j| by.as_ref()[j][row].as_ref()[i].derivative)))
     }
 }
 
-#[cfg(all(feature = "arm", feature = "std"))]
-impl<S: Constant> DynArm<S> {
+#[cfg(feature = "arm")]
+definitions! { JacobianDerivatives<DOF> {
     /// As [`JacobianDerivatives::jacobian_rate`]: six rows.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn jacobian_rate<T: Scalar>(&self, q: &[T], qd: &[T]) -> Result<[Vec<T>; 6], WrongLength> {
-        for (name, list) in [("q", q), ("qd", qd)] {
-            self.has_length(name, list)?;
-        }
-        let moving: Vec<_> = q.iter().zip(qd).map(|(&value, &derivative)| Dual { value, derivative }).collect();
-        Ok(self.jacobian(&moving)?.map(|row| row.into_iter().map(|element| element.derivative).collect()))
-    }
-
+    fn jacobian_rate(q: joints, qd: joints) -> rows6 = |robot| robot.jacobian_rate(q, qd);
     /// As [`JacobianDerivatives::jacobian_derivatives`]: six matrices.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn jacobian_derivatives<T: Scalar>(&self, q: &[T]) -> Result<[Vec<Vec<T>>; 6], WrongLength> {
-        self.has_length("q", q)?;
-        let by = (0..q.len()).map(|j| self.jacobian(&moving(q, Some(j)))).collect::<Result<Vec<_>, _>>()?;
-        let row = |row: usize, i: usize| by.iter().map(|jacobian| jacobian[row][i].derivative).collect();
-        Ok(from_fn(|r| (0..q.len()).map(|i| row(r, i)).collect()))
-    }
-}
+    fn jacobian_derivatives(q: joints) -> matrices6 = |robot| robot.jacobian_derivatives(q);
+} }

@@ -21,6 +21,8 @@
 use nalgebra::{Matrix3, Vector3};
 use rne_model::{Convention, FixedFrame, JointKind, Row, Transform};
 
+use crate::coordinates::Coordinates as _;
+use crate::definition::{Definition, definitions};
 use crate::joint::JointLaws;
 use crate::link_frame::{LinkFrame, rotation_of, rotation_x, rotation_z};
 use crate::link_state::JointMotions;
@@ -28,8 +30,6 @@ use crate::mechanism::Mechanism;
 use crate::mount::Mount;
 use crate::per_joint::PerJoint;
 use crate::{Arm, BaseMotion, Constant, Kinematics, Pose, Scalar, Wrench};
-#[cfg(feature = "std")]
-use crate::{DynArm, WrongLength};
 
 /// A pose in nalgebra's types.
 #[derive(Clone, Copy, Debug)]
@@ -271,27 +271,30 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 }
 
-impl<const DOF: usize, S: Constant> Kinematics<DOF> for Arm<DOF, S> {
-    fn forward_kinematics<T: Scalar>(&self, q: &[T; DOF]) -> Pose<T> {
-        self.mechanism().forward_kinematics(q)
-    }
-
-    fn link_poses<T: Scalar>(&self, q: &[T; DOF]) -> [Pose<T>; DOF] {
-        self.mechanism().link_poses(q)
-    }
-
-    fn jacobian<T: Scalar>(&self, q: &[T; DOF]) -> [[T; DOF]; 6] {
-        self.mechanism().jacobian(q)
-    }
-
-    fn jacobian_rate_times_velocity<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> [T; 6] {
-        self.mechanism().jacobian_rate_times_velocity(q, qd)
-    }
-
-    fn wrench_torques<T: Scalar>(&self, q: &[T; DOF], wrench: &Wrench<T>) -> [T; DOF] {
-        self.mechanism().wrench_torques(q, wrench)
+impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
+    pub(crate) fn jacobian<T: Scalar>(self, q: &[T]) -> [J::Of<T>; 6] {
+        self.coordinates.rows(self.mechanism.jacobian(self.of_joints(q).as_ref()))
     }
 }
+
+definitions! { Kinematics<DOF> {
+    /// As [`Kinematics::forward_kinematics`]: the tip in the world.
+    fn forward_kinematics(q: joints) -> a_pose = |robot| robot.mechanism.forward_kinematics(robot.of_joints(q).as_ref());
+    /// As [`Kinematics::link_poses`]: the link frames in the world, base to tip. Links whose joints follow others have
+    /// none; [`at_frame`](Self::at_frame) finds them.
+    fn link_poses(q: joints) -> poses =
+        |robot| robot.coordinates.only(robot.mechanism.link_poses(robot.of_joints(q).as_ref()));
+    /// As [`Kinematics::jacobian`]: six rows with one element per joint.
+    fn jacobian(q: joints) -> rows6 = |robot| robot.jacobian(q);
+    /// As [`Kinematics::jacobian_rate_times_velocity`]: J̇ q̇.
+    fn jacobian_rate_times_velocity(q: joints, qd: joints) -> six = |robot| {
+        let [q, qd] = [q, qd].map(|values| robot.of_joints(values));
+        robot.mechanism.jacobian_rate_times_velocity(q.as_ref(), qd.as_ref())
+    };
+    /// The joint torques Jᵀ w of a wrench; see [`Kinematics::wrench_torques`].
+    fn wrench_torques(q: joints, wrench: wrench) -> vector =
+        |robot| robot.coordinates.torques(robot.mechanism.wrench_torques(robot.of_joints(q).as_ref(), wrench));
+} }
 
 impl<const DOF: usize, S: Constant> Arm<DOF, S> {
     /// This arm with the frame `frame` in the place of the tip: the functions of [`Kinematics`] are those of the frame,
@@ -306,54 +309,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
 }
 
 #[cfg(feature = "std")]
-impl<S: Constant> DynArm<S> {
-    /// As [`Kinematics::forward_kinematics`]: the tip in the world.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn forward_kinematics<T: Scalar>(&self, q: &[T]) -> Result<Pose<T>, WrongLength> {
-        let q = &*self.of_joints("q", q)?;
-        Ok(self.mechanism().forward_kinematics(q))
-    }
-
-    /// As [`Kinematics::link_poses`]: the link frames in the world, base to tip. Links whose joints follow others have
-    /// none; [`at_frame`](Self::at_frame) finds them.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn link_poses<T: Scalar>(&self, q: &[T]) -> Result<Vec<Pose<T>>, WrongLength> {
-        let q = &*self.of_joints("q", q)?;
-        Ok(self.couplings.of_coordinates(self.mechanism().link_poses(q)))
-    }
-
-    /// As [`Kinematics::jacobian`]: six rows with one element per joint.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn jacobian<T: Scalar>(&self, q: &[T]) -> Result<[Vec<T>; 6], WrongLength> {
-        let q = &*self.of_joints("q", q)?;
-        Ok(self.couplings.rows(self.mechanism().jacobian(q)))
-    }
-
-    /// As [`Kinematics::jacobian_rate_times_velocity`]: J̇ q̇.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn jacobian_rate_times_velocity<T: Scalar>(&self, q: &[T], qd: &[T]) -> Result<[T; 6], WrongLength> {
-        let q = &*self.of_joints("q", q)?;
-        let qd = &*self.of_joints("qd", qd)?;
-        Ok(self.mechanism().jacobian_rate_times_velocity(q, qd))
-    }
-
-    /// The joint torques Jᵀ w of a wrench; see [`Kinematics::wrench_torques`].
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn wrench_torques<T: Scalar>(&self, q: &[T], wrench: &Wrench<T>) -> Result<Vec<T>, WrongLength> {
-        let q = &*self.of_joints("q", q)?;
-        Ok(self.couplings.torques(self.mechanism().wrench_torques(q, wrench)))
-    }
-
+impl<S: Constant> crate::DynArm<S> {
     /// This arm with the frame `frame` in the place of the tip; see [`Arm::at_frame`].
     ///
     /// `None` when `frame` is on a link that the arm does not have.

@@ -25,9 +25,13 @@ mod computed_torque;
 #[cfg(feature = "arm")]
 mod contact_dynamics;
 #[cfg(feature = "arm")]
+mod coordinates;
+#[cfg(feature = "arm")]
 mod coriolis_matrix;
 #[cfg(all(feature = "arm", feature = "std"))]
 mod couplings;
+#[cfg(feature = "arm")]
+mod definition;
 #[cfg(feature = "arm")]
 mod derivatives;
 mod dual;
@@ -52,16 +56,14 @@ mod floating_step_derivatives;
 mod forward_dynamics;
 mod hessian;
 mod integrator;
-#[cfg(feature = "std")]
-#[doc(hidden)]
-pub mod integrator_of_lists;
 /// Steps and their derivatives of a robot with a floating base, with lists of joints: the Python package has robots
 /// of any number of joints.
 #[doc(hidden)]
 pub mod floating_integrator_of_lists {
-    pub use crate::floating_integrator::{Stage, moved, runge_kutta};
+    pub use crate::floating_integrator::{Stage, runge_kutta};
     pub use crate::floating_runge_kutta::{Linear, Turning, derivatives};
     pub use crate::ldlt::factor;
+    pub use crate::steps::moved;
 }
 mod jacobian_derivatives;
 #[cfg(feature = "arm")]
@@ -112,10 +114,13 @@ mod runge_kutta;
 mod scalar;
 #[cfg(feature = "arm")]
 mod seven_steps;
+mod shapes;
 mod sin_cos;
 mod smooth_sign;
 #[cfg(feature = "arm")]
 mod spin;
+#[doc(hidden)]
+pub mod steps;
 #[doc(hidden)]
 pub mod testing;
 #[cfg(feature = "rayon")]
@@ -127,7 +132,7 @@ mod trace;
 mod wrench;
 
 #[cfg(feature = "arm")]
-pub use arm::Arm;
+pub use arm::{Arm, ArmWithTips};
 pub use base_motion::BaseMotion;
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use base_parameters::{BaseParameter, BaseParameters, LinkParameter};
@@ -136,6 +141,8 @@ pub use batch::{
     BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives,
     BatchMassMatrix, BatchScalar, LengthMismatch, VectorUnit,
 };
+#[cfg(feature = "std")]
+pub use capability::DynTorqueDerivatives;
 pub use capability::{
     AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, CentreOfMass, CentroidalMomentum, ClosedLoops,
     ClosureStep, ContactDynamics, CoriolisMatrix, Energy, FloatingAccelerations, FloatingBase, FloatingClosedLoops,
@@ -144,8 +151,6 @@ pub use capability::{
     MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches, TorqueDerivatives, frame_index,
 };
 pub use computed_torque::{ComputedTorque, Desired};
-#[cfg(all(feature = "arm", feature = "std"))]
-pub use derivatives::DynTorqueDerivatives;
 pub use dual::Dual;
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use dyn_arm::{DynArm, DynTrace};
@@ -162,12 +167,12 @@ pub use floating_runge_kutta::FloatingRungeKuttaStepDerivatives;
 #[cfg(feature = "std")]
 pub use floating_step_derivatives::DynFloatingStepDerivatives;
 pub use floating_step_derivatives::{FloatingEulerStepDerivatives, FloatingStepDerivatives};
-#[cfg(all(feature = "arm", feature = "std"))]
+#[cfg(feature = "std")]
 pub use hessian::DynTorqueHessian;
 pub use hessian::{InverseDynamicsHessian, TorqueHessian};
+#[cfg(feature = "std")]
+pub use integrator::{DynNextState, DynNextStateDerivatives, DynStepDerivatives};
 pub use integrator::{EulerStep, EulerStepDerivatives, NextState, NextStateDerivatives, StepDerivatives};
-#[cfg(all(feature = "arm", feature = "std"))]
-pub use integrator_of_lists::{DynNextState, DynNextStateDerivatives, DynStepDerivatives};
 pub use jacobian_derivatives::JacobianDerivatives;
 pub use joint_order::{JointOrderError, joint_order};
 #[doc(hidden)]
@@ -180,7 +185,7 @@ pub use operational_space::operational_space;
 pub use operational_space::{dynamically_consistent_inverse, operational_space_inertia};
 pub use operations::Operations;
 pub use optimisation::{AccelerationDerivatives, ForwardDynamicsDerivatives, InverseDynamicsGradient, TorqueGradient};
-#[cfg(all(feature = "arm", feature = "std"))]
+#[cfg(feature = "std")]
 pub use optimisation::{DynAccelerationDerivatives, DynTorqueGradient};
 pub use payload::{NegativeMass, Payload};
 pub use pose::Pose;

@@ -17,6 +17,7 @@
 use nalgebra::{Matrix3, Vector3};
 use rne_model::{Angle, Convention, FixedFrame, JointKind, Link, QuarterTurns, Row, Transform};
 
+use crate::at_tip::Tip;
 use crate::joint::JointLaws;
 use crate::mount::Mount;
 use crate::spin::Spins;
@@ -112,6 +113,8 @@ pub(crate) struct Chain<'a, S> {
     pub(crate) tip: &'a Mount<S>,
     /// The link that carries the tip; `None` without links.
     pub(crate) tip_link: Option<usize>,
+    /// The named tips.
+    pub(crate) tips: &'a [Tip<S>],
     /// The rotors that turn on the links and on the base.
     pub(crate) spins: Spins<'a, S>,
     /// The link of frame 0, if nothing holds it.

@@ -6,15 +6,13 @@
 //! [forward dynamics](crate::ForwardDynamics): column j from row j on, mirrored too.
 
 use crate::at_tip::AtTip;
+use crate::coordinates::Coordinates as _;
+use crate::definition::{Definition, definitions};
+use crate::ldlt::{factor, inverse_of, solve};
 use crate::link_state::{ForceMoment, JointMotions};
 use crate::mechanism::Mechanism;
 use crate::per_joint::{PerJoint, Square};
 use crate::{Arm, BaseMotion, Constant, MassMatrix, Scalar};
-#[cfg(feature = "std")]
-use crate::{
-    DynArm, WrongLength,
-    ldlt::{factor, inverse_of, solve},
-};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn mass_matrix<T: Scalar>(self, q: &[T], tip: AtTip<'_, T>) -> Square<J, T> {
@@ -45,40 +43,30 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 }
 
-impl<const DOF: usize, S: Constant> MassMatrix<DOF> for Arm<DOF, S> {
-    fn mass_matrix<T: Scalar>(&self, q: &[T; DOF]) -> [[T; DOF]; DOF] {
-        self.mechanism().mass_matrix(q, AtTip::Nothing)
+impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
+    pub(crate) fn mass_matrix<T: Scalar>(self, q: &[T], load: AtTip<'_, T>) -> Square<J, T> {
+        self.coordinates.symmetric(self.mechanism.mass_matrix(self.of_joints(q).as_ref(), load.matter()))
+    }
+
+    pub(crate) fn inverse_mass_matrix<T: Scalar>(self, q: &[T], load: AtTip<'_, T>) -> Square<J, T> {
+        inverse_of(self.mass_matrix(q, load), &self.zeros())
+    }
+
+    /// Solves M(q) x = b.
+    pub(crate) fn accelerations<T: Scalar>(self, q: &[T], mut b: J::Of<T>, load: AtTip<'_, T>) -> J::Of<T> {
+        let (mut m, mut inverse) = (self.mass_matrix(q, load), self.zeros());
+        factor(m.as_mut(), inverse.as_mut());
+        solve(m.as_ref(), inverse.as_ref(), b.as_mut());
+        b
     }
 }
 
-#[cfg(feature = "std")]
-impl<S: Constant> DynArm<S> {
+definitions! { MassMatrix<DOF> {
     /// As [`MassMatrix::mass_matrix`]: rows of M(q).
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn mass_matrix<T: Scalar>(&self, q: &[T]) -> Result<Vec<Vec<T>>, WrongLength> {
-        let q = &*self.of_joints("q", q)?;
-        Ok(self.couplings.symmetric(self.mechanism().mass_matrix(q, AtTip::Nothing)))
-    }
-
+    fn mass_matrix(q: joints) -> matrix = |robot| robot.mass_matrix(q, AtTip::Nothing);
     /// As [`MassMatrix::inverse_mass_matrix`]: rows of M(q)⁻¹.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn inverse_mass_matrix<T: Scalar>(&self, q: &[T]) -> Result<Vec<Vec<T>>, WrongLength> {
-        Ok(inverse_of(self.mass_matrix(q)?, &vec![T::zero(); q.len()]))
-    }
-
+    fn inverse_mass_matrix(q: joints) -> matrix = |robot| robot.inverse_mass_matrix(q, AtTip::Nothing);
     /// As [`MassMatrix::inverse_mass_matrix_times_torques`].
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn inverse_mass_matrix_times_torques<T: Scalar>(&self, q: &[T], tau: &[T]) -> Result<Vec<T>, WrongLength> {
-        self.has_length("tau", tau)?;
-        let (mut m, mut inverse, mut x) = (self.mass_matrix(q)?, vec![T::zero(); tau.len()], tau.to_vec());
-        factor(&mut m, &mut inverse);
-        solve(&m, &inverse, &mut x);
-        Ok(x)
-    }
-}
+    fn inverse_mass_matrix_times_torques(q: joints, tau: joints) -> vector =
+        |robot| robot.accelerations(q, robot.list(tau), AtTip::Nothing);
+} }

@@ -17,6 +17,8 @@ pub(crate) struct Mechanism<'a, J, S> {
     pub(crate) per_joint: J,
     pub(crate) chain: Chain<'a, S>,
     pub(crate) table: Table<'a, S>,
+    /// The frames of the named tips.
+    pub(crate) frames: &'a [FixedFrame<S>],
     pub(crate) motors: &'a [Option<Motor<S>>],
     /// Whether rotors belong to the arm.
     pub(crate) rotors: bool,

@@ -26,6 +26,8 @@
 use nalgebra::{Matrix3, Vector3};
 use rne_model::JointKind;
 
+use crate::coordinates::Coordinates as _;
+use crate::definition::{Definition, definitions};
 use crate::link_frame::LinkFrame;
 use crate::link_state::{JointMotions, LinkMotion};
 use crate::mechanism::Mechanism;
@@ -33,8 +35,6 @@ use crate::mount::Mount;
 use crate::per_joint::PerJoint;
 use crate::seven_steps;
 use crate::{Arm, BaseMotion, BaseTwist, Constant, MomentumAndRate, MomentumObserver, Payload, Scalar};
-#[cfg(feature = "std")]
-use crate::{DynArm, WrongLength};
 
 /// Link i and all that it carries, as one body.
 #[derive(Clone, Copy, Debug)]
@@ -179,7 +179,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     /// The momentum of a robot whose base nothing holds, and its angular momentum about the centre of mass.
-    fn centroidal_momentum<T: Scalar>(self, q: &[T], qd: &[T], twist: &BaseTwist<T>) -> [T; 6] {
+    pub(crate) fn centroidal_momentum<T: Scalar>(self, q: &[T], qd: &[T], twist: &BaseTwist<T>) -> [T; 6] {
         let (zeros, base, chain) = (self.zeros(), twist.motion(), self.chain);
         let joints = JointMotions::new(q, qd, zeros.as_ref());
         let motions = self.motions(joints, &base);
@@ -203,46 +203,19 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 }
 
-impl<const DOF: usize, S: Constant> Arm<DOF, S> {
-    /// As [`CentroidalMomentum::centroidal_momentum`](crate::CentroidalMomentum::centroidal_momentum).
-    #[must_use]
-    pub fn centroidal_momentum<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], twist: &BaseTwist<T>) -> [T; 6] {
-        self.mechanism().centroidal_momentum(q, qd, twist)
+impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
+    pub(crate) fn momentum_and_rate<T: Scalar>(
+        self,
+        [q, qd, tau]: [&[T]; 3],
+        payload: Option<&Payload<T>>,
+    ) -> [J::Of<T>; 2] {
+        let ([q, qd], tau) = ([q, qd].map(|values| self.of_joints(values)), self.coordinates.applied(tau));
+        self.coordinates.rows(self.mechanism.momentum_and_rate(q.as_ref(), qd.as_ref(), tau.as_ref(), payload))
     }
 }
 
-impl<const DOF: usize, S: Constant> MomentumObserver<DOF> for Arm<DOF, S> {
-    fn momentum_and_rate<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], tau: &[T; DOF]) -> MomentumAndRate<DOF, T> {
-        let [momentum, rate] = self.mechanism().momentum_and_rate(q, qd, tau, None);
-        MomentumAndRate { momentum, rate }
-    }
-}
-
-#[cfg(feature = "std")]
-impl<S: Constant> DynArm<S> {
+definitions! { MomentumObserver<DOF> {
     /// As [`MomentumObserver::momentum_and_rate`]: the momentum of every joint, and its rate without external torques.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn momentum_and_rate<T: Scalar>(&self, q: &[T], qd: &[T], tau: &[T]) -> Result<[Vec<T>; 2], WrongLength> {
-        let q = &*self.of_joints("q", q)?;
-        let qd = &*self.of_joints("qd", qd)?;
-        let tau = &*self.applied(tau)?;
-        Ok(self.couplings.rows(self.mechanism().momentum_and_rate(q, qd, tau, None)))
-    }
-
-    /// As [`CentroidalMomentum::centroidal_momentum`](crate::CentroidalMomentum::centroidal_momentum).
-    ///
-    /// # Errors
-    /// When a joint argument does not have one element per joint.
-    pub fn centroidal_momentum<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        twist: &BaseTwist<T>,
-    ) -> Result<[T; 6], WrongLength> {
-        let q = &*self.of_joints("q", q)?;
-        let qd = &*self.of_joints("qd", qd)?;
-        Ok(self.mechanism().centroidal_momentum(q, qd, twist))
-    }
-}
+    fn momentum_and_rate(q: joints, qd: joints, tau: joints) -> MomentumAndRate =
+        |robot| robot.momentum_and_rate([q, qd, tau], None);
+} }

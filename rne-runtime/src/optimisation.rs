@@ -3,27 +3,29 @@
 
 use core::array::from_fn;
 
-#[cfg(all(feature = "arm", feature = "std"))]
-use crate::ldlt::inverse_of;
+use crate::shapes::records;
 #[cfg(feature = "arm")]
-use crate::{Arm, Constant, ForwardDynamics, InverseDynamics, MassMatrix};
+use crate::{
+    Arm, Constant,
+    at_tip::AtTip,
+    coordinates::Coordinates as _,
+    definition::{Definition, definitions},
+    per_joint::{PerJoint, Square},
+};
 use crate::{Dual, Scalar};
-#[cfg(all(feature = "arm", feature = "std"))]
-use crate::{DynArm, DynTorqueDerivatives, Payload, Wrench, WrongLength};
-#[cfg(doc)]
-use crate::{PayloadDynamics, TipWrenches};
 
-/// The derivatives of λᵀτ for one state: of the torques, each times its multiplier and added up.
-///
-/// Units: of λᵀτ per rad or m, per rad/s or m/s, and per rad/s² or m/s².
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TorqueGradient<const DOF: usize, T> {
-    /// ∂(λᵀτ)/∂q_j, λᵀ ∂τ/∂q.
-    pub dq: [T; DOF],
-    /// ∂(λᵀτ)/∂q̇_j, λᵀ ∂τ/∂q̇.
-    pub dqd: [T; DOF],
-    /// ∂(λᵀτ)/∂q̈_j, M(q) λ.
-    pub dqdd: [T; DOF],
+records! {
+    /// The derivatives of λᵀτ for one state: of the torques, each times its multiplier and added up.
+    ///
+    /// Units: of λᵀτ per rad or m, per rad/s or m/s, and per rad/s² or m/s².
+    TorqueGradient<DOF>, DynTorqueGradient {
+        /// ∂(λᵀτ)/∂q_j, λᵀ ∂τ/∂q.
+        dq: [T; DOF] | Vec<T>,
+        /// ∂(λᵀτ)/∂q̇_j, λᵀ ∂τ/∂q̇.
+        dqd: [T; DOF] | Vec<T>,
+        /// ∂(λᵀτ)/∂q̈_j, M(q) λ.
+        dqdd: [T; DOF] | Vec<T>,
+    }
 }
 
 /// How a weighted sum of the torques changes with the motion: the product of a vector and the Jacobian of the inverse
@@ -45,17 +47,18 @@ pub trait InverseDynamicsGradient<const DOF: usize> {
     ) -> TorqueGradient<DOF, T>;
 }
 
-/// The derivatives of the accelerations for one state. Row i is acceleration i, column j is joint j.
-///
-/// Units: of an acceleration (rad/s², or m/s² for a prismatic joint) per rad or m, per rad/s or m/s, and per N m or N.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AccelerationDerivatives<const DOF: usize, T> {
-    /// ∂q̈_i/∂q_j.
-    pub dq: [[T; DOF]; DOF],
-    /// ∂q̈_i/∂q̇_j.
-    pub dqd: [[T; DOF]; DOF],
-    /// ∂q̈_i/∂τ_j, M(q)⁻¹: symmetric.
-    pub dtau: [[T; DOF]; DOF],
+records! {
+    /// The derivatives of the accelerations for one state. Row i is acceleration i, column j is joint j.
+    ///
+    /// Units: of an acceleration (rad/s², or m/s² for a prismatic joint) per rad or m, per rad/s or m/s, and per N m or N.
+    AccelerationDerivatives<DOF>, DynAccelerationDerivatives {
+        /// ∂q̈_i/∂q_j.
+        dq: [[T; DOF]; DOF] | Vec<Vec<T>>,
+        /// ∂q̈_i/∂q̇_j.
+        dqd: [[T; DOF]; DOF] | Vec<Vec<T>>,
+        /// ∂q̈_i/∂τ_j, M(q)⁻¹: symmetric.
+        dtau: [[T; DOF]; DOF] | Vec<Vec<T>>,
+    }
 }
 
 /// How the accelerations change with the state and with the torques: the linear model that shooting methods and linear
@@ -78,7 +81,7 @@ pub trait ForwardDynamicsDerivatives<const DOF: usize> {
 
 impl<const DOF: usize, T: Scalar> AccelerationDerivatives<DOF, T> {
     /// Derivatives of accelerations by q and q̇, beside the inverse of the mass matrix.
-    pub(crate) fn of(
+    pub(crate) fn by_dual_numbers(
         q: &[T; DOF],
         qd: &[T; DOF],
         accelerations: impl Fn(&[Dual<T>; DOF], &[Dual<T>; DOF]) -> [Dual<T>; DOF],
@@ -119,192 +122,50 @@ pub(crate) fn along<T: Scalar>(x: &[T], i: usize, j: usize) -> Dual<T> {
 }
 
 #[cfg(feature = "arm")]
-impl<const DOF: usize, S: Constant> InverseDynamicsGradient<DOF> for Arm<DOF, S> {
-    fn torque_gradient<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        qdd: &[T; DOF],
-        multipliers: &[T; DOF],
-    ) -> TorqueGradient<DOF, T> {
-        let still = [q, qd, qdd].map(|x| x.map(Dual::constant));
+impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
+    /// λᵀτ by q, by q̇ and by q̈.
+    pub(crate) fn torque_gradient<T: Scalar>(
+        self,
+        motion: [&[T]; 3],
+        multipliers: &[T],
+    ) -> (J::Of<T>, J::Of<T>, J::Of<T>) {
+        let still = motion.map(|x| self.still(x));
         let by = |place: usize| {
-            from_fn(|j| {
-                let mut moving = still;
-                moving[place] = from_fn(|i| along([q, qd, qdd][place], i, j));
+            self.coordinates.each().of(|j| {
+                let mut moving = still.clone();
+                moving[place] = self.along(motion[place], j);
                 let [q, qd, qdd] = &moving;
-                weighted(&self.inverse_dynamics(q, qd, qdd), multipliers)
+                weighted(self.torques([q.as_ref(), qd.as_ref(), qdd.as_ref()], AtTip::Nothing).as_ref(), multipliers)
             })
         };
-        TorqueGradient { dq: by(0), dqd: by(1), dqdd: by(2) }
+        (by(0), by(1), by(2))
+    }
+
+    /// The accelerations by q, by q̇ and by τ, under a load and the same load of dual numbers.
+    #[allow(clippy::type_complexity)] // three matrices
+    pub(crate) fn acceleration_derivatives<T: Scalar>(
+        self,
+        [q, qd, tau]: [&[T]; 3],
+        load: AtTip<'_, T>,
+        still_load: AtTip<'_, Dual<T>>,
+    ) -> (Square<J, T>, Square<J, T>, Square<J, T>) {
+        let [still_q, still_qd, tau] = [q, qd, tau].map(|x| self.still(x));
+        let accelerations = |q: &[_], qd: &[_]| self.forward_dynamics([q, qd, tau.as_ref()], still_load);
+        let dq = self.rows_by(q, |q| accelerations(q, still_qd.as_ref()));
+        (dq, self.rows_by(qd, |qd| accelerations(still_q.as_ref(), qd)), self.inverse_mass_matrix(q, load))
     }
 }
 
 #[cfg(feature = "arm")]
-impl<const DOF: usize, S: Constant> ForwardDynamicsDerivatives<DOF> for Arm<DOF, S> {
-    fn forward_dynamics_derivatives<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        tau: &[T; DOF],
-    ) -> AccelerationDerivatives<DOF, T> {
-        let tau = still(tau);
-        AccelerationDerivatives::of(q, qd, |q, qd| self.forward_dynamics(q, qd, &tau), self.inverse_mass_matrix(q))
-    }
-}
-
-/// [`TorqueGradient`] of a [`DynArm`].
-#[cfg(all(feature = "arm", feature = "std"))]
-#[derive(Clone, Debug, PartialEq)]
-pub struct DynTorqueGradient<T> {
-    /// ∂(λᵀτ)/∂q_j.
-    pub dq: Vec<T>,
-    /// ∂(λᵀτ)/∂q̇_j.
-    pub dqd: Vec<T>,
-    /// ∂(λᵀτ)/∂q̈_j.
-    pub dqdd: Vec<T>,
-}
-
-/// [`AccelerationDerivatives`] of a [`DynArm`].
-#[cfg(all(feature = "arm", feature = "std"))]
-#[derive(Clone, Debug, PartialEq)]
-pub struct DynAccelerationDerivatives<T> {
-    /// ∂q̈_i/∂q_j.
-    pub dq: Vec<Vec<T>>,
-    /// ∂q̈_i/∂q̇_j.
-    pub dqd: Vec<Vec<T>>,
-    /// ∂q̈_i/∂τ_j.
-    pub dtau: Vec<Vec<T>>,
-}
-
-#[cfg(all(feature = "arm", feature = "std"))]
-impl<S: Constant> DynArm<S> {
+definitions! { InverseDynamicsGradient<DOF> {
     /// As [`InverseDynamicsGradient::torque_gradient`].
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn torque_gradient<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        qdd: &[T],
-        multipliers: &[T],
-    ) -> Result<DynTorqueGradient<T>, WrongLength> {
-        for (name, list) in [("q", q), ("qd", qd), ("qdd", qdd), ("multipliers", multipliers)] {
-            self.has_length(name, list)?;
-        }
-        let by = |place: usize| {
-            let column = |j: usize| {
-                let [q, qd, qdd] = [(0, q), (1, qd), (2, qdd)].map(|(at, x)| moving(x, (at == place).then_some(j)));
-                Ok::<_, WrongLength>(weighted(&self.inverse_dynamics(&q, &qd, &qdd)?, multipliers))
-            };
-            (0..self.dof()).map(column).collect::<Result<Vec<T>, _>>()
-        };
-        Ok(DynTorqueGradient { dq: by(0)?, dqd: by(1)?, dqdd: by(2)? })
-    }
+    fn torque_gradient(q: joints, qd: joints, qdd: joints, multipliers: joints) -> TorqueGradient =
+        |robot| robot.torque_gradient([q, qd, qdd], multipliers);
+} }
 
+#[cfg(feature = "arm")]
+definitions! { ForwardDynamicsDerivatives<DOF> {
     /// As [`ForwardDynamicsDerivatives::forward_dynamics_derivatives`].
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn forward_dynamics_derivatives<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        tau: &[T],
-    ) -> Result<DynAccelerationDerivatives<T>, WrongLength> {
-        let (tau, dtau) = (moving(tau, None), self.inverse_mass_matrix(q)?);
-        DynAccelerationDerivatives::of(q, qd, |q, qd| self.forward_dynamics(q, qd, &tau), dtau)
-    }
-
-    /// As [`PayloadDynamics::forward_dynamics_derivatives_with_payload`].
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn forward_dynamics_derivatives_with_payload<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        tau: &[T],
-        payload: &Payload<T>,
-    ) -> Result<DynAccelerationDerivatives<T>, WrongLength> {
-        let dtau = inverse_of(self.mass_matrix_with_payload(q, payload)?, &vec![T::zero(); q.len()]);
-        let (tau, payload) = (moving(tau, None), payload.still());
-        let accelerations = |q: &[_], qd: &[_]| self.forward_dynamics_with_payload(q, qd, &tau, &payload);
-        DynAccelerationDerivatives::of(q, qd, accelerations, dtau)
-    }
-
-    /// As [`TipWrenches::inverse_dynamics_derivatives_with_wrenches`], with one of `wrenches` for each of the
-    /// [tips](Self::tips).
-    ///
-    /// # Errors
-    /// When a joint argument does not have one element per joint, or `wrenches` not one element per tip.
-    pub fn inverse_dynamics_derivatives_with_wrenches<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        qdd: &[T],
-        wrenches: &[Wrench<T>],
-    ) -> Result<DynTorqueDerivatives<T>, WrongLength> {
-        for (name, list) in [("q", q), ("qd", qd), ("qdd", qdd)] {
-            self.has_length(name, list)?;
-        }
-        let wrenches: Vec<_> = wrenches.iter().copied().map(Wrench::still).collect();
-        let (still_q, still_qd, qdd) = (moving(q, None), moving(qd, None), moving(qdd, None));
-        Ok(DynTorqueDerivatives {
-            dq: dyn_rows_by(q, |q| self.inverse_dynamics_with_wrenches(q, &still_qd, &qdd, &wrenches))?,
-            dqd: dyn_rows_by(qd, |qd| self.inverse_dynamics_with_wrenches(&still_q, qd, &qdd, &wrenches))?,
-        })
-    }
-
-    /// As [`TipWrenches::forward_dynamics_derivatives_with_wrenches`], with one of `wrenches` for each of the
-    /// [tips](Self::tips).
-    ///
-    /// # Errors
-    /// When a joint argument does not have one element per joint, or `wrenches` not one element per tip.
-    pub fn forward_dynamics_derivatives_with_wrenches<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        tau: &[T],
-        wrenches: &[Wrench<T>],
-    ) -> Result<DynAccelerationDerivatives<T>, WrongLength> {
-        let wrenches: Vec<_> = wrenches.iter().copied().map(Wrench::still).collect();
-        let (tau, dtau) = (moving(tau, None), self.inverse_mass_matrix(q)?);
-        let accelerations = |q: &[_], qd: &[_]| self.forward_dynamics_with_wrenches(q, qd, &tau, &wrenches);
-        DynAccelerationDerivatives::of(q, qd, accelerations, dtau)
-    }
-}
-
-#[cfg(all(feature = "arm", feature = "std"))]
-impl<T: Scalar> DynAccelerationDerivatives<T> {
-    /// Derivatives of accelerations by q and q̇, beside the inverse of the mass matrix.
-    fn of(
-        q: &[T],
-        qd: &[T],
-        accelerations: impl Fn(&[Dual<T>], &[Dual<T>]) -> Result<Vec<Dual<T>>, WrongLength>,
-        dtau: Vec<Vec<T>>,
-    ) -> Result<Self, WrongLength> {
-        let (still_q, still_qd) = (moving(q, None), moving(qd, None));
-        accelerations(&still_q, &still_qd)?;
-        let dq = dyn_rows_by(q, |q| accelerations(q, &still_qd))?;
-        Ok(Self { dq, dqd: dyn_rows_by(qd, |qd| accelerations(&still_q, qd))?, dtau })
-    }
-}
-
-/// As [`rows_by`].
-#[cfg(all(feature = "arm", feature = "std"))]
-pub(crate) fn dyn_rows_by<T: Scalar>(
-    x: &[T],
-    y: impl Fn(&[Dual<T>]) -> Result<Vec<Dual<T>>, WrongLength>,
-) -> Result<Vec<Vec<T>>, WrongLength> {
-    let columns = (0..x.len()).map(|j| y(&moving(x, Some(j)))).collect::<Result<Vec<_>, _>>()?;
-    let row = |row: usize| columns.iter().map(|column| column[row].derivative).collect();
-    Ok((0..columns.first().map_or(0, Vec::len)).map(row).collect())
-}
-
-/// Numbers of which one is on its way.
-#[cfg(all(feature = "arm", feature = "std"))]
-pub(crate) fn moving<T: Scalar>(x: &[T], j: Option<usize>) -> Vec<Dual<T>> {
-    (0..x.len()).map(|i| along(x, i, j.unwrap_or(x.len()))).collect()
-}
+    fn forward_dynamics_derivatives(q: joints, qd: joints, tau: joints) -> AccelerationDerivatives =
+        |robot| robot.acceleration_derivatives([q, qd, tau], AtTip::Nothing, AtTip::Nothing);
+} }

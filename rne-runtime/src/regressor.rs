@@ -14,12 +14,12 @@
 //! mass put at its link frame's origin: no inertial parameter of the robot enters Y.
 
 use core::array;
-#[cfg(feature = "std")]
-use core::iter;
 
 use nalgebra::{Matrix3, Vector3};
 use rne_model::{Convention, Link, PER_LINK, Row};
 
+use crate::coordinates::Coordinates as _;
+use crate::definition::{Definition, definitions};
 use crate::floating_base::BASE;
 use crate::joint::JointLaws;
 use crate::link_frame::{Chain, LinkFrame, Table, rotation_x};
@@ -27,9 +27,7 @@ use crate::link_state::{ForceMoment, JointMotions, LinkMotion};
 use crate::mechanism::Mechanism;
 use crate::mount::Mount;
 use crate::per_joint::{PerJoint, Square};
-use crate::{Arm, BaseMotion, Constant, Regressor, Scalar};
-#[cfg(feature = "std")]
-use crate::{DynArm, WrongLength};
+use crate::{Arm, ArmWithTips, BaseMotion, Constant, FloatingRegressor, Regressor, Scalar};
 
 /// Row and column of Jxx, Jxy, Jxz, Jyy, Jyz, Jzz.
 const TENSOR: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
@@ -94,10 +92,6 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         (of_base, matrix)
     }
 
-    fn regressor_of_fixed_base<T: Scalar>(self, q: &[T], qd: &[T], qdd: &[T]) -> Square<J, Elements<T>> {
-        self.regressor(JointMotions::new(q, qd, qdd), &self.fixed_base()).1
-    }
-
     /// Turns components in the axes of link frame `index` into those of form P.
     fn link_axes<T: Scalar>(self, index: usize) -> Matrix3<T> {
         match self.table.convention {
@@ -144,51 +138,51 @@ fn unit_wrenches<T: Scalar>(motion: &LinkMotion<T>, axes: &Matrix3<T>) -> [Force
     })
 }
 
-impl<const DOF: usize, S: Constant> Regressor<DOF> for Arm<DOF, S> {
-    fn regressor<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], qdd: &[T; DOF]) -> [[[T; PER_LINK]; DOF]; DOF] {
-        self.mechanism().regressor_of_fixed_base(q, qd, qdd)
+impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
+    /// The rows of the base, and those of the coordinates.
+    fn regressor<T: Scalar>(
+        self,
+        [q, qd, qdd]: [&[T]; 3],
+        base: &BaseMotion<T>,
+    ) -> (OfBase<J, T>, Square<J, Elements<T>>) {
+        let [q, qd, qdd] = [q, qd, qdd].map(|values| self.of_joints(values));
+        let joints = JointMotions::new(q.as_ref(), qd.as_ref(), qdd.as_ref());
+        let (of_base, of_joints) = self.mechanism.regressor(joints, base);
+        let gathered = self.coordinates.gathered(of_joints, |mut sum: J::Of<Elements<T>>, row, ratio| {
+            for (a, b) in sum.as_mut().iter_mut().zip(row.as_ref()) {
+                *a = array::from_fn(|i| a[i] + b[i] * ratio.to());
+            }
+            sum
+        });
+        (of_base, gathered)
     }
 }
 
-impl<const DOF: usize, S: Constant> Arm<DOF, S> {
-    /// As [`FloatingRegressor::floating_regressor`](crate::FloatingRegressor::floating_regressor); `NV` is `DOF` + 6
-    /// and `BODIES` is `DOF` + 1.
-    #[must_use]
-    pub fn floating_regressor<T: Scalar, const NV: usize, const BODIES: usize>(
+definitions! { Regressor<DOF> {
+    /// As [`Regressor::regressor`]: torque, link, parameter.
+    fn regressor(q: joints, qd: joints, qdd: joints) -> regressor =
+        |robot| robot.regressor([q, qd, qdd], &robot.fixed_base()).1;
+} }
+
+impl<const DOF: usize, const NV: usize, const BODIES: usize, const TIPS: usize, S: Constant>
+    FloatingRegressor<DOF, NV, BODIES> for ArmWithTips<'_, DOF, NV, TIPS, S>
+{
+    fn floating_regressor<T: Scalar>(
         &self,
         q: &[T; DOF],
         qd: &[T; DOF],
         qdd: &[T; DOF],
         base: &BaseMotion<T>,
     ) -> [[Elements<T>; BODIES]; NV] {
-        const { assert!(NV == DOF + BASE, "the regressor has a row for each joint and six for the base") };
         const { assert!(BODIES == DOF + 1, "the regressor has ten columns for the base and for each link") };
-        let (of_base, of_joints) = self.mechanism().regressor(JointMotions::new(q, qd, qdd), base);
-        let element = |row: usize, body: usize| match (row.checked_sub(BASE), body.checked_sub(1)) {
-            (None, None) => of_base.own[row],
-            (None, Some(link)) => of_base.links[row][link],
-            // no joint moves the base
-            (Some(_), None) => [T::zero(); PER_LINK],
-            (Some(joint), Some(link)) => of_joints[joint][link],
-        };
-        array::from_fn(|row| array::from_fn(|body| element(row, body)))
+        let (of_base, of_joints) = self.definition().regressor([q, qd, qdd], base);
+        array::from_fn(|row| array::from_fn(|body| element(&of_base, &of_joints, row, body)))
     }
 }
 
 #[cfg(feature = "std")]
-impl<S: Constant> DynArm<S> {
-    /// As [`Regressor::regressor`]: torque, link, parameter.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn regressor<T: Scalar>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Result<Vec<Vec<Elements<T>>>, WrongLength> {
-        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
-        let rows = self.mechanism().regressor_of_fixed_base(&q, &qd, &qdd);
-        Ok(self.gathered(rows))
-    }
-
-    /// As [`FloatingRegressor::floating_regressor`](crate::FloatingRegressor::floating_regressor): 6 + n rows, the base
-    /// and the links, parameter.
+impl<S: Constant> crate::DynArm<S> {
+    /// As [`FloatingRegressor::floating_regressor`]: 6 + n rows, the base and the links, parameter.
     ///
     /// # Errors
     /// When an argument does not have one element per joint.
@@ -198,21 +192,26 @@ impl<S: Constant> DynArm<S> {
         qd: &[T],
         qdd: &[T],
         base: &BaseMotion<T>,
-    ) -> Result<Vec<Vec<Elements<T>>>, WrongLength> {
-        let (q, qd, qdd) = self.of_all_joints(q, qd, qdd)?;
-        let (of_base, of_joints) = self.mechanism().regressor(JointMotions::new(&q, &qd, &qdd), base);
-        let of_joints = self.gathered(of_joints);
-        let rows = of_base.own.into_iter().zip(of_base.links);
-        // no joint moves the base
-        let rows = rows.chain(of_joints.into_iter().map(|row| ([T::zero(); PER_LINK], row)));
-        Ok(rows.map(|(base, links)| iter::once(base).chain(links).collect()).collect())
+    ) -> Result<Vec<Vec<Elements<T>>>, crate::WrongLength> {
+        self.have_lengths(&[("q", q), ("qd", qd), ("qdd", qdd)])?;
+        let (of_base, of_joints) = self.definition().regressor([q, qd, qdd], base);
+        let row = |row| (0..=self.rows().len()).map(|body| element(&of_base, &of_joints, row, body)).collect();
+        Ok((0..BASE + self.dof()).map(row).collect())
     }
+}
 
-    /// Gᵀ Y
-    fn gathered<T: Scalar>(&self, rows: Vec<Vec<Elements<T>>>) -> Vec<Vec<Elements<T>>> {
-        self.couplings.gathered(rows, |sum: Vec<Elements<T>>, row, ratio| {
-            let links = sum.into_iter().zip(row);
-            links.map(|(a, b)| array::from_fn(|i| a[i] + b[i] * ratio.to())).collect()
-        })
+/// The elements of a row and of a body; the base is the first of both.
+fn element<J: PerJoint, T: Scalar>(
+    of_base: &OfBase<J, T>,
+    of_joints: &Square<J, Elements<T>>,
+    row: usize,
+    body: usize,
+) -> Elements<T> {
+    match (row.checked_sub(BASE), body.checked_sub(1)) {
+        (None, None) => of_base.own[row],
+        (None, Some(link)) => of_base.links[row].as_ref()[link],
+        // no joint moves the base
+        (Some(_), None) => [T::zero(); PER_LINK],
+        (Some(joint), Some(link)) => of_joints.as_ref()[joint].as_ref()[link],
     }
 }

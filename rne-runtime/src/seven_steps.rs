@@ -245,7 +245,7 @@ mod tests {
     /// Torques of links by their parents, all moved by the same numbers.
     fn torques(links: &[LinkFrame<f64>], tip: &Mount<f64>) -> Vec<f64> {
         let (tip_link, spins) = (links.len().checked_sub(1), Spins::NONE);
-        let chain = Chain { links, tip, tip_link, spins, floating_base: None };
+        let chain = Chain { links, tip, tip_link, tips: &[], spins, floating_base: None };
         let all = |value: f64| vec![value; links.len()];
         let (q, qd, qdd) = (all(0.4), all(-1.3), all(2.1));
         let base = BaseMotion { omega: [0.1, -0.4, 0.2], ..BaseMotion::fixed([0.3, 1.0, -9.81]) };

@@ -3,7 +3,9 @@
 #![cfg(feature = "std")]
 
 use rne_model::{ContactKind, FixedFrame, Transform};
-use rne_runtime::{AccelerationsAndWrenches, Arm, DynArm, ForwardDynamics, Wrench};
+use rne_runtime::{
+    AccelerationsAndWrenches, Arm, ContactDynamics, DynArm, FloatingBase, FloatingKinematics, ForwardDynamics, Wrench,
+};
 
 const JOINTS: usize = 3;
 const TIPS: usize = 3;
@@ -37,7 +39,7 @@ fn held(arm: &Arm<JOINTS>, of_file: &DynArm) -> AccelerationsAndWrenches<JOINTS,
     let kind = |tip: usize| of_file.contacts().iter().find(|contact| contact.tip == tip).map(|contact| contact.kind);
     let tips = of_file.tips().first_chunk::<TIPS>().expect("three tips");
     let kinds = [0, 1, 2].map(kind);
-    arm.forward_dynamics_in_contact::<f64, 9, TIPS>(&Q, &QD, &TAU, &OMEGA, &TURNED, (tips, &kinds))
+    arm.with_tips::<9, TIPS>(tips).in_contact(&kinds).forward_dynamics_in_contact(&Q, &QD, &TAU, &OMEGA, &TURNED)
 }
 
 /// With its base welded to the world, it is the robot on a fixed base.
@@ -48,7 +50,8 @@ fn a_welded_base_is_a_fixed_one() {
     let placement = Transform { xyz: [0.1, 0.2, 0.3], ..Transform::IDENTITY };
     let tips = [None, Some(1)].map(|on| FixedFrame { on, placement });
     let kinds = [Some(ContactKind::Weld), None];
-    let found = arm.forward_dynamics_in_contact::<f64, 9, 2>(&Q, &QD, &TAU, &[0.0; 3], &level, (&tips, &kinds));
+    let with_tips = arm.with_tips::<9, 2>(&tips).in_contact(&kinds);
+    let found = with_tips.forward_dynamics_in_contact(&Q, &QD, &TAU, &[0.0; 3], &level);
     for (found, expected) in found.accelerations.qdd.iter().zip(arm.forward_dynamics(&Q, &QD, &TAU)) {
         assert!((found - expected).abs() < 1e-5, "{found} is not {expected}");
     }
@@ -74,10 +77,11 @@ fn both_kinds_of_arm_give_the_solution_of_the_equations() {
 
         let x = [base.linear.as_slice(), &base.angular, &qdd].concat();
         let dot = |row: &[f64]| row.iter().zip(&x).map(|(a, b)| a * b).sum::<f64>();
-        let jacobians = arm.tip_jacobians::<f64, 9, TIPS>(&Q, &TURNED, tips);
+        let arm = arm.with_tips::<9, TIPS>(tips);
+        let jacobians = arm.tip_jacobians(&Q, &TURNED);
         let forces = wrenches.iter().map(|wrench| [wrench.force, wrench.moment].concat()).collect::<Vec<_>>();
-        let mass = arm.floating_mass_matrix::<f64, 9>(&Q);
-        let bias = arm.floating_bias::<f64, 9, 0>(&Q, &QD, &OMEGA, (&[], &[]));
+        let mass = arm.floating_mass_matrix(&Q);
+        let bias = arm.floating_bias(&Q, &QD, &OMEGA, &[Wrench::zero(); TIPS]);
         for row in 0..9 {
             let of_contacts: f64 = (0..TIPS)
                 .flat_map(|tip| (0..6).map(move |k| (tip, k)))
@@ -87,7 +91,7 @@ fn both_kinds_of_arm_give_the_solution_of_the_equations() {
             let rest = dot(&mass[row]) + bias[row] - applied - of_contacts;
             assert!(rest.abs() < 1e-9, "{contacts}, row {row}: {rest}");
         }
-        let without = arm.tip_accelerations(&Q, &QD, &OMEGA, &TURNED, tips);
+        let without = arm.tip_accelerations(&Q, &QD, &OMEGA, &TURNED);
         for contact in of_file.contacts() {
             for row in 0..contact.rows() {
                 let gravity = if row < 3 { [0.3, -0.2, -9.81][row] } else { 0.0 };

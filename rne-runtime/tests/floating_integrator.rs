@@ -6,9 +6,10 @@ use std::array::from_fn;
 use crate::common::{Numbers, SIX_BASE, assert_close, link, six_joints};
 use rne_model::Convention::{Modified, Standard};
 use rne_runtime::{
-    Arm, BaseAcceleration, BaseMotion, BaseTwist, Dual, FloatingAccelerations, FloatingBase, FloatingIntegratorStep,
-    FloatingInverseDynamicsDerivatives, FloatingNextState, FloatingRungeKuttaStepDerivatives, FloatingState,
-    FloatingStepDerivatives, FloatingTorqueDerivatives, FloatingTorques, Pose, Quaternion, Scalar, Wrench,
+    Arm, ArmWithTips, BaseAcceleration, BaseMotion, BaseTwist, CentroidalMomentum, Dual, FloatingAccelerations,
+    FloatingBase, FloatingEulerStep, FloatingEulerStepDerivatives, FloatingIntegratorStep, FloatingNextState,
+    FloatingRungeKuttaStepDerivatives, FloatingState, FloatingStepDerivatives, FloatingTorques, Pose, Quaternion,
+    Scalar, Wrench,
 };
 
 const DOF: usize = 6;
@@ -17,66 +18,13 @@ const GRAVITY: [f64; 3] = [0.4, -0.3, -9.7];
 
 type State<T> = FloatingState<DOF, T>;
 
-/// An arm on a trunk that nothing holds, without tips.
-struct Floating(Arm<DOF>);
-
-fn arms() -> [Floating; 2] {
+/// Arms on a trunk that nothing holds, without tips.
+fn arms() -> [Arm<DOF>; 2] {
     let trunk = link(5.0, [0.02, -0.03, 0.05], [0.08, 0.09, 0.06, 0.004, -0.003, 0.002]);
-    [Standard, Modified].map(|convention| Floating(Arm::new(six_joints(convention)).with_floating_base(trunk)))
+    [Standard, Modified].map(|convention| Arm::new(six_joints(convention)).with_floating_base(trunk))
 }
 
-type OfJoints<T> = [T; DOF];
-
-impl FloatingBase<DOF, NV, 0> for Floating {
-    fn inverse_dynamics_of_floating_base<T: Scalar>(
-        &self,
-        q: &OfJoints<T>,
-        qd: &OfJoints<T>,
-        qdd: &OfJoints<T>,
-        base: &BaseMotion<T>,
-        wrenches: &[Wrench<T>; 0],
-    ) -> FloatingTorques<DOF, T> {
-        self.0.inverse_dynamics_of_floating_base(q, qd, qdd, base, (&[], wrenches))
-    }
-
-    fn floating_mass_matrix<T: Scalar>(&self, q: &OfJoints<T>) -> [[T; NV]; NV] {
-        self.0.floating_mass_matrix(q)
-    }
-
-    fn floating_bias<T: Scalar>(
-        &self,
-        q: &OfJoints<T>,
-        qd: &OfJoints<T>,
-        omega: &[T; 3],
-        wrenches: &[Wrench<T>; 0],
-    ) -> [T; NV] {
-        self.0.floating_bias(q, qd, omega, (&[], wrenches))
-    }
-
-    fn floating_forward_dynamics<T: Scalar>(
-        &self,
-        q: &OfJoints<T>,
-        qd: &OfJoints<T>,
-        tau: &OfJoints<T>,
-        omega: &[T; 3],
-        wrenches: &[Wrench<T>; 0],
-    ) -> FloatingAccelerations<DOF, T> {
-        self.0.floating_forward_dynamics::<T, NV, 0>(q, qd, tau, omega, (&[], wrenches))
-    }
-}
-
-impl FloatingInverseDynamicsDerivatives<DOF, NV, 0> for Floating {
-    fn floating_inverse_dynamics_derivatives<T: Scalar>(
-        &self,
-        q: &OfJoints<T>,
-        qd: &OfJoints<T>,
-        qdd: &OfJoints<T>,
-        base: &BaseMotion<T>,
-        wrenches: &[Wrench<T>; 0],
-    ) -> FloatingTorqueDerivatives<DOF, NV, T> {
-        self.0.floating_inverse_dynamics_derivatives(q, qd, qdd, base, (&[], wrenches))
-    }
-}
+type Floating<'a> = ArmWithTips<'a, DOF, NV, 0>;
 
 fn state(numbers: &mut Numbers) -> State<f64> {
     let turn: [f64; 3] = numbers.array(2.0);
@@ -149,7 +97,8 @@ fn change(state: &State<Dual<f64>>) -> [[f64; NV]; 2] {
 #[test]
 fn derivatives_are_those_by_dual_numbers() {
     let mut numbers = Numbers::new(81);
-    for arm in arms() {
+    for arm in &arms() {
+        let arm: Floating<'_> = arm.with_tips(&[]);
         for round in 0..6 {
             let mut state = state(&mut numbers);
             if round == 0 {
@@ -160,12 +109,14 @@ fn derivatives_are_those_by_dual_numbers() {
             let step = 0.05;
             let State { orientation, position, twist, q, qd } = state;
             let pose = Pose { rotation: orientation.rotation(), translation: position };
-            let found = arm.0.floating_euler_step_derivatives([&q, &qd, &tau], (&pose, &twist), step, (&[], &[]));
-            let euler = FloatingIntegratorStep::<DOF, NV, 0>::floating_quaternion_step;
-            are_those_of(&found, (&arm, &state, &tau, step), euler);
+            let found = arm.floating_euler_step_derivatives(&q, &qd, &tau, &pose, &twist, step, &[]);
+            are_those_of(&found, (&arm, &state, &tau, step), |arm, state, tau, wrenches, gravity, step| {
+                arm.floating_quaternion_step(state, tau, wrenches, gravity, step)
+            });
             let found = arm.floating_runge_kutta_step_derivatives(&state, &tau, &[], &SIX_BASE.gravity, step);
-            let runge_kutta = FloatingIntegratorStep::<DOF, NV, 0>::floating_runge_kutta_step;
-            are_those_of(&found, (&arm, &state, &tau, step), runge_kutta);
+            are_those_of(&found, (&arm, &state, &tau, step), |arm, state, tau, wrenches, gravity, step| {
+                arm.floating_runge_kutta_step(state, tau, wrenches, gravity, step)
+            });
         }
     }
 }
@@ -174,7 +125,7 @@ fn derivatives_are_those_by_dual_numbers() {
 type Step = fn(
     &Floating,
     &State<Dual<f64>>,
-    &OfJoints<Dual<f64>>,
+    &[Dual<f64>; DOF],
     &[Wrench<Dual<f64>>; 0],
     &[Dual<f64>; 3],
     Dual<f64>,
@@ -183,7 +134,7 @@ type Step = fn(
 /// Compares the derivatives of a step with dual numbers through it.
 fn are_those_of(
     found: &FloatingStepDerivatives<DOF, NV, f64>,
-    (arm, state, tau, step): (&Floating, &State<f64>, &OfJoints<f64>, f64),
+    (arm, state, tau, step): (&Floating, &State<f64>, &[f64; DOF], f64),
     next: Step,
 ) {
     let by = |direction: usize| {
@@ -214,6 +165,7 @@ fn are_those_of(
 fn the_base_turns_by_the_exponential_to_third_order() {
     let mut numbers = Numbers::new(82);
     let [arm, _] = arms();
+    let arm: Floating<'_> = arm.with_tips(&[]);
     let state = state(&mut numbers);
     let tau: [f64; DOF] = numbers.array(5.0);
     let error = |step: f64| {
@@ -232,12 +184,13 @@ fn the_base_turns_by_the_exponential_to_third_order() {
 #[test]
 fn momentum_is_conserved_to_the_order_of_the_method() {
     let mut numbers = Numbers::new(83);
-    for arm in arms() {
+    for arm in &arms() {
+        let arm: Floating<'_> = arm.with_tips(&[]);
         let start = state(&mut numbers);
         let tau: [f64; DOF] = numbers.array(1.0);
         // about the centre of mass, in world axes
         let momentum = |state: &State<f64>| -> [f64; 6] {
-            let matrix: [[f64; NV]; 6] = arm.0.centroidal_momentum_matrix(&state.q);
+            let matrix: [[f64; NV]; 6] = arm.centroidal_momentum_matrix(&state.q);
             let velocities = [&state.twist.linear[..], &state.twist.angular, &state.qd].concat();
             let found = matrix.map(|row| row.iter().zip(&velocities).map(|(a, v)| a * v).sum::<f64>());
             let rotation = state.orientation.rotation();
@@ -270,7 +223,8 @@ fn momentum_is_conserved_to_the_order_of_the_method() {
 #[test]
 fn the_step_with_a_matrix_is_that_with_a_quaternion() {
     let mut numbers = Numbers::new(85);
-    for arm in arms() {
+    for arm in &arms() {
+        let arm: Floating<'_> = arm.with_tips(&[]);
         let mut with_quaternion = state(&mut numbers);
         let tau: [f64; DOF] = numbers.array(1.0);
         let State { orientation, position, twist, q, qd } = with_quaternion;
@@ -286,7 +240,7 @@ fn the_step_with_a_matrix_is_that_with_a_quaternion() {
                 0.001,
             );
             let FloatingNextState { pose, twist, q, qd } = with_matrix;
-            with_matrix = arm.0.floating_euler_step::<f64, NV, 0>([&q, &qd, &tau], (&pose, &twist), 0.001, (&[], &[]));
+            with_matrix = arm.floating_euler_step(&q, &qd, &tau, &pose, &twist, 0.001, &[]);
         }
         let rotation = with_quaternion.orientation.rotation();
         assert_close("rotation", with_matrix.pose.rotation.as_flattened(), rotation.as_flattened());
@@ -302,7 +256,8 @@ fn the_step_with_a_matrix_is_that_with_a_quaternion() {
 #[test]
 fn the_runge_kutta_step_is_of_fourth_order() {
     let mut numbers = Numbers::new(84);
-    for arm in arms() {
+    for arm in &arms() {
+        let arm: Floating<'_> = arm.with_tips(&[]);
         let start = state(&mut numbers);
         let tau: [f64; DOF] = numbers.array(1.0);
         let after = |steps: u32| {

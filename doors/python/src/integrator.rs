@@ -9,7 +9,7 @@ use pyo3::types::PyTuple;
 use rne::compiled::{Arguments, Array, CompiledArm, EvaluationError, Function, Number, OutOfRange};
 use rne::{BaseAcceleration, BaseTwist, Quaternion};
 use rne_runtime::floating_integrator_of_lists::{Linear, Stage, Turning, derivatives, factor, moved, runge_kutta};
-use rne_runtime::integrator_of_lists;
+use rne_runtime::steps;
 
 use crate::arm::Arm;
 use crate::arrays::{Given, Held, are_single, array_of, pose_of_twelve, states};
@@ -242,14 +242,14 @@ impl<T: Element + Number> Rows<T> {
             computed(arm, function, &arguments, count)
         };
         // states from one on
-        let next = |from: usize, count: usize, q: &[T], qd: &[T]| {
-            let accelerations = |q: &[T], qd: &[T]| of_states(from, count, dynamics, q, qd);
-            integrator_of_lists::runge_kutta_step(accelerations, q, qd, |at| step[from + at / dof])
+        let next = |from: usize, count: usize, [q, qd]: &[Vec<T>; 2]| {
+            let accelerations = |q: &Vec<T>, qd: &Vec<T>| of_states(from, count, dynamics, q, qd);
+            steps::runge_kutta_step(accelerations, [q, qd], |at| step[from + at / dof])
         };
         let after = || {
             let mut state = [self.all("q").to_vec(), self.all("qd").to_vec()];
             for _ in 0..*steps {
-                state = next(0, count, &state[0], &state[1])?;
+                state = next(0, count, &state)?;
             }
             Ok(state)
         };
@@ -257,17 +257,16 @@ impl<T: Element + Number> Rows<T> {
             let (mut model, mut now) = (None, [self.at("q", state).to_vec(), self.at("qd", state).to_vec()]);
             for index in 0..*steps {
                 if index > 0 {
-                    now = next(state, 1, &now[0], &now[1])?;
+                    now = next(state, 1, &now)?;
                 }
-                let accelerations = |q: &[T], qd: &[T]| of_states(state, 1, dynamics, q, qd);
-                let by = |q: &[T], qd: &[T]| {
+                let accelerations = |q: &Vec<T>, qd: &Vec<T>| of_states(state, 1, dynamics, q, qd);
+                let by = |q: &Vec<T>, qd: &Vec<T>| {
                     let found = of_states(state, 1, by_state, q, qd)?;
                     let matrix =
                         |of: usize| found[of * dof * dof..][..dof * dof].chunks_exact(dof).map(<[T]>::to_vec).collect();
                     Ok([matrix(0), matrix(1), matrix(2)])
                 };
-                let [q, qd] = &now;
-                let found = integrator_of_lists::runge_kutta_step_derivatives(accelerations, by, q, qd, step[state])?;
+                let found = steps::runge_kutta_step_derivatives(accelerations, by, now.each_ref(), step[state])?;
                 let (mut a, mut b) = (Matrix::new(), Matrix::new());
                 for [dq, dqd, dtau] in found {
                     a.extend(dq.into_iter().zip(dqd).map(|(dq, dqd)| [dq, dqd].concat()));

@@ -14,6 +14,13 @@ pub struct FloatingTorques<const DOF: usize, T> {
     pub tau: [T; DOF],
 }
 
+#[cfg(feature = "arm")]
+impl<const DOF: usize, T> From<(Wrench<T>, [T; DOF])> for FloatingTorques<DOF, T> {
+    fn from((wrench, tau): (Wrench<T>, [T; DOF])) -> Self {
+        Self { wrench, tau }
+    }
+}
+
 /// The acceleration of a base that nothing holds, in axes of frame 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaseAcceleration<T> {
@@ -30,6 +37,13 @@ pub struct FloatingAccelerations<const DOF: usize, T> {
     pub base: BaseAcceleration<T>,
     /// Accelerations of the joints, rad/s² or m/s².
     pub qdd: [T; DOF],
+}
+
+#[cfg(feature = "arm")]
+impl<const DOF: usize, T> From<(BaseAcceleration<T>, [T; DOF])> for FloatingAccelerations<DOF, T> {
+    fn from((base, qdd): (BaseAcceleration<T>, [T; DOF])) -> Self {
+        Self { base, qdd }
+    }
 }
 
 /// Dynamics of a robot whose base nothing holds: it walks, flies or rides. Its base is the link `floating_base` of the
@@ -200,6 +214,15 @@ pub struct AccelerationsAndWrenches<const DOF: usize, const TIPS: usize, T> {
     pub accelerations: FloatingAccelerations<DOF, T>,
     /// At each tip: force, N, and moment, N m, about its origin, which its contact exerts ON the robot, in world axes.
     pub wrenches_on_robot: [Wrench<T>; TIPS],
+}
+
+#[cfg(feature = "arm")]
+impl<const DOF: usize, const TIPS: usize, T> From<(BaseAcceleration<T>, [T; DOF], [Wrench<T>; TIPS])>
+    for AccelerationsAndWrenches<DOF, TIPS, T>
+{
+    fn from((base, qdd, wrenches_on_robot): (BaseAcceleration<T>, [T; DOF], [Wrench<T>; TIPS])) -> Self {
+        Self { accelerations: FloatingAccelerations { base, qdd }, wrenches_on_robot }
+    }
 }
 
 /// Motion of a robot whose base nothing holds while contacts hold some of its tips: a robot that stands or walks.

@@ -1,0 +1,177 @@
+//! The functions of a robot by their definitions: the seven steps on numbers, and everything else derived from them. They
+//! stand once, for [`Arm`](crate::Arm) with its arrays and for `DynArm` with its lists.
+
+use rne_model::{Contact, FixedFrame};
+
+use crate::at_tip::AtTip;
+use crate::coordinates::Coordinates;
+use crate::link_state::JointMotions;
+use crate::mechanism::Mechanism;
+use crate::per_joint::{PerJoint, Square};
+use crate::{BaseMotion, Constant, Dual, Scalar, Wrench};
+
+/// A robot, from its coordinates to its joints. Arguments and results have one element for each coordinate.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Definition<'a, J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> {
+    pub(crate) mechanism: Mechanism<'a, J, S>,
+    pub(crate) coordinates: J::Coordinates<'a, S>,
+    /// Collections with six elements for a floating base, and one for each coordinate.
+    pub(crate) velocities: V,
+    /// Collections with one element for each named tip.
+    pub(crate) tips: P,
+    /// The tips that something outside the robot holds.
+    pub(crate) contacts: &'a [Contact],
+}
+
+impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
+    /// The base at rest under the robot's gravity.
+    pub(crate) fn fixed_base<T: Scalar>(self) -> BaseMotion<T> {
+        self.mechanism.fixed_base()
+    }
+
+    /// Zero for every coordinate.
+    pub(crate) fn zeros<T: Scalar>(self) -> J::Of<T> {
+        self.coordinates.each().all(&T::zero())
+    }
+
+    /// The numbers of a slice, one for each coordinate.
+    pub(crate) fn list<T: Scalar>(self, x: &[T]) -> J::Of<T> {
+        self.coordinates.each().of(|i| x[i])
+    }
+
+    /// The values of all joints, from one for each coordinate.
+    pub(crate) fn of_joints<T: Scalar>(self, values: &[T]) -> J::Of<T> {
+        self.coordinates.of_joints(values)
+    }
+
+    /// What `of_tip` makes of the frame of each tip.
+    pub(crate) fn each_tip<X: Clone>(self, of_tip: impl Fn(&FixedFrame<S>) -> X) -> P::Of<X> {
+        self.tips.of(|tip| of_tip(&self.mechanism.frames[tip]))
+    }
+
+    /// The wrench that must act on the base, about the origin of frame 0, and the torques: by the seven steps.
+    pub(crate) fn torques_and_wrench<T: Scalar>(
+        self,
+        [q, qd, qdd]: [&[T]; 3],
+        base: &BaseMotion<T>,
+        load: AtTip<'_, T>,
+    ) -> (Wrench<T>, J::Of<T>) {
+        let [q, qd, qdd] = [q, qd, qdd].map(|values| self.of_joints(values));
+        let joints = JointMotions::new(q.as_ref(), qd.as_ref(), qdd.as_ref());
+        let (wrench, of_joints) = self.mechanism.of_floating_base(joints, base, load);
+        (Wrench::from_vectors(wrench.force, wrench.moment), self.coordinates.torques(of_joints))
+    }
+
+    /// Torques by the seven steps, on a base that moves.
+    pub(crate) fn torques_on<T: Scalar>(
+        self,
+        [q, qd, qdd]: [&[T]; 3],
+        base: &BaseMotion<T>,
+        load: AtTip<'_, T>,
+    ) -> J::Of<T> {
+        let [q, qd, qdd] = [q, qd, qdd].map(|values| self.of_joints(values));
+        let joints = JointMotions::new(q.as_ref(), qd.as_ref(), qdd.as_ref());
+        self.coordinates.torques(self.mechanism.torques(joints, base, load))
+    }
+
+    /// Torques by the seven steps, on a base at rest.
+    pub(crate) fn torques<T: Scalar>(self, motion: [&[T]; 3], load: AtTip<'_, T>) -> J::Of<T> {
+        self.torques_on(motion, &self.fixed_base(), load)
+    }
+
+    /// Torques where nothing accelerates.
+    pub(crate) fn bias<T: Scalar>(self, q: &[T], qd: &[T], load: AtTip<'_, T>) -> J::Of<T> {
+        self.torques([q, qd, self.zeros().as_ref()], load)
+    }
+
+    /// Torques where nothing moves.
+    pub(crate) fn gravity<T: Scalar>(self, q: &[T], load: AtTip<'_, T>) -> J::Of<T> {
+        self.bias(q, self.zeros().as_ref(), load)
+    }
+
+    /// Torques from sines and cosines of the positions.
+    pub(crate) fn torques_from_turns<T: Scalar>(self, [sin, cos]: [&[T]; 2], [q, qd, qdd]: [&[T]; 3]) -> J::Of<T> {
+        let [q, qd, qdd] = [q, qd, qdd].map(|values| self.of_joints(values));
+        let [sin, cos] = self.coordinates.turns(sin, cos, q.as_ref());
+        let turns = Some((sin.as_ref(), cos.as_ref()));
+        let joints = JointMotions { turns, ..JointMotions::new(q.as_ref(), qd.as_ref(), qdd.as_ref()) };
+        self.coordinates.torques(self.mechanism.torques(joints, &self.fixed_base(), AtTip::Nothing))
+    }
+
+    /// Numbers that nothing changes.
+    pub(crate) fn still<T: Scalar>(self, x: &[T]) -> J::Of<Dual<T>> {
+        self.coordinates.each().of(|i| Dual::constant(x[i]))
+    }
+
+    /// Numbers of which `j` is on its way.
+    pub(crate) fn along<T: Scalar>(self, x: &[T], j: usize) -> J::Of<Dual<T>> {
+        let derivative = |i| if i == j { T::one() } else { T::zero() };
+        self.coordinates.each().of(|i| Dual { value: x[i], derivative: derivative(i) })
+    }
+
+    /// The derivatives of the elements of y(x), by rows, with a column for each coordinate.
+    pub(crate) fn rows_by<T: Scalar>(self, x: &[T], y: impl Fn(&[Dual<T>]) -> J::Of<Dual<T>>) -> Square<J, T> {
+        let each = self.coordinates.each();
+        let columns = each.of(|j| y(self.along(x, j).as_ref()));
+        each.of(|i| each.of(|j| columns.as_ref()[j].as_ref()[i].derivative))
+    }
+}
+
+/// The functions of a trait, each with what it is: those of [`Arm`](crate::Arm), of an arm with its tips, and the methods
+/// of `DynArm`.
+macro_rules! definitions {
+    (@known [$($size:ident),*] $trait:path; $robot_type:ty; $(
+        $(#[$doc:meta])* fn $name:ident($($arg:ident: $kind:ident),*) -> $shape:ident = |$robot:ident| $body:expr;
+    )*) => {
+        impl<$(const $size: usize,)* S: Constant> $trait for $robot_type {
+            $(fn $name<T: Scalar>(&self, $($arg: $crate::shapes::known!($kind)),*) -> $crate::shapes::known!($shape) {
+                let $robot = self.definition();
+                From::from($body)
+            })*
+        }
+    };
+    (@counted $(
+        $(#[$doc:meta])* fn $name:ident($($arg:ident: $kind:ident),*) -> $shape:ident = |$robot:ident| $body:expr;
+    )*) => {
+        #[cfg(feature = "std")]
+        impl<S: Constant> $crate::DynArm<S> { $(
+            $(#[$doc])*
+            ///
+            /// # Errors
+            /// When an argument does not have one element per joint, or `wrenches` not one element per tip.
+            #[allow(clippy::too_many_arguments)] // a state and what acts on it
+            #[allow(clippy::type_complexity)] // as wide as the result is
+            pub fn $name<T: Scalar>(
+                &self,
+                $($arg: $crate::shapes::counted!($kind)),*
+            ) -> Result<$crate::shapes::counted!($shape), $crate::WrongLength> {
+                $($crate::definition::checked!(self, $arg, $kind);)*
+                let $robot = self.definition();
+                Ok(From::from($body))
+            }
+        )* }
+    };
+    ($trait:ident<DOF> { $($functions:tt)* }) => {
+        definitions! { @known [DOF] $trait<DOF>; Arm<DOF, S>; $($functions)* }
+        definitions! { @counted $($functions)* }
+    };
+    ($trait:ident<$($size:ident),*> { $($functions:tt)* }) => {
+        definitions! { @known [DOF, NV, TIPS] $trait<$($size),*>; ArmWithTips<'_, DOF, NV, TIPS, S>; $($functions)* }
+        definitions! { @counted $($functions)* }
+    };
+}
+pub(crate) use definitions;
+
+/// Whether a list has one element for each joint, or for each tip.
+#[cfg(feature = "std")]
+macro_rules! checked {
+    ($robot:expr, $argument:ident, joints) => {
+        $robot.has_length(stringify!($argument), $argument)?
+    };
+    ($robot:expr, $argument:ident, wrenches) => {
+        $robot.has_tips($argument)?
+    };
+    ($robot:expr, $argument:ident, $other:ident) => {};
+}
+#[cfg(feature = "std")]
+pub(crate) use checked;
