@@ -5,8 +5,10 @@ use core::array;
 use rne_codegen::Layout;
 use rne_runtime::{BaseAcceleration, BaseTwist, Wrench};
 pub use rne_runtime::{
-    DynFloatingNextState as FloatingNextState, DynFloatingStepDerivatives as FloatingStepDerivatives,
-    DynFloatingTorqueDerivatives as FloatingTorqueDerivatives, Pose,
+    DynAccelerationDerivatives as AccelerationDerivatives, DynFloatingNextState as FloatingNextState,
+    DynFloatingStepDerivatives as FloatingStepDerivatives, DynFloatingTorqueDerivatives as FloatingTorqueDerivatives,
+    DynNextState as NextState, DynNextStateDerivatives as NextStateDerivatives, DynStepDerivatives as StepDerivatives,
+    DynTorqueDerivatives as Derivatives, DynTorqueGradient as TorqueGradient, DynTorqueHessian as TorqueHessian, Pose,
 };
 
 /// One number.
@@ -88,79 +90,6 @@ pub struct ClosureStep<T> {
 
 /// ∂τ/∂q and ∂τ/∂q̇.
 pub type TorqueDerivatives<T> = Derivatives<T>;
-
-/// ∂τ/∂q and ∂τ/∂q̇; row i is torque i.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Derivatives<T> {
-    /// ∂τ_i/∂q_j.
-    pub dq: Matrix<T>,
-    /// ∂τ_i/∂q̇_j.
-    pub dqd: Matrix<T>,
-}
-
-/// The derivatives of λᵀτ by q, by q̇ and by q̈.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TorqueGradient<T> {
-    /// ∂(λᵀτ)/∂q_j.
-    pub dq: Vec<T>,
-    /// ∂(λᵀτ)/∂q̇_j.
-    pub dqd: Vec<T>,
-    /// ∂(λᵀτ)/∂q̈_j.
-    pub dqdd: Vec<T>,
-}
-
-/// ∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂τ; row i is acceleration i.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AccelerationDerivatives<T> {
-    /// ∂q̈_i/∂q_j.
-    pub dq: Matrix<T>,
-    /// ∂q̈_i/∂q̇_j.
-    pub dqd: Matrix<T>,
-    /// ∂q̈_i/∂τ_j, M⁻¹.
-    pub dtau: Matrix<T>,
-}
-
-/// The second derivatives of λᵀτ.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TorqueHessian<T> {
-    /// ∂²(λᵀτ)/∂q_i∂q_j.
-    pub dq_dq: Matrix<T>,
-    /// ∂²(λᵀτ)/∂q_i∂q̇_j.
-    pub dq_dqd: Matrix<T>,
-    /// ∂²(λᵀτ)/∂q̇_i∂q̇_j.
-    pub dqd_dqd: Matrix<T>,
-    /// ∂²(λᵀτ)/∂q_i∂q̈_j.
-    pub dq_dqdd: Matrix<T>,
-}
-
-/// Positions and velocities after a step.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NextState<T> {
-    /// Positions, rad or m.
-    pub q: Vec<T>,
-    /// Velocities, rad/s or m/s.
-    pub qd: Vec<T>,
-}
-
-/// Derivatives of positions or velocities after a step; row i is position or velocity i.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StepDerivatives<T> {
-    /// By position j.
-    pub dq: Matrix<T>,
-    /// By velocity j.
-    pub dqd: Matrix<T>,
-    /// By torque j.
-    pub dtau: Matrix<T>,
-}
-
-/// Derivatives of the state after a step.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NextStateDerivatives<T> {
-    /// Derivatives of the positions.
-    pub q: StepDerivatives<T>,
-    /// Derivatives of the velocities.
-    pub qd: StepDerivatives<T>,
-}
 
 /// A result that is made of the numbers of a function, in the order of its layout.
 pub(crate) trait Shaped<T> {
