@@ -67,8 +67,21 @@ impl<T: Scalar> Quaternion<T> {
     /// The rows of the rotation matrix.
     #[must_use]
     pub fn rotation(&self) -> [[T; 3]; 3] {
+        self.rotation_by(T::one() + T::one())
+    }
+
+    /// The rows of the rotation matrix of this quaternion over its length. It needs no root. A quaternion of zeros has
+    /// no rotation: the elements are not finite then.
+    #[must_use]
+    pub(crate) fn rotation_of_any_length(&self) -> [[T; 3]; 3] {
+        let square = self.to_wxyz().into_iter().fold(T::zero(), |sum, x| sum + x * x);
+        self.rotation_by((T::one() + T::one()) / square)
+    }
+
+    /// With 2 over the square of the length.
+    fn rotation_by(&self, two: T) -> [[T; 3]; 3] {
         let Self { w, x, y, z } = *self;
-        let (one, two) = (T::one(), T::one() + T::one());
+        let one = T::one();
         [
             [one - two * (y * y + z * z), two * (x * y - w * z), two * (x * z + w * y)],
             [two * (x * y + w * z), one - two * (x * x + z * z), two * (y * z - w * x)],

@@ -153,3 +153,24 @@ fn a_pose_undoes_its_inverse_and_errors_point_to_the_target() {
         assert_eq!(error[..3], way);
     }
 }
+
+/// A quaternion that is not of length 1 is the same rotation in the orders of Pinocchio and of MuJoCo.
+#[test]
+fn quaternions_of_any_length_are_rotations() {
+    let mut numbers = Numbers::new(91);
+    for _ in 0..100 {
+        let (axis, angle): (_, [f64; 1]) = (unit(&mut numbers), numbers.array(3.0));
+        let (sin, cos) = (angle[0] / 2.0).sin_cos();
+        let [length]: [f64; 1] = numbers.array(5.0);
+        let [w, x, y, z] = [cos, axis[0] * sin, axis[1] * sin, axis[2] * sin].map(|part| part * length);
+        let expected = rotation(axis, (false, angle[0]));
+        for found in
+            [Pose::from_pinocchio(&[0.0, 0.0, 0.0, x, y, z, w]), Pose::from_mujoco(&[0.0, 0.0, 0.0, w, x, y, z])]
+        {
+            for (found, expected) in found.rotation.as_flattened().iter().zip(expected.as_flattened()) {
+                assert!((found - expected).abs() < 1e-13, "{found} {expected} for the length {length}");
+            }
+        }
+    }
+    assert!(!Pose::<f64>::from_mujoco(&[0.0; 7]).rotation[0][0].is_finite());
+}

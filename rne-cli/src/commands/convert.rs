@@ -24,7 +24,8 @@ Examples:
 
 Torques, limits and motors do not change. rne replaces expressions by their
 values. If the first joint axis is not z of frame 0, rne moves frame 0 of a
-standard table to this axis, and rotates base and gravity with frame 0.")]
+standard table to this axis, and rotates base and gravity with frame 0. The
+potential energy is zero at the origin of frame 0, so it changes by a constant.")]
 pub(crate) struct Arguments {
     /// Robot file, or a name from `rne list`; - is standard input
     #[arg(value_name = "FILE")]
