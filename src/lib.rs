@@ -192,6 +192,7 @@ pub mod compiled {
         ARGUMENTS, Argument, Arguments, ArmError, Array, CompiledArm, CompiledFunction, Derivatives, Destination,
         EvaluationError, Form, FrictionWidth, Function, Layout, Machine, Number, OutOfRange, PlanFile, Record,
         RobotFiles, Rollout, RolloutError, RolloutLimits, SearchError, SearchOptions, SearchProgress, Sizes, WrongSize,
+        sizes_of,
     };
 }
 

@@ -67,10 +67,12 @@ fn arguments(program: &Program) -> Vec<ArgumentArray> {
     let tip = program.joints + 1;
     let elements = |part: &ArgumentPart| match (part.length, part.argument) {
         (Length::Joints, _) => {
-            program.coordinates.iter().map(|&joint| used(Name::scalar(part.quantity, joint))).collect()
+            program.coordinates.iter().map(|&joint| used(Name::scalar(quantity(part), joint))).collect()
         }
-        (Length::Passive, _) => program.passive.iter().map(|&joint| used(Name::scalar(part.quantity, joint))).collect(),
-        (_, Argument::Step) => vec![used(Name::scalar(part.quantity, 0))],
+        (Length::Passive, _) => {
+            program.passive.iter().map(|&joint| used(Name::scalar(quantity(part), joint))).collect()
+        }
+        (_, Argument::Step) => vec![used(Name::scalar(quantity(part), 0))],
         (_, Argument::Payload) => Name::of_payload(tip).map(used).into(),
         (_, Argument::BaseTwist) => Name::of_twist().map(used).into(),
         (_, Argument::BasePose) => Name::of_pose().map(used).into(),
@@ -78,7 +80,7 @@ fn arguments(program: &Program) -> Vec<ArgumentArray> {
         (_, Argument::BaseRotation) => Name::of_base_rotation().map(used).into(),
         (_, argument) => {
             let joint = if matches!(argument, Argument::Base | Argument::BaseVelocity) { 0 } else { tip };
-            Axis::ALL.map(|axis| used(Name::vector(part.quantity, joint, axis))).into()
+            Axis::ALL.map(|axis| used(Name::vector(quantity(part), joint, axis))).into()
         }
     };
     let parts = program.function.arguments().iter().flat_map(|argument| argument.parts());
@@ -96,4 +98,17 @@ fn parameters(program: &Program) -> Option<ArgumentArray> {
     let names = (1..=program.parameters).map(|index| Name::scalar(Quantity::Parameter, index));
     let elements = names.map(|name| program.arguments().any(|used| used == name).then_some(name)).collect();
     (program.parameters > 0).then_some(ArgumentArray { name: "parameters", elements, row: None, is_number: false })
+}
+
+/// The quantity that the numbers of an array are.
+fn quantity(part: &ArgumentPart) -> Quantity {
+    macro_rules! quantities {
+        ($($name:ident: $argument:ident, $length:ident $(($elements:literal))?, $quantity:ident, $about:literal;)*) => {
+            match part.name {
+                $(stringify!($name) => Quantity::$quantity,)*
+                name => unreachable!("no argument is passed in {name}"),
+            }
+        };
+    }
+    rne_functions::argument_parts!(quantities)
 }

@@ -53,7 +53,7 @@ pub use expression::{Expression, ExpressionKind};
 pub use factorization::Factorization;
 pub use function::{
     Answer, AnswerTable, Argument, ArgumentPart, Capability, Entry, Form, Function, Labels, Layout, Length, MatrixUnit,
-    Own, Record, Returned, Shape, Sizes,
+    OfRobot, Own, Record, Returned, Shape, Sizes, function_named, function_of_plan, functions_of, own, sizes_of,
 };
 pub use interpret::{Arguments, Interpreter, Real};
 pub use ir::{
@@ -69,6 +69,7 @@ pub use reduced::algorithm::Algorithm;
 pub use reduced::inward::ExpressedIn;
 pub use refusal::{Attempt, LeftOut, Reason, Refusal};
 pub use registers::{order_for_registers, ordered_for_registers, statements_of_outputs};
+pub use rne_functions::{argument_parts, functions};
 pub use values::{Contraction, Negated, Value, ValueId, Values};
 
 use crate::formulation::Formulation;
@@ -206,7 +207,7 @@ impl<'r> Compiler<'r> {
             // fewer choices make no program shorter
             Err(error @ CompileError::TooLarge { .. }) => Err(error),
             // a plan file answers for what it was made for; for other functions it is a suggestion
-            Err(error) if plans.is_of_build() || function != Function::of_plan(robot) && error.is_refusal() => {
+            Err(error) if plans.is_of_build() || function != crate::function_of_plan(robot) && error.is_refusal() => {
                 let mut refusals = vec![Refusal::of_error(Attempt::Planned(LeftOut::Nothing), error)];
                 for (left_out, plans) in plans.with_ever_fewer_choices() {
                     match self.planned(&plans, function, &reference) {

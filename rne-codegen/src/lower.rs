@@ -12,6 +12,7 @@ use rne_model::{JointKind, Robot};
 use writing::Writing;
 
 use crate::CompileError;
+use crate::function::OfRobot as _;
 use crate::function::{Form, Function};
 use crate::ir::derivation;
 use crate::ir::{ExactAngle, Exactly, Indices, Name, Number, Op, Operation, Place, Quantity, Ref, Sign, Step, Traced};

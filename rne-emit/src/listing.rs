@@ -350,7 +350,7 @@ fn by_title(robot: &Robot, program: &Program, joint: usize, step: Step, by: With
 
 /// The heading of a formula beyond the seven steps: the function's own, or what several functions share.
 fn beyond_title(program: &Program, quantity: Quantity, joint: usize) -> String {
-    if let Some(own) = program.function.own(quantity) {
+    if let Some(own) = rne_codegen::own(program.function, quantity) {
         return (own.heading)(joint);
     }
     match quantity {

@@ -224,7 +224,7 @@ pub(super) fn legend(robot: &Robot, programs: &[Program]) -> Vec<(String, &'stat
         let turns = program.sines_and_cosines.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten();
         // functions that mean different things by a name have a line each
         names.extend(constants.chain(statements).chain(turns).map(|Name { quantity, .. }| {
-            let own = program.function.own(quantity).and_then(|own| own.meaning);
+            let own = rne_codegen::own(program.function, quantity).and_then(|own| own.meaning);
             (quantity, own.unwrap_or_else(|| meaning(robot, quantity)))
         }));
     }

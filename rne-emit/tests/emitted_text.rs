@@ -235,7 +235,7 @@ fn emitted_c_has_a_spelling_for_each_letter() {
     let loops = include_str!("../../docs/four_bar.yaml");
     let loops = Reader::new("four_bar").trees().couplings().loops().read(loops).expect("a robot").robot;
     let compile = |function| Compiler::new(&loops).compile(function, Form::Reduced).expect("it compiles");
-    let programs = Function::of_robot(&loops).map(compile).collect();
+    let programs = rne_codegen::functions_of(&loops).map(compile).collect();
     let of_loops = (loops, programs);
     for (robot, programs) in emitted().iter().chain([&of_loops]) {
         let prefix = Prefix::of(robot);

@@ -4,8 +4,9 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use rne_codegen::OfRobot as _;
 use rne_codegen::plan::PlanSet;
-use rne_codegen::{Algorithm, CompileError, Compiler, Form, Function, Layout, Sizes, Target};
+use rne_codegen::{Algorithm, CompileError, Compiler, Form, Function, Layout, Target};
 use rne_model::{FrameId, Reader, Robot, UnknownFrame, plan_of, read_file};
 use rne_runtime::VectorUnit;
 use rne_runtime::machine::Destination;
@@ -240,7 +241,7 @@ impl CompiledArm {
     /// The shape of what a function returns for this arm.
     #[must_use]
     pub fn layout(&self, function: Function) -> Layout {
-        function.layout(Sizes::of(&self.0.robot))
+        function.layout(rne_codegen::sizes_of(&self.0.robot))
     }
 
     /// How its functions are computed.

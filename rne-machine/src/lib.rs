@@ -50,7 +50,7 @@ pub use compiled_function::CompiledFunction;
 pub use error::{ArmError, EvaluationError};
 pub use out_of_range::OutOfRange;
 pub use results::Derivatives;
-pub use rne_codegen::{Argument, Form, Function, Layout, Record, Sizes};
+pub use rne_codegen::{Argument, Form, Function, Layout, Record, Sizes, sizes_of};
 pub use rne_search::{PlanFile, SearchError, SearchOptions};
 pub use rollout::{FrictionWidth, Rollout, RolloutError, RolloutLimits};
 pub use search::SearchProgress;

@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 use rne_codegen::plan::PlanSet;
-use rne_codegen::{Algorithm, Capability, Compiler, Form, Program, Sizes};
+use rne_codegen::{Algorithm, Capability, Compiler, Form, Program};
 use rne_model::{Checked, Reader, Report, Robot};
 use rne_search::{Fingerprint, PlanFile};
 use syn::{Data, DeriveInput};
@@ -44,7 +44,7 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
         let programs = programs(&robot, capability, attribute.form, &compiler, span, &mut errors)?;
         Some((robot, programs))
     });
-    let sizes = compiled.as_ref().map(|(robot, _)| Sizes::of(robot));
+    let sizes = compiled.as_ref().map(|(robot, _)| rne_codegen::sizes_of(robot));
     let target = Target::new(&item, &attribute, sizes);
     let code = match &compiled {
         Some((robot, programs)) => {

@@ -66,7 +66,7 @@ pub const SCRIPTS: [(&str, &str); 24] = [
 /// When the inverse dynamics do not compile: [`Compiler::compile`].
 pub fn page(robot: &Robot, reduced: Option<&Program>) -> Result<String, CompileError> {
     let compiler = Compiler::new(robot);
-    let function = Function::of_plan(robot);
+    let function = rne_codegen::function_of_plan(robot);
     let own = match reduced {
         Some(_) => None,
         None => Some(compiler.compile(function, Form::Reduced)?),

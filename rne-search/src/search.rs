@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use rne_codegen::OfRobot as _;
 use rne_codegen::plan::{Accuracy, Cost, Formulation, Plan, PlanSet, Reference, Rewriting, Rewritten, divides_by_zero};
 use rne_codegen::{Algorithm, CompileError, Function};
 use rne_model::Robot;
@@ -40,7 +41,7 @@ pub fn search(
     if let Some(&function) = options.rewrite.iter().find(|function| !function.can_be_rewritten()) {
         return Err(SearchError::Irreducible(function));
     }
-    let torques = Function::of_plan(robot);
+    let torques = rne_codegen::function_of_plan(robot);
     let torques_by = |plan: &Plan| Formulation::by_plan(robot, plan, torques, Algorithm::Rnea);
     let of_torques = Reference::of(robot, torques)?;
     // whether what is at hand can be taken is better known before a search than after it
@@ -71,7 +72,7 @@ pub fn search(
     let reduced = Reduced { operations, accuracy, plan };
 
     let mut rewritten = BTreeMap::new();
-    for function in Function::of_robot(robot) {
+    for function in rne_codegen::functions_of(robot) {
         let place = options.rewrite.iter().position(|&other| other == function);
         let known = at_hand.get(&function);
         if place.is_none() && known.is_none() || divides_by_zero(robot, function) {

@@ -28,7 +28,8 @@ pub(crate) struct Package {
 }
 
 /// The crates that are published, by the order in which they depend on each other.
-const CRATES: [&str; 21] = [
+const CRATES: [&str; 22] = [
+    "rne-functions",
     "rne-model",
     "rne-robots",
     "rne-runtime",

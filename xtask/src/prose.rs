@@ -76,6 +76,7 @@ const DOCUMENTS: &[&str] = &[
 /// Folders of sources whose first sentences are checked. Lengthen this list with a crate after it is rewritten.
 const SOURCES: &[&str] = &[
     "src",
+    "compiler/functions/src",
     "rne-cli/src",
     "rne-codegen/src",
     "rne-convert/src",
@@ -105,6 +106,7 @@ const EMITTED: &[&str] =
 /// Folders of libraries, whose strings name no option and no command of the command line: users of Python, C and SQL
 /// read them too.
 const LIBRARIES: &[&str] = &[
+    "compiler/functions/src",
     "rne-codegen/src",
     "rne-convert/src",
     "rne-diagnose/src",

@@ -164,8 +164,8 @@ pub(crate) fn function(id: u32) -> Result<Function, Failure> {
 
 /// The id of a function.
 pub(crate) fn function_id(name: &str) -> Result<u32, Failure> {
-    let function: Function =
-        name.parse().map_err(|error: UnknownName| Failure::new(Status::UnknownName, error.to_string()))?;
+    let function = rne_codegen::function_named(name)
+        .map_err(|error: UnknownName| Failure::new(Status::UnknownName, error.to_string()))?;
     let id = Function::ALL.iter().position(|other| *other == function).and_then(|id| u32::try_from(id).ok());
     id.ok_or_else(|| Failure::new(Status::UnknownName, format!("there is no function `{name}`")))
 }

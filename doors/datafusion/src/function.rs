@@ -73,7 +73,7 @@ impl Computation {
             };
         }
         let run = |arm: &CompiledArm, function: Function| {
-            let mut numbers = vec![0.0; states * function.layout(Sizes::of(arm.robot())).len()];
+            let mut numbers = vec![0.0; states * function.layout(rne::compiled::sizes_of(arm.robot())).len()];
             arm.run(function, states, &given, Destination::Rows(&mut numbers)).map_err(external)?;
             Ok(numbers)
         };

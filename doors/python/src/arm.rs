@@ -8,6 +8,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use rne::compiled::{CompiledArm, Form, Function, PlanFile};
+use rne_codegen::OfRobot as _;
 use rne_codegen::{Argument, Compiler, Sizes};
 use rne_model::{Convention, Joint, Robot};
 
@@ -139,7 +140,7 @@ impl Arm {
 
     /// How many numbers an argument has for a state.
     pub(crate) fn elements(&self, argument: Argument) -> usize {
-        argument.elements(Sizes::of(self.robot()))
+        argument.elements(rne_codegen::sizes_of(self.robot()))
     }
 
     /// A wrench at each tip: a dict by the names of the tips, or an array of shape (tips, 6) or (N, tips, 6). Without
@@ -223,7 +224,7 @@ impl Arm {
 
     /// A program of a function, in a form.
     pub(crate) fn program(&self, function: &str, form: Option<&str>) -> PyResult<rne_codegen::Program> {
-        let function: Function = name(function)?;
+        let function = function_named(function)?;
         function.check_base(self.robot()).map_err(|error| of_evaluation(&error))?;
         let form = form.map_or(Ok(self.arm.form()), name)?;
         let compiler = Compiler::new(self.robot());
@@ -236,6 +237,11 @@ impl Arm {
         };
         compiler.compile(function, form).map_err(|error| of_evaluation(&error))
     }
+}
+
+/// The function with a name, or a ValueError with those allowed.
+pub(crate) fn function_named(text: &str) -> PyResult<Function> {
+    rne_codegen::function_named(text).map_err(|error| PyValueError::new_err(error.to_string()))
 }
 
 /// What a name says, or a ValueError with those allowed.

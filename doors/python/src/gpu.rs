@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use rne_codegen::Function;
 use rne_gpu::{Device, GpuError, GpuRollout, Order, Precision};
 
-use crate::arm::{Arm, name};
+use crate::arm::{Arm, function_named};
 use crate::errors::of_evaluation;
 use crate::functions::warn_of_loss;
 use crate::xla::results;
@@ -62,12 +62,12 @@ impl GpuArm {
     /// The names of the functions of the arm.
     #[getter]
     fn functions(&self) -> Vec<&'static str> {
-        Function::of_robot(self.arm.arm().robot()).map(Function::name).collect()
+        rne_codegen::functions_of(self.arm.arm().robot()).map(Function::name).collect()
     }
 
     /// The arguments and results of a function.
     fn told(&self, py: Python<'_>, function: &str) -> PyResult<Told> {
-        let function: Function = name(function)?;
+        let function = function_named(function)?;
         let arm = self.arm.arm();
         let compiled = py.detach(|| arm.function(function)).map_err(|error| of_evaluation(&error))?;
         Ok((compiled.arguments().to_vec(), results(arm, function)))
@@ -75,7 +75,7 @@ impl GpuArm {
 
     /// Translates the kernels of a function, or of rollouts by it.
     fn prepare(&self, py: Python<'_>, function: &str, is_double: bool, is_rollout: bool) -> PyResult<()> {
-        let function: Function = name(function)?;
+        let function = function_named(function)?;
         let precision = if is_double { Precision::Double } else { Precision::Single };
         if !is_double {
             warn_of_loss(py, self.arm.arm(), function)?;
@@ -104,7 +104,7 @@ impl GpuArm {
         stream: u64,
         rollout: Option<(u32, f64, u32)>,
     ) -> PyResult<()> {
-        let function: Function = name(function)?;
+        let function = function_named(function)?;
         let order = if is_columns { Order::Columns } else { Order::Rows };
         let rollout = rollout.map(|(steps, step, every)| GpuRollout { steps, step, every });
         let (arm, arguments, results) = (&self.arm, &arguments[..], &results[..]);

@@ -12,7 +12,7 @@ use rne_codegen::{Form, Order, Program, ordered_for_registers};
 use rne_diagnose::{Diagnosis, Observation};
 use rne_emit::{Additions, Precision, Prefix, Selection};
 
-use crate::arm::{Arm, Origin, name};
+use crate::arm::{Arm, Origin, function_named};
 use crate::arrays::refuse_masked;
 use crate::errors::of_evaluation;
 use crate::notebook;
@@ -45,7 +45,7 @@ impl Arm {
     /// Adds the functions by which CasADi's derivatives of the others are computed, each once.
     fn add_derivatives(functions: &mut Vec<String>) -> PyResult<()> {
         for asked in functions.clone() {
-            for needed in rne_emit::casadi_derivatives(name(&asked)?) {
+            for needed in rne_emit::casadi_derivatives(function_named(&asked)?) {
                 if !functions.iter().any(|other| other == needed.name()) {
                     functions.push(needed.name().to_owned());
                 }
@@ -282,7 +282,7 @@ impl Arm {
         if !self.robot().run_time.is_empty() {
             return Err(PyValueError::new_err("an arm with run-time parameters has no plan"));
         }
-        let rewrite = functions.iter().map(|function| name(function)).collect::<PyResult<_>>()?;
+        let rewrite = functions.iter().map(|function| function_named(function)).collect::<PyResult<_>>()?;
         let options = SearchOptions { rewrite, seed };
         let mut told = Instant::now();
         let mut failed = None;
@@ -314,7 +314,7 @@ impl Arm {
 
     /// The page of `rne report`: one file of HTML that needs no network.
     fn report(&self, py: Python<'_>) -> PyResult<String> {
-        let function = rne_codegen::Function::of_plan(self.robot()).to_string();
+        let function = rne_codegen::function_of_plan(self.robot()).to_string();
         let reduced = self.program(&function, Some("reduced"))?;
         py.detach(|| rne_report::page(self.robot(), Some(&reduced))).map_err(|error| of_evaluation(&error))
     }

@@ -36,7 +36,7 @@ struct Operand {
 
 /// The operands of a function: an array for each argument, and for each part of the motion of a base.
 fn operands(arm: &CompiledArm, function: Function) -> Vec<Operand> {
-    let sizes = Sizes::of(arm.robot());
+    let sizes = rne_codegen::sizes_of(arm.robot());
     let mut all = Vec::new();
     for argument in function.arguments() {
         let parts: Vec<_> = argument.parts().map(|part| (part.name, part.length.of(sizes))).collect();
@@ -112,7 +112,7 @@ impl Arm {
     #[pyo3(signature = (frame=None))]
     fn _functions(&self, frame: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Told>> {
         let arm = self.at(frame)?;
-        let told = Function::of_robot(arm.robot()).map(|function| {
+        let told = rne_codegen::functions_of(arm.robot()).map(|function| {
             let operands = operands(&arm, function).into_iter().map(|operand| (operand.name, operand.shape));
             let method = function.of_frame().unwrap_or(function.name());
             (method, function.name(), operands.collect(), results(&arm, function))
@@ -220,8 +220,8 @@ fn compute(call: Call<'_>) -> Result<(), String> {
     let Call { arm, function: name, arguments, shape, room } = call;
     let found = ARMS.read().unwrap_or_else(PoisonError::into_inner).get(arm).cloned();
     let arm = found.ok_or_else(|| format!("this process has no arm `{arm}`: call `Arm.jax` before"))?;
-    let function: Function = name.parse().map_err(|error: rne_codegen::UnknownName| error.to_string())?;
-    if !Function::of_robot(arm.robot()).any(|other| other == function) {
+    let function = rne_codegen::function_named(name).map_err(|error| error.to_string())?;
+    if !rne_codegen::functions_of(arm.robot()).any(|other| other == function) {
         return Err(format!("`{}` has no function `{name}`", arm.robot().name));
     }
     match room {

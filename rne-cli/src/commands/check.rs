@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_codegen::{Form, Function};
+use rne_codegen::Form;
 use rne_model::{Checked, Robot, golden_of, misnamed_golden_of, plan_of, robot_of};
 
 use crate::files::plan_file;
@@ -167,7 +167,7 @@ fn plan(robot_file: &Path) -> Result<Good, Failure> {
     };
     let counts = plan_file::verify(&robot, &read)?;
     let planned = counts.first().map_or(0, |(.., total)| *total);
-    let of_plan = Function::of_plan(&robot);
+    let of_plan = rne_codegen::function_of_plan(&robot);
     let torques = counts.iter().find(|(function, is_rewritten, _)| *is_rewritten && *function == of_plan);
     let rewritten = torques.map_or_else(String::new, |(.., total)| format!(", rewritten {total}"));
     let others = counts.len() - 1 - usize::from(torques.is_some());

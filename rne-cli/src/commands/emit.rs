@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use rne_codegen::OfRobot as _;
 use rne_codegen::{Form, Function, Order, Program, Target, ordered_for_registers};
 use rne_emit::{Precision, Prefix};
 use rne_model::{FrameId, Robot};
@@ -456,8 +457,8 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
     };
     // a function by its name is refused by the compiler, which says why the robot has it not
     let of_robot: Vec<Function> = match asked.as_slice() {
-        [] if arguments.runge_kutta => Function::of_robot(robot).chain([Function::ForwardDynamics]).collect(),
-        [] => Function::of_robot(robot).collect(),
+        [] if arguments.runge_kutta => rne_codegen::functions_of(robot).chain([Function::ForwardDynamics]).collect(),
+        [] => rne_codegen::functions_of(robot).collect(),
         _ => Function::ALL.to_vec(),
     };
     let asked: Vec<Function> = of_robot.into_iter().filter(is_asked).collect();

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rne::DynArm;
-use rne_codegen::{Argument, Function, Layout, Record, Sizes, Step};
+use rne_codegen::OfRobot as _;
+use rne_codegen::{Argument, Function, Layout, Record, Step};
 use rne_diagnose::worksheet::{Quantity, Worksheet};
 use rne_model::{Joint, JointKind, Robot};
 use serde_json::{Value, json};
@@ -253,7 +254,7 @@ fn computed(arguments: &Arguments, robot: Robot) -> Result<Outcome, Failure> {
         };
         let _ = writeln!(remark, "note: {names} not given, so these numbers are 0");
     }
-    let result = || grouped(&function.layout(Sizes::of(&robot)), &numbers);
+    let result = || grouped(&function.layout(rne_codegen::sizes_of(&robot)), &numbers);
     if !arguments.trace {
         if arguments.json {
             return Ok(Outcome { remark, ..Outcome::json(&json!({ "result": result() }))? });

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use rne_codegen::{Form, Function};
+use rne_codegen::Form;
 
 use crate::files::chosen_arm::{Carried, Rotors};
 use crate::files::file_name::Format;
@@ -46,7 +46,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Some(_) => Compiler::without_file(&arguments.file, &robot),
         None => Compiler::new(&arguments.file, &robot),
     };
-    let reduced = compiler.compile(Function::of_plan(&robot), Form::Reduced)?;
+    let reduced = compiler.compile(rne_codegen::function_of_plan(&robot), Form::Reduced)?;
     let page = rne_report::page(&robot, Some(&reduced))
         .map_err(|error| Failure::compile(&arguments.file.display().to_string(), &error))?;
     let output = Output { out: Some(arguments.out.clone()), force: arguments.force };

@@ -231,7 +231,7 @@ fn summary(found: &PlanFile, searched: &Searched<'_>, left_out: &[Function], pat
     let known = searched.known.plan.as_ref();
     let mut text = String::new();
     let count = |cost: &Cost| format!("{} products + {} sums = {}", cost.mul, cost.add, cost.total());
-    let planned = format!("{}, planned", Function::of_plan(searched.robot));
+    let planned = format!("{}, planned", rne_codegen::function_of_plan(searched.robot));
     let names = found.rewritten.keys().map(|function| function.name().len());
     let width = names.max().map_or("reduced".len(), |longest| longest.max(planned.len()));
     let mut line = |name: &str, operations: &Cost, accuracy: &Accuracy| {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rne_codegen::plan::Trick;
-use rne_codegen::{self as codegen, Form, Function, Quantity, Sizes, Step};
+use rne_codegen::{self as codegen, Form, Function, Quantity, Step};
 use rne_emit::Selection;
 use rne_inspection::Inspection;
 use rne_model::Robot;
@@ -131,7 +131,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 
     let mut text = letters.page(&heading::robot(&robot), PAGE);
     let _ = writeln!(text, "\n{}", heading::counts(&program));
-    if program.outputs.len() > function.layout(Sizes::of(&robot)).len() {
+    if program.outputs.len() > function.layout(rne_codegen::sizes_of(&robot)).len() {
         let words: Vec<&str> = keep.iter().map(|kept| kept.words()).collect();
         let line = format!("{QUIET}also computed, and counted above: {}{QUIET:#}\n", words.join(", "));
         text.push_str(&letters.page(&line, PAGE));

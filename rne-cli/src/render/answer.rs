@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use rne::{Payload, Wrench};
+use rne_codegen::OfRobot as _;
 use rne_codegen::{Answer, Argument, Function, Labels, MatrixUnit, Shape};
 use rne_model::{INERTIAL_PARAMETERS, Inertia, InertiaElement, JointKind, Robot, exact_digits};
 

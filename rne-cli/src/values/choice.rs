@@ -4,6 +4,7 @@ use std::fmt;
 
 use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use rne_codegen::OfRobot as _;
 use rne_codegen::plan::Trick;
 use rne_codegen::{Argument, Form, Function, Order, Quantity, Step};
 use rne_model::{Convention, Robot};
@@ -14,7 +15,7 @@ use crate::palette::TYPED;
 /// Reads the name of a function; help and messages list them all.
 pub(crate) fn function() -> impl TypedValueParser<Value = Function> {
     let value = |function: Function| PossibleValue::new(function.name()).help(function.summary());
-    PossibleValuesParser::new(Function::ALL.map(value)).try_map(|name| name.parse::<Function>())
+    PossibleValuesParser::new(Function::ALL.map(value)).try_map(|name| rne_codegen::function_named(&name))
 }
 
 /// Explains a step of an integrator that no function computes alone, because it is composed of calls of another one.
@@ -64,7 +65,7 @@ pub(crate) fn function_or_all() -> impl TypedValueParser<Value = FunctionOrAll> 
     let all = PossibleValue::new("all").help("Every function of the robot");
     PossibleValuesParser::new(Function::ALL.map(value).into_iter().chain([all])).try_map(|name| match name.as_str() {
         "all" => Ok(FunctionOrAll::All),
-        name => name.parse::<Function>().map(FunctionOrAll::One),
+        name => rne_codegen::function_named(name).map(FunctionOrAll::One),
     })
 }
 
@@ -211,7 +212,7 @@ pub(crate) fn of_loops(function: Function, robot: &Robot) -> Function {
 pub(crate) fn functions_of(robot: &Robot) -> impl Iterator<Item = Function> {
     let has_motors = robot.joints.iter().any(|joint| joint.motor.is_some());
     let has_tips = !robot.tips.is_empty();
-    Function::of_robot(robot).filter(move |function| {
+    rne_codegen::functions_of(robot).filter(move |function| {
         (*function != Function::ActuatorTorques || has_motors)
             && function.check_for(robot).is_ok()
             && (has_tips || function.is_of_floating_base() || !function.takes(Argument::Wrenches))

@@ -26,6 +26,7 @@ use rne_model::{
 use crate::coordinates::Coordinates;
 use crate::formulate::Spin;
 use crate::function::Argument;
+use crate::function::OfRobot as _;
 use crate::ir::{Axis, Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
 
 /// Where a joint, or the tip frame, is mounted on its parent link: the constants between a link and what it carries.

@@ -1,162 +1,99 @@
 //! The functions of a robot that can be compiled, and the forms they can take.
 
-mod answer;
-mod argument;
-mod capability;
-mod closed_loops;
-mod entry;
-mod fixed_base;
-mod floating_base;
-mod layout;
-mod table;
+mod own;
 
+pub use rne_functions::{
+    Answer, AnswerTable, Argument, ArgumentPart, Capability, Entry, Function, Labels, Layout, Length, MatrixUnit,
+    Record, Returned, Shape, Sizes,
+};
 use rne_model::{FrameId, Robot};
 
-use crate::named::named;
-use crate::quantity::Quantity;
+use crate::error::CompileError;
+use crate::named::{UnknownName, named};
 
-pub use answer::{Answer, AnswerTable, Labels, MatrixUnit};
-pub use argument::{Argument, ArgumentPart};
-pub use capability::Capability;
-use entry::Signature;
-pub use entry::{Entry, Own};
-pub use layout::{Layout, Length, Record, Returned, Shape, Sizes};
-pub use table::Function;
-use table::{SIGNATURES, TABLE};
+pub use own::{Own, own};
 
-impl Function {
-    /// The functions of the trait `InverseDynamics`: torques of an arm whose base stands still.
-    pub const TORQUES: [Self; 6] = [
-        Self::InverseDynamics,
-        Self::InverseDynamicsWithWrench,
-        Self::InverseDynamicsWithPayload,
-        Self::InverseDynamicsFromSinCos,
-        Self::GravityTorques,
-        Self::BiasTorques,
-    ];
+/// The function with a name.
+///
+/// # Errors
+/// When there is none.
+pub fn function_named(name: &str) -> Result<Function, UnknownName> {
+    Function::named(name).ok_or_else(|| UnknownName {
+        found: name.to_owned(),
+        what: "function",
+        allowed: &Function::NAMES,
+    })
+}
 
-    /// The functions of a robot without closed loops.
-    pub const OF_TREES: [Self; Self::trees()] = {
-        let (mut functions, mut index, mut found) = ([Self::InverseDynamics; Self::trees()], 0, 0);
-        while index < Self::ALL.len() {
-            if !Self::ALL[index].is_of_closed_loops() {
-                functions[found] = Self::ALL[index];
-                found += 1;
-            }
-            index += 1;
-        }
-        functions
-    };
+/// The functions that a robot has: those of its closed loops, or all others.
+pub fn functions_of(robot: &Robot) -> impl Iterator<Item = Function> + use<> {
+    let has_loops = !robot.closed.is_empty();
+    Function::ALL.into_iter().filter(move |function| function.is_of_closed_loops() == has_loops)
+}
 
-    /// How many functions a robot without closed loops has.
-    const fn trees() -> usize {
-        let (mut index, mut found) = (0, 0);
-        while index < Self::ALL.len() {
-            found += !Self::ALL[index].is_of_closed_loops() as usize;
-            index += 1;
-        }
-        found
+/// The function whose operations the plan of a robot is to make few: the torques, and with them the wrench on the base
+/// of a robot with a floating base.
+#[must_use]
+pub fn function_of_plan(robot: &Robot) -> Function {
+    match (robot.floating_base.is_some(), robot.closed.is_empty()) {
+        (true, true) => Function::InverseDynamicsOfFloatingBase,
+        (true, false) => Function::InverseDynamicsOfFloatingLoops,
+        (false, true) => Function::InverseDynamics,
+        (false, false) => Function::InverseDynamicsOfLoops,
     }
+}
 
-    /// The functions that a robot has: those of its closed loops, or all others.
-    pub fn of_robot(robot: &Robot) -> impl Iterator<Item = Self> + use<> {
-        let has_loops = !robot.closed.is_empty();
-        Self::ALL.into_iter().filter(move |function| function.is_of_closed_loops() == has_loops)
-    }
+/// The lengths of the arrays of a robot.
+#[must_use]
+pub fn sizes_of(robot: &Robot) -> Sizes {
+    let closed = &robot.closed;
+    Sizes { dof: robot.dof(), tips: robot.tip_count(), passive: closed.passive.len(), equations: closed.equations() }
+}
 
-    /// Whether masses or inertias of links change what it returns: a payload, which is a part of its link, too.
-    #[must_use]
-    pub const fn feels_links(self) -> bool {
-        !matches!(
-            self.capability(),
-            Capability::Kinematics
-                | Capability::JacobianDerivatives
-                | Capability::FloatingKinematics
-                | Capability::Regressor
-                | Capability::FloatingRegressor
-                | Capability::Actuation
-        ) && !matches!(self, Self::ClosureStep | Self::LoopMap | Self::LoopMapRateTimesVelocity)
-    }
-
-    /// Its entry in the table, which stands at its place.
-    pub const fn entry(self) -> &'static Entry {
-        TABLE[self as usize]
-    }
-
-    /// The trait that it is a method of.
-    #[must_use]
-    pub const fn capability(self) -> Capability {
-        self.entry().capability
-    }
-
-    /// The first line of its documentation.
-    #[must_use]
-    pub const fn summary(self) -> &'static str {
-        SIGNATURES[self as usize].summary
-    }
-
-    /// Shapes, units, frames and signs that the names do not tell.
-    #[must_use]
-    pub const fn details(self) -> &'static str {
-        SIGNATURES[self as usize].details
-    }
-
-    /// Its arguments, in order.
-    #[must_use]
-    pub const fn arguments(self) -> &'static [Argument] {
-        SIGNATURES[self as usize].arguments
-    }
-
-    /// Whether it has an argument.
-    #[must_use]
-    pub fn takes(self, argument: Argument) -> bool {
-        self.arguments().contains(&argument)
-    }
-
-    /// Whether it takes or returns something for each tip.
-    #[must_use]
-    pub fn has_tips(self) -> bool {
-        self.takes(Argument::Wrenches) || self.shape().has_tips()
-    }
-
-    /// The same function of the arm with a payload, where there is one.
-    #[must_use]
-    pub const fn with_payload(self) -> Option<Self> {
-        match self {
-            Self::InverseDynamics => Some(Self::InverseDynamicsWithPayload),
-            Self::GravityTorques => Some(Self::GravityTorquesWithPayload),
-            Self::BiasTorques => Some(Self::BiasTorquesWithPayload),
-            Self::MassMatrix => Some(Self::MassMatrixWithPayload),
-            Self::ForwardDynamics => Some(Self::ForwardDynamicsWithPayload),
-            Self::InverseDynamicsDerivatives => Some(Self::InverseDynamicsDerivativesWithPayload),
-            Self::ForwardDynamicsDerivatives => Some(Self::ForwardDynamicsDerivativesWithPayload),
-            Self::MomentumAndRate => Some(Self::MomentumAndRateWithPayload),
-            _ => None,
-        }
-    }
-
-    /// The beginning of its name at a frame, `jacobian` of `jacobian_of_camera`, for a function of the tip that can be
-    /// taken at any frame of a link instead.
-    #[must_use]
-    pub const fn of_frame(self) -> Option<&'static str> {
-        SIGNATURES[self as usize].of_frame
-    }
-
-    /// The functions of the tip that can be taken at any frame of a link instead.
-    pub fn of_frames() -> impl Iterator<Item = Self> {
-        Self::ALL.into_iter().filter(|function| function.of_frame().is_some())
-    }
-
+/// A function of one robot.
+pub trait OfRobot: Sized {
     /// The frame that a program of this function is compiled for, if `robot` is seen from one and the function can be.
     #[must_use]
-    pub fn frame(self, robot: &Robot) -> Option<FrameId> {
+    fn frame(self, robot: &Robot) -> Option<FrameId>;
+
+    /// The name of its code for a robot: its own, or at a frame `jacobian_of_camera`. A character of a joint's name that
+    /// is no letter, digit or `_` becomes `_`.
+    #[must_use]
+    fn name_for(self, robot: &Robot) -> String;
+
+    /// Whether it holds still the base of a robot with a floating base: the plan of the robot is not for it.
+    #[must_use]
+    fn holds_floating_base(self, robot: &Robot) -> bool;
+
+    /// Refuses a function that a robot does not have.
+    ///
+    /// # Errors
+    /// When a joint follows others and the function returns numbers of every link; when the function is of robots with
+    /// closed loops or of robots without, and this robot is of the other kind.
+    fn check_kind(self, robot: &Robot) -> Result<(), CompileError>;
+
+    /// Refuses a function that a robot does not have, or has not the base or the contacts for.
+    ///
+    /// # Errors
+    /// Those of [`check_kind`](Self::check_kind) and of [`check_base`](Self::check_base).
+    fn check_for(self, robot: &Robot) -> Result<(), CompileError>;
+
+    /// Whether a robot has the base and the contacts that the function needs. The compiler takes a robot whose file has
+    /// no `floating_base` as one whose base has no mass; whoever computes numbers of the robot asks this first, because
+    /// that mass was probably left out.
+    ///
+    /// # Errors
+    /// [`CompileError::NoFloatingBase`] for a function of a floating base, and a robot without one;
+    /// [`CompileError::NoContacts`] for the motion in contact, which is a free fall without contacts.
+    fn check_base(self, robot: &Robot) -> Result<(), CompileError>;
+}
+
+impl OfRobot for Function {
+    fn frame(self, robot: &Robot) -> Option<FrameId> {
         robot.at.filter(|_| self.of_frame().is_some())
     }
 
-    /// The name of its code for a robot: its own, or at a frame `jacobian_of_camera`. A character of a joint's
-    /// name that is no letter, digit or `_` becomes `_`.
-    #[must_use]
-    pub fn name_for(self, robot: &Robot) -> String {
+    fn name_for(self, robot: &Robot) -> String {
         match (self.of_frame(), robot.at) {
             (Some(of_frame), Some(frame)) => {
                 let name = robot.frame_name(frame).chars();
@@ -167,107 +104,38 @@ impl Function {
         }
     }
 
-    /// Whether what it returns are the torques of the joints.
-    #[must_use]
-    pub const fn returns_torques(self) -> bool {
-        self.entry().returns_torques
+    fn holds_floating_base(self, robot: &Robot) -> bool {
+        function_of_plan(robot).is_of_floating_base() && !self.is_of_floating_base()
     }
 
-    /// The function whose operations the plan of a robot is to make few: the torques, and with them the wrench on the
-    /// base where nothing holds it.
-    #[must_use]
-    pub fn of_plan(robot: &Robot) -> Self {
-        match (robot.floating_base.is_some(), robot.closed.is_empty()) {
-            (true, true) => Self::InverseDynamicsOfFloatingBase,
-            (true, false) => Self::InverseDynamicsOfFloatingLoops,
-            (false, true) => Self::InverseDynamics,
-            (false, false) => Self::InverseDynamicsOfLoops,
+    fn check_kind(self, robot: &Robot) -> Result<(), CompileError> {
+        let function = self;
+        let follower = robot.joints.iter().find(|joint| joint.coupling.is_some() && self.is_of_every_link());
+        if let Some(joint) = follower {
+            return Err(CompileError::OfEveryLink { function, follower: joint.name.clone() });
+        }
+        match robot.closed.loops.first() {
+            Some(closed) if !self.is_of_closed_loops() => {
+                Err(CompileError::HasClosedLoops { function, name: closed.name.clone() })
+            }
+            None if self.is_of_closed_loops() => Err(CompileError::NoClosedLoops { function }),
+            _ => Ok(()),
         }
     }
 
-    /// Whether it holds still the base of a robot with a floating base: the plan of the robot is not for it.
-    #[must_use]
-    pub fn holds_floating_base(self, robot: &Robot) -> bool {
-        Self::of_plan(robot).is_of_floating_base() && !self.is_of_floating_base()
+    fn check_for(self, robot: &Robot) -> Result<(), CompileError> {
+        self.check_base(robot)?;
+        self.check_kind(robot)
     }
 
-    /// Whether it is a function of a robot whose base nothing holds.
-    #[must_use]
-    pub const fn is_of_floating_base(self) -> bool {
-        self.capability().has_velocities()
-            || matches!(self.capability(), Capability::FloatingEnergy | Capability::FloatingEulerStep)
-    }
-
-    /// Whether it is a function of a robot with closed loops.
-    #[must_use]
-    pub const fn is_of_closed_loops(self) -> bool {
-        matches!(self.capability(), Capability::ClosedLoops | Capability::FloatingClosedLoops)
-    }
-
-    /// Whether rotors that belong to the arm change what it returns.
-    #[must_use]
-    pub fn feels_rotors(self) -> bool {
-        let has_torques = self.returns_torques() || self.is_of_floating_base();
-        self.entry().feels_rotors || has_torques && self.takes(Argument::Accelerations)
-    }
-
-    /// Whether what it returns are the accelerations of the joints.
-    #[must_use]
-    pub const fn returns_accelerations(self) -> bool {
-        matches!(self.entry().answer, Answer::Accelerations)
-    }
-
-    /// The shape of what it returns, for any number of joints.
-    #[must_use]
-    pub const fn shape(self) -> &'static Shape {
-        SIGNATURES[self as usize].returned.shape()
-    }
-
-    /// The shape of its result for a robot.
-    #[must_use]
-    pub fn layout(self, sizes: Sizes) -> Layout {
-        self.shape().layout(sizes)
-    }
-
-    /// How its numbers are laid out for reading.
-    #[must_use]
-    pub const fn answer(self) -> &'static Answer {
-        &self.entry().answer
-    }
-
-    /// The heading and meaning that a quantity has in its listing alone.
-    pub fn own(self, quantity: Quantity) -> Option<&'static Own> {
-        self.entry().own.iter().find(|own| own.quantity == quantity)
-    }
-
-    /// Whether it returns numbers of every link, also of those whose joints follow others.
-    #[must_use]
-    pub const fn is_of_every_link(self) -> bool {
-        matches!(self, Self::Regressor | Self::FloatingRegressor)
-    }
-
-    /// Whether what it returns is about the points where the table has its joints and frames.
-    #[must_use]
-    pub const fn is_of_table_points(self) -> bool {
-        matches!(self, Self::LinkPoses | Self::Regressor | Self::FloatingRegressor | Self::JointWrenches)
-    }
-
-    /// Whether it has a reduced form, whose graph can be rewritten.
-    #[must_use]
-    pub const fn can_be_rewritten(self) -> bool {
-        !self.entry().is_irreducible
-    }
-
-    /// Whether it solves by the mass matrix, so that its numbers are worth nothing where that is nearly singular.
-    #[must_use]
-    pub const fn inverts_mass(self) -> bool {
-        self.entry().inverts_mass
-    }
-
-    /// The meaning of numbers that are not finite, for a function that divides.
-    #[must_use]
-    pub const fn divides(self) -> Option<&'static str> {
-        self.entry().divides
+    fn check_base(self, robot: &Robot) -> Result<(), CompileError> {
+        if self.is_of_floating_base() && robot.floating_base.is_none() {
+            return Err(CompileError::NoFloatingBase { function: self, robot: robot.name.clone() });
+        }
+        if self.capability() == Capability::ContactDynamics && robot.contacts.is_empty() {
+            return Err(CompileError::NoContacts { function: self });
+        }
+        Ok(())
     }
 }
 

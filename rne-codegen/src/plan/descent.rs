@@ -5,7 +5,6 @@ use rustc_hash::FxHashMap;
 
 use rne_model::Robot;
 
-use crate::function::Function;
 use crate::ir::Cost;
 use crate::plan::cost::{Evaluator, OpenChoices};
 use crate::plan::trick::Trick;
@@ -34,7 +33,7 @@ impl<'v> Descent<'v> {
     /// Starts from the plain plan of a robot; no plan that uses a trick of `without` is counted.
     #[must_use]
     pub fn new(robot: &Robot, without: &[Trick]) -> Self {
-        let mut evaluator = Evaluator::new(robot, Function::of_plan(robot));
+        let mut evaluator = Evaluator::new(robot, crate::function_of_plan(robot));
         let plan = without.iter().fold(Plan::new(robot.joints.len()), |plan, trick| trick.left_out_of(&plan));
         // the plain plan applies to every robot
         let best = (evaluator.cost(&plan).unwrap_or_default(), plan);

@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use rne_model::Robot;
 
+use crate::function::OfRobot as _;
 use crate::function::{Argument, Function};
 use crate::plan::cost::Evaluator;
 use crate::plan::descent::default_plan;

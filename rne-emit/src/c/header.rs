@@ -80,7 +80,7 @@ fn referred(file: &File, function: Function) -> Vec<Function> {
     while let Some(function) = open.pop() {
         let names = function.details().split("as in ").skip(1);
         let names = names.filter_map(|words| words.split(|c: char| !c.is_ascii_lowercase() && c != '_').next());
-        for other in names.filter_map(|name| name.parse::<Function>().ok()) {
+        for other in names.filter_map(Function::named) {
             let is_there = file.programs.iter().any(|program| program.function == other);
             if !is_there && !referred.contains(&other) {
                 referred.push(other);

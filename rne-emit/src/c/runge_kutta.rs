@@ -6,7 +6,7 @@
 
 use std::fmt::Write;
 
-use rne_codegen::{Function, Layout, Program, Sizes};
+use rne_codegen::{Function, Layout, Program};
 
 use super::signature::{parameters_type, record_type, wrapped};
 use super::{File, comment};
@@ -30,7 +30,7 @@ fn has_derivatives(file: &File) -> bool {
 
 /// The layouts of the results.
 pub(super) fn layouts(file: &File) -> Vec<Layout> {
-    let sizes = Sizes::of(file.robot);
+    let sizes = rne_codegen::sizes_of(file.robot);
     let is_there = accelerations(file).is_some();
     let step = is_there.then_some(Function::EulerStep);
     let derivatives = (is_there && has_derivatives(file)).then_some(Function::EulerStepDerivatives);
@@ -45,7 +45,7 @@ fn head(file: &File, program: &Program, name: &str, of: Function) -> String {
     if parameters::are_used(program) {
         arguments.push(format!("const {} *parameters", parameters_type(file)));
     }
-    if let Layout::Record(record, _) = of.layout(Sizes::of(file.robot)) {
+    if let Layout::Record(record, _) = of.layout(rne_codegen::sizes_of(file.robot)) {
         arguments.push(format!("{} *{}", record_type(file, record), of.entry().output));
     }
     wrapped(&format!("void {}_{name}(", file.prefix), &arguments)

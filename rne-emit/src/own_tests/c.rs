@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use rne_codegen::{Function, Layout, Program, Sizes};
+use rne_codegen::{Function, Layout, Program};
 use rne_model::Robot;
 
 use super::{Golden, Law, floor, program, results};
@@ -289,7 +289,7 @@ impl Tests<'_> {
             return None;
         }
         let (real, prefix, states) = (self.precision.c_type(), self.prefix, expected.len());
-        let layout = of.layout(Sizes::of(self.robot));
+        let layout = of.layout(rne_codegen::sizes_of(self.robot));
         let mut copies = String::new();
         for (index, element) in layout_elements(&layout, "result").iter().enumerate() {
             let start = element.strip_prefix("result.").filter(|_| at == 0);

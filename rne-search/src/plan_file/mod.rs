@@ -191,7 +191,7 @@ impl PlanFile {
     /// those that are rewritten.
     #[must_use]
     pub fn described(&self, robot: &Robot) -> Vec<(Function, PlanSet)> {
-        let plan = (Function::of_plan(robot), PlanSet::from(self.reduced.plan.clone()));
+        let plan = (rne_codegen::function_of_plan(robot), PlanSet::from(self.reduced.plan.clone()));
         let rewritten = self.rewritten.keys().map(|&function| (function, PlanSet::from(self.clone())));
         [plan].into_iter().chain(rewritten).collect()
     }

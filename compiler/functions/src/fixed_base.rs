@@ -1,10 +1,9 @@
 //! The functions of a robot on a base that a stand holds or that moves as told.
 
-use super::Function;
-use super::answer::{AXES, Answer, AnswerTable, Labels, MatrixUnit};
-use super::capability::Capability;
-use super::entry::{Entry, Own, WITHOUT_MASS};
-use crate::quantity::Quantity;
+use crate::Function;
+use crate::answer::{AXES, Answer, AnswerTable, Labels, MatrixUnit};
+use crate::capability::Capability;
+use crate::entry::{Entry, WITHOUT_MASS};
 
 /// A row and a column per joint.
 const fn of_joints(about: &'static str, unit: MatrixUnit) -> AnswerTable {
@@ -15,26 +14,6 @@ const fn of_joints(about: &'static str, unit: MatrixUnit) -> AnswerTable {
 const fn by_position(about: &'static str) -> AnswerTable {
     AnswerTable::of(about, Labels::Joints, Labels::Joints)
 }
-
-/// The mass of the payload in a listing.
-const PAYLOAD_MASS: Own = Own::names(Quantity::Mass, "mass of link i; of the payload for i = n + 1");
-
-/// Its centre of mass.
-const PAYLOAD_COM: Own = Own::names(
-    Quantity::Com,
-    "centre of mass from the link frame's origin; of the payload, from the tip frame's, for i = n + 1",
-);
-
-/// Its inertia.
-const PAYLOAD_INERTIA: Own =
-    Own::names(Quantity::Inertia, "inertia about the centre of mass; of the payload, in tip axes, for i = n + 1");
-/// The momenta of the joints in a listing.
-const MOMENTUM: Own = Own::of(Quantity::Momentum, |joint| format!("momentum of joint {joint}: row {joint} of M q̇"));
-
-/// Their rates.
-const MOMENTUM_RATE: Own = Own::of(Quantity::MomentumRate, |joint| {
-    format!("its rate at joint {joint} without external torques: τ + ∂T/∂q - ∂V/∂q")
-});
 
 const MASS_MATRIX: Entry = Entry {
     output: "mass",
@@ -68,7 +47,6 @@ const DERIVATIVES: Entry = Entry {
 const MOMENTUM_AND_RATE: Entry = Entry {
     output: "momentum",
     listed: "returned: the momenta of the joints, then their rates",
-    own: &[MOMENTUM, MOMENTUM_RATE],
     answer: Answer::Tables(&[AnswerTable::of(
         "momentum of each joint, M q̇ (N m s, prismatic: N s), and its rate without external torques (N m, \
         prismatic: N)",
@@ -105,12 +83,6 @@ const ACCELERATION_DERIVATIVES: Entry = Entry {
     ..Entry::of(Function::ForwardDynamicsDerivatives, Capability::ForwardDynamicsDerivatives)
 };
 
-/// The state after a step in a listing.
-const NEXT: &[Own] = &[
-    Own::of(Quantity::NextRate, |joint| format!("velocity of joint {joint} after the step")),
-    Own::of(Quantity::NextPosition, |joint| format!("position of joint {joint} after the step")),
-];
-
 /// The part of an entry that the step and its derivatives have in common.
 const STEP: Entry = Entry {
     inverts_mass: true,
@@ -128,13 +100,10 @@ const fn of_step(about: &'static str) -> AnswerTable {
 }
 
 /// The functions.
-pub(super) static FIXED_BASE: &[Entry] = &[
+pub(crate) static FIXED_BASE: &[Entry] = &[
     Entry { ..Entry::torques(Function::InverseDynamics, Capability::InverseDynamics) },
     Entry { ..Entry::torques(Function::InverseDynamicsWithWrench, Capability::InverseDynamics) },
-    Entry {
-        own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
-        ..Entry::torques(Function::InverseDynamicsWithPayload, Capability::InverseDynamics)
-    },
+    Entry { ..Entry::torques(Function::InverseDynamicsWithPayload, Capability::InverseDynamics) },
     Entry { ..Entry::torques(Function::InverseDynamicsFromSinCos, Capability::InverseDynamics) },
     Entry { is_of_motion: true, ..Entry::torques(Function::GravityTorques, Capability::InverseDynamics) },
     Entry { is_of_motion: true, ..Entry::torques(Function::BiasTorques, Capability::InverseDynamics) },
@@ -142,9 +111,6 @@ pub(super) static FIXED_BASE: &[Entry] = &[
     Entry {
         output: "coriolis",
         listed: "returned: the rows of the matrix",
-        own: &[Own::of(Quantity::CoriolisElement, |joint| {
-            format!("row {joint} of the Coriolis matrix: ½ ∂(bias torques)/∂q̇")
-        })],
         answer: Answer::Tables(&[of_joints("", MatrixUnit::PerRate)]),
         is_of_motion: true,
         ..Entry::of(Function::CoriolisMatrix, Capability::CoriolisMatrix)
@@ -165,10 +131,6 @@ pub(super) static FIXED_BASE: &[Entry] = &[
     Entry {
         output: "jacobian",
         listed: "returned: three linear rows, then three angular ones",
-        own: &[
-            Own::of(Quantity::JacobianLinear, |joint| format!("column {joint} of the Jacobian")),
-            Own::of(Quantity::JacobianAngular, |joint| format!("column {joint} of the Jacobian")),
-        ],
         answer: Answer::Tables(&[AnswerTable::of(
             "velocity of the tip per joint velocity, world axes: v in m/s, w in rad/s",
             Labels::Names(&["vx", "vy", "vz", "wx", "wy", "wz"]),
@@ -178,7 +140,6 @@ pub(super) static FIXED_BASE: &[Entry] = &[
     },
     Entry {
         output: "acceleration",
-        own: &[Own::of(Quantity::TipAcceleration, |_| "acceleration of the tip where q̈ = 0".to_owned())],
         answer: Answer::Tables(&[AnswerTable::of(
             "acceleration of the tip where q̈ = 0, world axes",
             Labels::Names(&["linear, m/s²", "angular, rad/s²"]),
@@ -188,31 +149,14 @@ pub(super) static FIXED_BASE: &[Entry] = &[
     },
     Entry {
         output: "energy",
-        own: &[Own::of(Quantity::KineticEnergy, |_| "kinetic energy: ½ Σ (m ċ · ċ + ω · I ω)".to_owned())],
         answer: Answer::Number("J"),
         feels_rotors: true,
         ..Entry::of(Function::KineticEnergy, Capability::Energy)
     },
-    Entry {
-        output: "energy",
-        own: &[
-            Own::of(Quantity::ComPosition, |joint| format!("centre of mass of link {joint}, in frame 0")),
-            Own::of(Quantity::PotentialEnergy, |_| "potential energy: -Σ m g · c".to_owned()),
-        ],
-        answer: Answer::Number("J"),
-        ..Entry::of(Function::PotentialEnergy, Capability::Energy)
-    },
+    Entry { output: "energy", answer: Answer::Number("J"), ..Entry::of(Function::PotentialEnergy, Capability::Energy) },
     Entry {
         output: "centre",
         listed: "returned: x, y, z",
-        own: &[Own::meaning(
-            Quantity::ComPosition,
-            "centre of mass of link i, from the base in world axes; i = 0: of the arm, in the world",
-            |joint| match joint {
-                0 => "centre of mass of the arm: Σ m c / Σ m, in the world".to_owned(),
-                _ => format!("centre of mass of link {joint}, from the base in world axes"),
-            },
-        )],
         answer: Answer::Tables(&[AnswerTable::of(
             "centre of mass of the arm in the world, m",
             Labels::Names(&["arm"]),
@@ -224,16 +168,6 @@ pub(super) static FIXED_BASE: &[Entry] = &[
     Entry {
         output: "jacobian",
         listed: "returned: the rows of the Jacobian",
-        own: &[
-            Own::meaning(Quantity::ComPosition, "centre of mass of link i, from the base in world axes", |joint| {
-                format!("centre of mass of link {joint}, from the base in world axes")
-            }),
-            Own::meaning(
-                Quantity::JacobianLinear,
-                "velocity of the centre of mass per rate of joint i, world axes",
-                |joint| format!("column {joint} of the Jacobian: what is behind joint {joint} moves with it"),
-            ),
-        ],
         answer: Answer::Tables(&[AnswerTable::of(
             "velocity of the centre of mass per joint velocity, world axes, m/s",
             Labels::Names(&["vx", "vy", "vz"]),
@@ -245,7 +179,6 @@ pub(super) static FIXED_BASE: &[Entry] = &[
     Entry {
         output: "regressor",
         listed: "returned: torque, link, parameter (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)",
-        own: &[Own::of(Quantity::RegressorElement, |joint| format!("torque {joint} per parameter"))],
         answer: Answer::PerParameter,
         ..Entry::of(Function::Regressor, Capability::Regressor)
     },
@@ -266,7 +199,6 @@ pub(super) static FIXED_BASE: &[Entry] = &[
     Entry { ..Entry::torques(Function::InverseDynamicsOnMovingBase, Capability::MovingBase) },
     Entry {
         output: "tau",
-        own: &[Own::of(Quantity::ActuatorTorque, |joint| format!("motor {joint}: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇)"))],
         answer: Answer::Torques,
         is_irreducible: true,
         feels_rotors: true,
@@ -275,19 +207,6 @@ pub(super) static FIXED_BASE: &[Entry] = &[
     Entry {
         output: "inverse",
         listed: "returned: the rows of the matrix",
-        own: &[
-            Own::meaning(Quantity::RateDot, "element (i, j) of M⁻¹", |joint| {
-                format!("row {joint} of the inverse: L⁻ᵀ D⁻¹ L⁻¹")
-            }),
-            Own::of(Quantity::LowerFactor, |_| "M = L D Lᵀ".to_owned()),
-            Own::of(Quantity::ScaledFactor, |_| "M = L D Lᵀ".to_owned()),
-            Own::of(Quantity::Pivot, |_| "M = L D Lᵀ".to_owned()),
-            Own::of(Quantity::InversePivot, |_| "M = L D Lᵀ".to_owned()),
-            Own::meaning(Quantity::Reduced, "element (i, j) of L⁻¹", |joint| format!("row {joint} of L⁻¹")),
-            Own::meaning(Quantity::Scaled, "element (i, j) of D⁻¹ L⁻¹", |joint| {
-                format!("row {joint} of D⁻¹ L⁻¹")
-            }),
-        ],
         answer: Answer::Tables(&[AnswerTable::of(PER_TORQUE, Labels::Joints, Labels::Joints)]),
         feels_rotors: true,
         is_of_motion: true,
@@ -295,38 +214,22 @@ pub(super) static FIXED_BASE: &[Entry] = &[
         divides: Some(INVERSE_OF_NOTHING),
         ..Entry::of(Function::InverseMassMatrix, Capability::MassMatrix)
     },
-    Entry {
-        is_of_motion: true,
-        own: &[PAYLOAD_MASS, PAYLOAD_COM],
-        ..Entry::torques(Function::GravityTorquesWithPayload, Capability::PayloadDynamics)
-    },
-    Entry {
-        is_of_motion: true,
-        own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
-        ..Entry::torques(Function::BiasTorquesWithPayload, Capability::PayloadDynamics)
-    },
-    Entry {
-        function: Function::MassMatrixWithPayload,
-        capability: Capability::PayloadDynamics,
-        own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
-        ..MASS_MATRIX
-    },
+    Entry { is_of_motion: true, ..Entry::torques(Function::GravityTorquesWithPayload, Capability::PayloadDynamics) },
+    Entry { is_of_motion: true, ..Entry::torques(Function::BiasTorquesWithPayload, Capability::PayloadDynamics) },
+    Entry { function: Function::MassMatrixWithPayload, capability: Capability::PayloadDynamics, ..MASS_MATRIX },
     Entry {
         function: Function::ForwardDynamicsWithPayload,
         capability: Capability::PayloadDynamics,
-        own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
         ..FORWARD_DYNAMICS
     },
     Entry {
         function: Function::InverseDynamicsDerivativesWithPayload,
         capability: Capability::PayloadDynamics,
-        own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
         ..DERIVATIVES
     },
     Entry {
         function: Function::MomentumAndRateWithPayload,
         capability: Capability::PayloadDynamics,
-        own: &[MOMENTUM, MOMENTUM_RATE, PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
         ..MOMENTUM_AND_RATE
     },
     Entry { output: "tau", ..Entry::of(Function::WrenchTorques, Capability::Kinematics) },
@@ -335,7 +238,6 @@ pub(super) static FIXED_BASE: &[Entry] = &[
     Entry {
         output: "gradient",
         listed: "returned: derivatives by q, then by q̇, then by q̈",
-        own: &[Own::of(Quantity::WeightedTorque, |_| "derivatives of λᵀτ".to_owned())],
         answer: Answer::Tables(&[AnswerTable::of(
             "derivative of λᵀτ by each joint's position (per rad, prismatic: m), velocity and acceleration",
             Labels::Names(&["dq", "dqd", "dqdd"]),
@@ -365,16 +267,11 @@ pub(super) static FIXED_BASE: &[Entry] = &[
     Entry {
         function: Function::ForwardDynamicsDerivativesWithPayload,
         capability: Capability::PayloadDynamics,
-        own: &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
         ..ACCELERATION_DERIVATIVES
     },
     Entry {
         output: "rate",
         listed: "returned: three linear rows, then three angular ones",
-        own: &[
-            Own::of(Quantity::JacobianLinearRate, |joint| format!("column {joint} of the rate of the Jacobian")),
-            Own::of(Quantity::JacobianAngularRate, |joint| format!("column {joint} of the rate of the Jacobian")),
-        ],
         answer: Answer::Tables(&[AnswerTable::of(
             "acceleration of the tip per joint velocity, world axes: v in m/s², w in rad/s²",
             Labels::Names(&["vx", "vy", "vz", "wx", "wy", "wz"]),
@@ -400,10 +297,6 @@ pub(super) static FIXED_BASE: &[Entry] = &[
     Entry {
         output: "hessian",
         listed: "returned: the rows by q and q, by q and q̇, by q̇ and q̇, by q and q̈",
-        own: &[
-            Own::of(Quantity::WeightedByPosition, |joint| format!("second derivatives of λᵀτ, by q{joint}")),
-            Own::of(Quantity::WeightedByRate, |joint| format!("second derivatives of λᵀτ, by q̇{joint}")),
-        ],
         answer: Answer::Tables(&[
             AnswerTable::of("∂²(λᵀτ)/∂q∂q (per rad or m, of each joint)", Labels::Joints, Labels::Joints),
             AnswerTable::of("∂²(λᵀτ)/∂q∂q̇ (rows by q, columns by q̇)", Labels::Joints, Labels::Joints),
@@ -417,7 +310,6 @@ pub(super) static FIXED_BASE: &[Entry] = &[
     Entry {
         output: "next",
         listed: "returned: the positions after the step, then the velocities",
-        own: NEXT,
         answer: Answer::Tables(&[AnswerTable::of(
             "position (rad, prismatic: m) and velocity (rad/s, prismatic: m/s) of each joint after the step",
             Labels::Names(&["q", "qd"]),
@@ -428,7 +320,6 @@ pub(super) static FIXED_BASE: &[Entry] = &[
     Entry {
         function: Function::EulerStepDerivatives,
         capability: Capability::EulerStepDerivatives,
-        own: NEXT,
         output: "derivatives",
         listed: "returned: the rows of ∂q'/∂q, ∂q'/∂q̇ and ∂q'/∂τ, then those of ∂q̇'/∂q, ∂q̇'/∂q̇ and ∂q̇'/∂τ",
         answer: Answer::Tables(&[

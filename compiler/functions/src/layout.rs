@@ -1,6 +1,7 @@
 //! The shape of what a function returns.
 
-use rne_model::Robot;
+#[cfg(feature = "alloc")]
+use alloc::{boxed::Box, vec::Vec};
 
 /// How the numbers that a function returns are grouped, for any number of joints and tips.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -191,15 +192,6 @@ pub struct Sizes {
     pub equations: usize,
 }
 
-impl Sizes {
-    /// The sizes of a robot.
-    #[must_use]
-    pub fn of(robot: &Robot) -> Self {
-        let closed = &robot.closed;
-        Self { dof: robot.dof(), tips: robot.tip_count(), passive: closed.passive.len(), equations: closed.equations() }
-    }
-}
-
 impl Length {
     /// The length for a robot.
     #[must_use]
@@ -221,8 +213,7 @@ impl Length {
 
 impl Shape {
     /// Whether a part of it has an element per tip.
-    #[must_use]
-    pub(super) fn has_tips(&self) -> bool {
+    pub(crate) fn has_tips(&self) -> bool {
         match self {
             Self::Number => false,
             Self::Array(length, of) => *length == Length::Tips || of.has_tips(),
@@ -231,6 +222,7 @@ impl Shape {
     }
 
     /// The shape for a robot.
+    #[cfg(feature = "alloc")]
     #[must_use]
     pub fn layout(&self, sizes: Sizes) -> Layout {
         match self {
@@ -244,6 +236,7 @@ impl Shape {
 }
 
 /// How the numbers that a function returns are grouped.
+#[cfg(feature = "alloc")]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Layout {
     /// One number.
@@ -348,6 +341,7 @@ impl Record {
     }
 }
 
+#[cfg(feature = "alloc")]
 impl Layout {
     /// How many numbers there are.
     #[must_use]

@@ -4,11 +4,12 @@
 //! `formulate`, and the runtime's own implementation. A new function is the last line, whatever its capability, so that
 //! the others keep their places, which are the ids of the C library.
 
-use super::closed_loops::CLOSED_LOOPS;
-use super::fixed_base::FIXED_BASE;
-use super::floating_base::FLOATING_BASE;
-use super::{Argument, Entry, Returned, Signature};
+use crate::closed_loops::CLOSED_LOOPS;
+use crate::entry::Signature;
+use crate::fixed_base::FIXED_BASE;
+use crate::floating_base::FLOATING_BASE;
 use crate::named::named;
+use crate::{Argument, Entry, Returned};
 
 /// Every function in the order of [`Function`]: its variant, its method with the arguments by their names and kinds,
 /// what it returns, and what it computes. `at NAME` follows what is returned where the function of the tip can be taken
@@ -407,13 +408,13 @@ macro_rules! signatures {
     )*) => {
         named! {
             /// A function of a robot, named as its trait method.
-            Function, "function" {
+            Function {
                 $(#[doc = $summary] $variant = stringify!($name),)*
             }
         }
 
         /// The signatures, in the order of the variants.
-        pub(super) static SIGNATURES: &[Signature] = &[$(Signature {
+        pub(crate) static SIGNATURES: &[Signature] = &[$(Signature {
             summary: $summary,
             details: concat!("" $(, $details)?),
             arguments: &[$(Argument::$kind),*],
@@ -426,7 +427,7 @@ macro_rules! signatures {
 functions!(signatures);
 
 /// The entries, in the order of the variants: none is missing, and none lacks what C and listings say.
-pub(super) static TABLE: [&Entry; Function::ALL.len()] = {
+pub(crate) static TABLE: [&Entry; Function::ALL.len()] = {
     let (mut entries, mut found) = ([&FIXED_BASE[0]; Function::ALL.len()], [false; Function::ALL.len()]);
     let mut index = 0;
     let floating = FIXED_BASE.len() + FLOATING_BASE.len();

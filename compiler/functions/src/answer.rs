@@ -31,7 +31,7 @@ pub struct AnswerTable {
 }
 
 impl AnswerTable {
-    pub(super) const fn of(about: &'static str, rows: Labels, columns: Labels) -> Self {
+    pub(crate) const fn of(about: &'static str, rows: Labels, columns: Labels) -> Self {
         Self { about, unit: None, rows, columns }
     }
 }
@@ -65,4 +65,4 @@ pub enum MatrixUnit {
 }
 
 /// The names of three components.
-pub(super) const AXES: Labels = Labels::Names(&["x", "y", "z"]);
+pub(crate) const AXES: Labels = Labels::Names(&["x", "y", "z"]);

@@ -1,22 +1,20 @@
 //! Entries of the table of functions.
 
-use super::{Answer, Argument, Returned};
-use super::{Capability, Function};
-use crate::quantity::Quantity;
+use crate::{Answer, Argument, Capability, Function, Returned};
 
 /// The signature of a function, and the words for its callers.
 #[derive(Debug)]
-pub(super) struct Signature {
+pub(crate) struct Signature {
     /// The first line of its documentation.
-    pub(super) summary: &'static str,
+    pub(crate) summary: &'static str,
     /// Shapes, units, frames and signs that the names do not tell.
-    pub(super) details: &'static str,
+    pub(crate) details: &'static str,
     /// Its arguments, in order.
-    pub(super) arguments: &'static [Argument],
+    pub(crate) arguments: &'static [Argument],
     /// Its result.
-    pub(super) returned: Returned,
+    pub(crate) returned: Returned,
     /// The beginning of its name at a frame, for a function that can be taken there.
-    pub(super) of_frame: Option<&'static str>,
+    pub(crate) of_frame: Option<&'static str>,
 }
 
 /// Properties of a function.
@@ -31,8 +29,6 @@ pub struct Entry {
     pub output: &'static str,
     /// The words of a listing above the returned numbers.
     pub listed: &'static str,
-    /// The quantities that its listing shows under headings of its own.
-    pub own: &'static [Own],
     /// How its results are shown to people.
     pub answer: Answer,
     /// Whether it returns the torques of the joints, by the seven steps.
@@ -50,26 +46,14 @@ pub struct Entry {
     pub divides: Option<&'static str>,
 }
 
-/// A quantity in the listing of a function.
-#[derive(Debug)]
-pub struct Own {
-    /// The quantity.
-    pub quantity: Quantity,
-    /// The heading above its statements at a joint.
-    pub heading: fn(usize) -> String,
-    /// The meaning of its names in this function, where it differs from the usual one.
-    pub meaning: Option<&'static str>,
-}
-
 impl Entry {
     /// The entry that most functions have in common.
-    pub(super) const fn of(function: Function, capability: Capability) -> Self {
+    pub(crate) const fn of(function: Function, capability: Capability) -> Self {
         Self {
             function,
             capability,
             output: "",
             listed: "returned",
-            own: &[],
             answer: Answer::Torques,
             returns_torques: false,
             is_of_motion: false,
@@ -81,28 +65,11 @@ impl Entry {
     }
 
     /// The entry that functions which return joint torques have in common.
-    pub(super) const fn torques(function: Function, capability: Capability) -> Self {
+    pub(crate) const fn torques(function: Function, capability: Capability) -> Self {
         Self { output: "tau", returns_torques: true, ..Self::of(function, capability) }
     }
 }
 
-impl Own {
-    /// A quantity under a heading of its own.
-    pub(super) const fn of(quantity: Quantity, heading: fn(usize) -> String) -> Self {
-        Self { quantity, heading, meaning: None }
-    }
-
-    /// An argument whose names have a special meaning in this function.
-    pub(super) const fn names(quantity: Quantity, meaning: &'static str) -> Self {
-        Self::meaning(quantity, meaning, |_| String::new())
-    }
-
-    /// A quantity under a heading, whose names have another meaning in this function.
-    pub(super) const fn meaning(quantity: Quantity, meaning: &'static str, heading: fn(usize) -> String) -> Self {
-        Self { quantity, heading, meaning: Some(meaning) }
-    }
-}
-
 /// Why a centre of mass may be none.
-pub(super) const WITHOUT_MASS: &str =
+pub(crate) const WITHOUT_MASS: &str =
     "the centre of mass is not finite: the arm has no mass, or the state is too large";

@@ -1,7 +1,6 @@
 //! The arguments of functions, and the arrays that they are passed in.
 
-use super::{Length, Sizes};
-use crate::quantity::Quantity;
+use crate::{Length, Sizes};
 
 /// An argument of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,8 +50,6 @@ pub struct ArgumentPart {
     pub name: &'static str,
     /// How many numbers it has for a state, or for a tip.
     pub length: Length,
-    /// The quantity that its numbers are.
-    pub quantity: Quantity,
 }
 
 /// Every array: its name, its argument, its length, its quantity, and what it is with its unit. `$callback!` is given
@@ -108,7 +105,6 @@ macro_rules! parts {
             argument: Argument::$argument,
             name: stringify!($name),
             length: Length::$length $(($elements))?,
-            quantity: Quantity::$quantity,
         }),*];
     };
 }

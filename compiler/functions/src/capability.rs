@@ -1,11 +1,11 @@
 //! The capabilities of a robot: each is a trait that a struct derives.
 
-use super::Function;
+use crate::Function;
 use crate::named::named;
 
 named! {
     /// A capability of a robot, named as the trait that a struct derives.
-    Capability, "capability" {
+    Capability {
         /// Torques from motion.
         InverseDynamics = "InverseDynamics",
         /// M(q).

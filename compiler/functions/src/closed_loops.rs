@@ -1,11 +1,10 @@
 //! The functions of a robot with closed loops.
 
-use super::Function;
-use super::answer::{Answer, AnswerTable, Labels, MatrixUnit};
-use super::capability::Capability;
-use super::entry::{Entry, Own};
-use super::floating_base;
-use crate::quantity::Quantity;
+use crate::Function;
+use crate::answer::{Answer, AnswerTable, Labels, MatrixUnit};
+use crate::capability::Capability;
+use crate::entry::Entry;
+use crate::floating_base;
 
 /// Why a solution of the equations of loops may be none.
 const SINGULAR: &str = "the numbers are not finite: the loops are singular in this position (the dependent joints are \
@@ -22,14 +21,10 @@ const MOVES_NO_MASS: &str = "the accelerations are not finite: the mass matrix i
                              the loops are singular in this position, or the state is too large";
 
 /// The functions.
-pub(super) static CLOSED_LOOPS: &[Entry] = &[
+pub(crate) static CLOSED_LOOPS: &[Entry] = &[
     Entry {
         output: "step",
         listed: "returned: positions of the dependent joints after the step, then the equations before it",
-        own: &[
-            Own::of(Quantity::ClosedPosition, |joint| format!("position of joint {joint} after the step")),
-            Own::of(Quantity::Residual, |_| "what is left of the equations of the loops".to_owned()),
-        ],
         answer: Answer::Tables(&[
             AnswerTable::of("after the step (rad, prismatic: m)", Labels::Names(&["passive"]), Labels::Passive),
             AnswerTable::of(
@@ -43,7 +38,6 @@ pub(super) static CLOSED_LOOPS: &[Entry] = &[
     Entry {
         output: "map",
         listed: "returned: the rows of the matrix",
-        own: &[Own::of(Quantity::LoopMap, |joint| format!("velocity of joint {joint} per velocity of the others"))],
         answer: Answer::Tables(&[AnswerTable::of(
             "velocity of each dependent joint per velocity; SI units",
             Labels::Passive,
@@ -55,7 +49,6 @@ pub(super) static CLOSED_LOOPS: &[Entry] = &[
     Entry {
         output: "acceleration",
         listed: "returned: accelerations of the dependent joints",
-        own: &[Own::of(Quantity::LoopBias, |joint| format!("acceleration of joint {joint} where q̈ is 0"))],
         answer: Answer::Tables(&[AnswerTable::of(
             "accelerations where q̈ is 0 (rad/s², prismatic: m/s²)",
             Labels::Names(&["passive"]),

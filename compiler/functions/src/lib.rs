@@ -1,0 +1,28 @@
+//! The functions of a robot as data, below everything else of rne: their names, arguments, results, units and sentences.
+//! There is no formula here, and nothing of a robot but the numbers of its joints, tips and loops.
+
+#![no_std]
+
+#[cfg(feature = "alloc")]
+extern crate alloc;
+
+mod answer;
+mod argument;
+mod capability;
+mod closed_loops;
+mod entry;
+mod fixed_base;
+mod floating_base;
+mod function;
+mod layout;
+mod named;
+mod table;
+
+pub use answer::{Answer, AnswerTable, Labels, MatrixUnit};
+pub use argument::{Argument, ArgumentPart};
+pub use capability::Capability;
+pub use entry::Entry;
+#[cfg(feature = "alloc")]
+pub use layout::Layout;
+pub use layout::{Length, Record, Returned, Shape, Sizes};
+pub use table::Function;
