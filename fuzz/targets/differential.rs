@@ -9,7 +9,7 @@ use libfuzzer_sys::fuzz_target;
 use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter, Program};
 use rne_emit::Precision;
 use rne_model::Robot;
-use rne_runtime::{BaseMotion, BaseTwist, DynArm, Payload, Pose, Scalar, Wrench, WrongLength};
+use rne_runtime::{BaseMotion, BaseTwist, DynArm, Inputs, Payload, Pose, Scalar, Wrench, WrongLength};
 
 fuzz_target!(|bytes: &[u8]| {
     let _ = compare(&mut Unstructured::new(bytes));
@@ -269,142 +269,26 @@ const fn base_rotation(base: &BaseMotion<f64>) -> [[f64; 3]; 3] {
 /// What the runtime says, in the order of a program's outputs.
 fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Result<Vec<f64>, WrongLength> {
     let State { q, qd, qdd, tau, wrench, payload, base, .. } = state;
-    Ok(match function {
-        Function::InverseDynamics => arm.inverse_dynamics(q, qd, qdd)?,
-        Function::InverseDynamicsWithWrench => arm.inverse_dynamics_with_wrench(q, qd, qdd, wrench)?,
-        Function::InverseDynamicsWithPayload => {
-            arm.inverse_dynamics_with_payload(q, qd, qdd, &Payload::from_array(*payload))?
-        }
-        Function::InverseDynamicsFromSinCos => {
-            let (sin, cos): (Vec<f64>, Vec<f64>) = q.iter().map(|&q| Scalar::sin_cos(q)).unzip();
-            arm.inverse_dynamics_from_sin_cos(&sin, &cos, q, qd, qdd)?
-        }
-        Function::GravityTorques => arm.gravity_torques(q)?,
-        Function::BiasTorques => arm.bias_torques(q, qd)?,
-        Function::MassMatrix => arm.mass_matrix(q)?.concat(),
-        Function::InverseMassMatrix => arm.inverse_mass_matrix(q)?.concat(),
-        Function::CoriolisMatrix => arm.coriolis_matrix(q, qd)?.concat(),
-        Function::ForwardDynamics => arm.forward_dynamics(q, qd, tau)?,
-        Function::ForwardKinematics => pose(&arm.forward_kinematics(q)?).collect(),
-        Function::LinkPoses => arm.link_poses(q)?.iter().flat_map(pose).collect(),
-        Function::Jacobian => arm.jacobian(q)?.concat(),
-        Function::JacobianRateTimesVelocity => arm.jacobian_rate_times_velocity(q, qd)?.to_vec(),
-        Function::KineticEnergy => vec![arm.kinetic_energy(q, qd)?],
-        Function::PotentialEnergy => vec![arm.potential_energy(q)?],
-        Function::CentreOfMass => arm.centre_of_mass(q)?.to_vec(),
-        Function::CentreOfMassJacobian => arm.centre_of_mass_jacobian(q)?.concat(),
-        Function::Regressor => arm.regressor(q, qd, qdd)?.into_iter().flatten().flatten().collect(),
-        Function::InverseDynamicsDerivatives => {
-            let derivatives = arm.inverse_dynamics_derivatives(q, qd, qdd)?;
-            [derivatives.dq.concat(), derivatives.dqd.concat()].concat()
-        }
-        // the multipliers are the torques of the state, as in the interpreter
-        Function::TorqueGradient => {
-            let gradient = arm.torque_gradient(q, qd, qdd, tau)?;
-            [gradient.dq, gradient.dqd, gradient.dqdd].concat()
-        }
-        Function::ForwardDynamicsDerivatives => {
-            let derivatives = arm.forward_dynamics_derivatives(q, qd, tau)?;
-            [derivatives.dq, derivatives.dqd, derivatives.dtau].concat().concat()
-        }
-        Function::JacobianRate => arm.jacobian_rate(q, qd)?.concat(),
-        Function::JacobianDerivatives => arm.jacobian_derivatives(q)?.concat().concat(),
-        Function::InverseMassMatrixTimesTorques => arm.inverse_mass_matrix_times_torques(q, tau)?,
-        Function::InverseDynamicsDerivativesWithWrenches => {
-            let by = arm.inverse_dynamics_derivatives_with_wrenches(q, qd, qdd, &[*wrench])?;
-            [by.dq.concat(), by.dqd.concat()].concat()
-        }
-        Function::ForwardDynamicsDerivativesWithWrenches => {
-            let by = arm.forward_dynamics_derivatives_with_wrenches(q, qd, tau, &[*wrench])?;
-            [by.dq, by.dqd, by.dtau].concat().concat()
-        }
-        Function::ForwardDynamicsDerivativesWithPayload => {
-            let by = arm.forward_dynamics_derivatives_with_payload(q, qd, tau, &Payload::from_array(*payload))?;
-            [by.dq, by.dqd, by.dtau].concat().concat()
-        }
-        Function::EulerStep => {
-            let next = arm.euler_step(q, qd, tau, 1.0)?;
-            [next.q, next.qd].concat()
-        }
-        Function::EulerStepDerivatives => {
-            let by = arm.euler_step_derivatives(q, qd, tau, 1.0)?;
-            [by.q, by.qd].into_iter().flat_map(|by| [by.dq, by.dqd, by.dtau].concat().concat()).collect()
-        }
-        Function::FloatingEulerStep => {
-            let next = arm.floating_euler_step(q, qd, tau, &state.pose(), &state.twist(), 1.0, &[*wrench])?;
-            let twist = [next.twist.linear, next.twist.angular].concat();
-            pose(&next.pose).chain(twist).chain(next.q).chain(next.qd).collect()
-        }
-        Function::FloatingEulerStepDerivatives => {
-            let (pose, twist) = (state.pose(), state.twist());
-            let by = arm.floating_euler_step_derivatives(q, qd, tau, &pose, &twist, 1.0, &[*wrench])?;
-            [by.q_dq, by.q_dv, by.q_dtau, by.v_dq, by.v_dv, by.v_dtau].concat().concat()
-        }
-        Function::TorqueHessian => {
-            let hessian = arm.torque_hessian(q, qd, qdd, tau)?;
-            [hessian.dq_dq, hessian.dq_dqd, hessian.dqd_dqd, hessian.dq_dqdd].concat().concat()
-        }
-        Function::JointWrenches => {
-            let wrenches = arm.joint_wrenches(q, qd, qdd)?;
-            wrenches.iter().flat_map(|Wrench { force, moment }| [*force, *moment]).flatten().collect()
-        }
-        Function::MomentumAndRate => arm.momentum_and_rate(q, qd, tau)?.concat(),
-        Function::InverseDynamicsOnMovingBase => arm.inverse_dynamics_on_moving_base(q, qd, qdd, base)?,
-        Function::WrenchTorques => arm.wrench_torques(q, wrench)?,
-        Function::InverseDynamicsWithWrenches => arm.inverse_dynamics_with_wrenches(q, qd, qdd, &[*wrench])?,
-        Function::ForwardDynamicsWithWrenches => arm.forward_dynamics_with_wrenches(q, qd, tau, &[*wrench])?,
-        Function::InverseDynamicsOfFloatingBase => {
-            let (on_base, torques) = arm.inverse_dynamics_of_floating_base(q, qd, qdd, base, &[*wrench])?;
-            [on_base.force.to_vec(), on_base.moment.to_vec(), torques].concat()
-        }
-        Function::FloatingMassMatrix => arm.floating_mass_matrix(q)?.concat(),
-        Function::CentroidalMomentumMatrix => arm.centroidal_momentum_matrix(q)?.concat(),
-        Function::CentroidalBias => arm.centroidal_bias(q, qd, &base.omega)?.to_vec(),
-        Function::FloatingRegressor => {
-            arm.floating_regressor(q, qd, qdd, base)?.into_iter().flatten().flatten().collect()
-        }
-        Function::FloatingInverseDynamicsDerivatives => {
-            let found = arm.floating_inverse_dynamics_derivatives(q, qd, qdd, base, &[*wrench])?;
-            [found.dq.concat(), found.dqd.concat(), found.domega.concat()].concat()
-        }
-        Function::FloatingKineticEnergy => vec![arm.floating_kinetic_energy(q, qd, &state.twist())?],
-        Function::FloatingPotentialEnergy => vec![arm.floating_potential_energy(q, &state.pose())?],
-        Function::CentroidalMomentum => arm.centroidal_momentum(q, qd, &state.twist())?.to_vec(),
-        Function::ForwardDynamicsInContact => {
-            let (base, qdd, wrenches) =
-                arm.forward_dynamics_in_contact(q, qd, tau, &base.omega, &base_rotation(base))?;
-            let wrenches = wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment]).flatten();
-            base.linear.into_iter().chain(base.angular).chain(qdd).chain(wrenches).collect()
-        }
-        Function::TipJacobians => arm.tip_jacobians(q, &base_rotation(base))?.into_iter().flatten().flatten().collect(),
-        Function::TipAccelerations => {
-            arm.tip_accelerations(q, qd, &base.omega, &base_rotation(base))?.into_iter().flatten().collect()
-        }
-        Function::FloatingBias => arm.floating_bias(q, qd, &base.omega, &[*wrench])?,
-        Function::FloatingForwardDynamics => {
-            let (base, qdd) = arm.floating_forward_dynamics(q, qd, tau, &base.omega, &[*wrench])?;
-            [base.linear.to_vec(), base.angular.to_vec(), qdd].concat()
-        }
-        Function::ActuatorTorques => arm.actuator_torques(qd, qdd)?,
-        Function::GravityTorquesWithPayload => arm.gravity_torques_with_payload(q, &Payload::from_array(*payload))?,
-        Function::BiasTorquesWithPayload => arm.bias_torques_with_payload(q, qd, &Payload::from_array(*payload))?,
-        Function::MassMatrixWithPayload => arm.mass_matrix_with_payload(q, &Payload::from_array(*payload))?.concat(),
-        Function::ForwardDynamicsWithPayload => {
-            arm.forward_dynamics_with_payload(q, qd, tau, &Payload::from_array(*payload))?
-        }
-        Function::InverseDynamicsDerivativesWithPayload => {
-            let payload = Payload::from_array(*payload);
-            let derivatives = arm.inverse_dynamics_derivatives_with_payload(q, qd, qdd, &payload)?;
-            [derivatives.dq.concat(), derivatives.dqd.concat()].concat()
-        }
-        Function::MomentumAndRateWithPayload => {
-            arm.momentum_and_rate_with_payload(q, qd, tau, &Payload::from_array(*payload))?.concat()
-        }
-        other => unreachable!("{other} is of closed loops"),
-    })
-}
-
-fn pose(pose: &Pose<f64>) -> impl Iterator<Item = f64> + use<> {
-    let Pose { rotation, translation } = *pose;
-    rotation.into_iter().chain([translation]).flatten()
+    let (sin, cos): (Vec<f64>, Vec<f64>) = q.iter().map(|&q| Scalar::sin_cos(q)).unzip();
+    let inputs = Inputs {
+        q,
+        qd,
+        qdd,
+        tau,
+        sin: &sin,
+        cos: &cos,
+        passive: &[],
+        // as in the interpreter
+        multipliers: tau,
+        wrench,
+        wrenches: &[*wrench],
+        payload: &Payload::from_array(*payload),
+        base,
+        omega: &base.omega,
+        twist: &state.twist(),
+        pose: &state.pose(),
+        base_rotation: &base_rotation(base),
+        step: 1.0,
+    };
+    arm.evaluate(function, &inputs)
 }

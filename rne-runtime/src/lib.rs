@@ -41,6 +41,8 @@ mod dyn_arm;
 mod energy;
 #[cfg(all(feature = "arm", feature = "std"))]
 mod error;
+#[cfg(feature = "evaluate")]
+mod evaluate;
 #[cfg(feature = "arm")]
 mod floating_base;
 #[cfg(feature = "arm")]
@@ -156,6 +158,8 @@ pub use dual::Dual;
 pub use dyn_arm::{DynArm, DynTrace};
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use error::{LoadError, WrongJointCount, WrongLength};
+#[cfg(feature = "evaluate")]
+pub use evaluate::Inputs;
 #[cfg(feature = "std")]
 pub use floating_derivatives::DynFloatingTorqueDerivatives;
 pub use floating_derivatives::{FloatingInverseDynamicsDerivatives, FloatingTorqueDerivatives};

@@ -9,6 +9,7 @@ use rne::{BaseMotion, BaseTwist, DynArm, DynTorqueDerivatives, Payload, Pose, Sc
 use rne_codegen::plan::PlanSet;
 use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter, Program, Real};
 use rne_model::{Reader, Robot};
+use rne_runtime::Inputs;
 use rne_search::PlanFile;
 
 use crate::check::{ROOT, flat};
@@ -224,7 +225,7 @@ impl Arm {
         let (_, interpreter) = self.compiled(code, function);
         let numbers = interpreter.run(&arguments, |constant| Number(T::from_f64(constant)), sin_cos);
         let numbers: Vec<T> = numbers.expect("one per joint").into_iter().map(|Number(x)| x).collect();
-        assert_eq!(numbers.len(), function.layout(rne_codegen::Sizes::of(&self.robot)).len());
+        assert_eq!(numbers.len(), function.layout(rne_codegen::sizes_of(&self.robot)).len());
         numbers
     }
 
@@ -378,122 +379,27 @@ pub(crate) fn at_tips<T: Copy>(tips: usize, wrench: &Wrench<T>) -> Vec<Wrench<T>
 }
 
 /// What the runtime returns, as a row of numbers.
-#[allow(clippy::too_many_lines)] // an arm for each function
 pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Given<'_, T>) -> Vec<T> {
     let Given { q, qd, qdd, tau, ref wrench, ref payload, ref base, ref base_rotation, step } = *given;
-    let poses = |poses: Vec<Pose<T>>| -> Vec<T> {
-        poses.iter().flat_map(|pose| [flat(pose.rotation), pose.translation.to_vec()].concat()).collect()
+    let (sin, cos): (Vec<T>, Vec<T>) = q.iter().map(|&q| Scalar::sin_cos(q)).unzip();
+    let inputs = Inputs {
+        q,
+        qd,
+        qdd,
+        tau,
+        sin: &sin,
+        cos: &cos,
+        passive: &[],
+        multipliers: tau,
+        wrench,
+        wrenches: &at_tips(arm.tips().len(), wrench),
+        payload,
+        base,
+        omega: &base.omega,
+        twist: &given.twist(),
+        pose: &given.pose(),
+        base_rotation,
+        step,
     };
-    let wrenches = at_tips(arm.tips().len(), wrench);
-    let numbers = match function {
-        Function::InverseDynamicsWithWrenches => arm.inverse_dynamics_with_wrenches(q, qd, qdd, &wrenches),
-        Function::ForwardDynamicsWithWrenches => arm.forward_dynamics_with_wrenches(q, qd, tau, &wrenches),
-        Function::InverseDynamics => arm.inverse_dynamics(q, qd, qdd),
-        Function::InverseDynamicsWithWrench => arm.inverse_dynamics_with_wrench(q, qd, qdd, wrench),
-        Function::InverseDynamicsWithPayload => arm.inverse_dynamics_with_payload(q, qd, qdd, payload),
-        Function::InverseDynamicsFromSinCos => {
-            let (sin, cos): (Vec<T>, Vec<T>) = q.iter().map(|&q| Scalar::sin_cos(q)).unzip();
-            arm.inverse_dynamics_from_sin_cos(&sin, &cos, q, qd, qdd)
-        }
-        Function::GravityTorques => arm.gravity_torques(q),
-        Function::BiasTorques => arm.bias_torques(q, qd),
-        Function::MassMatrix => arm.mass_matrix(q).map(flat),
-        Function::CoriolisMatrix => arm.coriolis_matrix(q, qd).map(flat),
-        Function::ForwardDynamics => arm.forward_dynamics(q, qd, tau),
-        Function::ForwardKinematics => arm.forward_kinematics(q).map(|pose| poses(vec![pose])),
-        Function::LinkPoses => arm.link_poses(q).map(poses),
-        Function::Jacobian => arm.jacobian(q).map(flat),
-        Function::JacobianRateTimesVelocity => arm.jacobian_rate_times_velocity(q, qd).map(Vec::from),
-        Function::WrenchTorques => arm.wrench_torques(q, wrench),
-        Function::KineticEnergy => arm.kinetic_energy(q, qd).map(|energy| vec![energy]),
-        Function::PotentialEnergy => arm.potential_energy(q).map(|energy| vec![energy]),
-        Function::CentreOfMass => arm.centre_of_mass(q).map(Vec::from),
-        Function::CentreOfMassJacobian => arm.centre_of_mass_jacobian(q).map(flat),
-        Function::Regressor => {
-            arm.regressor(q, qd, qdd).map(|rows| rows.iter().flat_map(|row| row.iter().flatten()).copied().collect())
-        }
-        Function::InverseDynamicsDerivatives => {
-            arm.inverse_dynamics_derivatives(q, qd, qdd).map(|by| flat([by.dq, by.dqd].concat()))
-        }
-        Function::TorqueGradient => arm.torque_gradient(q, qd, qdd, tau).map(|by| [by.dq, by.dqd, by.dqdd].concat()),
-        Function::ForwardDynamicsDerivatives => {
-            arm.forward_dynamics_derivatives(q, qd, tau).map(|by| flat([by.dq, by.dqd, by.dtau].concat()))
-        }
-        Function::JacobianRate => arm.jacobian_rate(q, qd).map(flat),
-        Function::JacobianDerivatives => arm.jacobian_derivatives(q).map(|rows| flat(rows.concat())),
-        Function::InverseMassMatrixTimesTorques => arm.inverse_mass_matrix_times_torques(q, tau),
-        Function::InverseDynamicsDerivativesWithWrenches => arm
-            .inverse_dynamics_derivatives_with_wrenches(q, qd, qdd, &wrenches)
-            .map(|by| flat([by.dq, by.dqd].concat())),
-        Function::ForwardDynamicsDerivativesWithWrenches => arm
-            .forward_dynamics_derivatives_with_wrenches(q, qd, tau, &wrenches)
-            .map(|by| flat([by.dq, by.dqd, by.dtau].concat())),
-        Function::ForwardDynamicsDerivativesWithPayload => arm
-            .forward_dynamics_derivatives_with_payload(q, qd, tau, payload)
-            .map(|by| flat([by.dq, by.dqd, by.dtau].concat())),
-        Function::TorqueHessian => {
-            arm.torque_hessian(q, qd, qdd, tau).map(|by| flat([by.dq_dq, by.dq_dqd, by.dqd_dqd, by.dq_dqdd].concat()))
-        }
-        Function::EulerStep => arm.euler_step(q, qd, tau, step).map(|next| [next.q, next.qd].concat()),
-        Function::EulerStepDerivatives => arm
-            .euler_step_derivatives(q, qd, tau, step)
-            .map(|by| [by.q, by.qd].into_iter().flat_map(|by| flat([by.dq, by.dqd, by.dtau].concat())).collect()),
-        Function::FloatingEulerStep => {
-            arm.floating_euler_step(q, qd, tau, &given.pose(), &given.twist(), step, &wrenches).map(|next| {
-                let base = [flat(next.pose.rotation), next.pose.translation.into()].concat();
-                [base, next.twist.linear.into(), next.twist.angular.into(), next.q, next.qd].concat()
-            })
-        }
-        Function::FloatingEulerStepDerivatives => arm
-            .floating_euler_step_derivatives(q, qd, tau, &given.pose(), &given.twist(), step, &wrenches)
-            .map(|by| flat([by.q_dq, by.q_dv, by.q_dtau, by.v_dq, by.v_dv, by.v_dtau].concat())),
-        Function::JointWrenches => arm
-            .joint_wrenches(q, qd, qdd)
-            .map(|wrenches| wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment].concat()).collect()),
-        Function::MomentumAndRate => arm.momentum_and_rate(q, qd, tau).map(|numbers| numbers.concat()),
-        Function::InverseDynamicsOnMovingBase => arm.inverse_dynamics_on_moving_base(q, qd, qdd, base),
-        Function::InverseDynamicsOfFloatingBase => arm
-            .inverse_dynamics_of_floating_base(q, qd, qdd, base, &wrenches)
-            .map(|(wrench, tau)| [wrench.force.to_vec(), wrench.moment.to_vec(), tau].concat()),
-        Function::FloatingMassMatrix => arm.floating_mass_matrix(q).map(flat),
-        Function::FloatingBias => arm.floating_bias(q, qd, &base.omega, &wrenches),
-        Function::FloatingForwardDynamics => arm
-            .floating_forward_dynamics(q, qd, tau, &base.omega, &wrenches)
-            .map(|(base, qdd)| [base.linear.to_vec(), base.angular.to_vec(), qdd].concat()),
-        Function::CentroidalMomentumMatrix => arm.centroidal_momentum_matrix(q).map(flat),
-        Function::CentroidalBias => arm.centroidal_bias(q, qd, &base.omega).map(|rate| rate.to_vec()),
-        Function::FloatingRegressor => {
-            arm.floating_regressor(q, qd, qdd, base).map(|rows| rows.into_iter().flatten().flatten().collect())
-        }
-        Function::FloatingKineticEnergy => {
-            arm.floating_kinetic_energy(q, qd, &given.twist()).map(|energy| vec![energy])
-        }
-        Function::FloatingPotentialEnergy => arm.floating_potential_energy(q, &given.pose()).map(|energy| vec![energy]),
-        Function::CentroidalMomentum => arm.centroidal_momentum(q, qd, &given.twist()).map(Vec::from),
-        Function::TipJacobians => arm.tip_jacobians(q, base_rotation).map(|tips| flat(tips.concat())),
-        Function::TipAccelerations => arm.tip_accelerations(q, qd, &base.omega, base_rotation).map(flat),
-        Function::ForwardDynamicsInContact => {
-            arm.forward_dynamics_in_contact(q, qd, tau, &base.omega, base_rotation).map(|(base, qdd, wrenches)| {
-                let wrenches = wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment]).flatten();
-                base.linear.into_iter().chain(base.angular).chain(qdd).chain(wrenches).collect()
-            })
-        }
-        Function::FloatingInverseDynamicsDerivatives => arm
-            .floating_inverse_dynamics_derivatives(q, qd, qdd, base, &wrenches)
-            .map(|by| [flat(by.dq), flat(by.dqd), flat(by.domega)].concat()),
-        Function::ActuatorTorques => arm.actuator_torques(qd, qdd),
-        Function::InverseMassMatrix => arm.inverse_mass_matrix(q).map(flat),
-        Function::GravityTorquesWithPayload => arm.gravity_torques_with_payload(q, payload),
-        Function::BiasTorquesWithPayload => arm.bias_torques_with_payload(q, qd, payload),
-        Function::MassMatrixWithPayload => arm.mass_matrix_with_payload(q, payload).map(flat),
-        Function::ForwardDynamicsWithPayload => arm.forward_dynamics_with_payload(q, qd, tau, payload),
-        Function::InverseDynamicsDerivativesWithPayload => {
-            arm.inverse_dynamics_derivatives_with_payload(q, qd, qdd, payload).map(|by| flat([by.dq, by.dqd].concat()))
-        }
-        Function::MomentumAndRateWithPayload => {
-            arm.momentum_and_rate_with_payload(q, qd, tau, payload).map(|numbers| numbers.concat())
-        }
-        other => unreachable!("{other} is of closed loops, which have tests of their own"),
-    };
-    numbers.expect("one per joint")
+    arm.evaluate(function, &inputs).expect("one per joint")
 }

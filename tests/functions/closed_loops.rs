@@ -4,9 +4,10 @@
 use std::collections::BTreeMap;
 
 use rne::compiled::{Arguments as Numbers, Array, CompiledArm, Destination};
-use rne::{BaseAcceleration, BaseMotion, ClosedLoops, DynArm, FloatingClosedLoops, VectorUnit, Wrench};
+use rne::{BaseMotion, BaseTwist, ClosedLoops, DynArm, FloatingClosedLoops, Payload, Pose, VectorUnit, Wrench};
 use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter};
 use rne_model::{Reader, Robot};
+use rne_runtime::Inputs;
 use serde_json::Value;
 
 use crate::check::ROOT;
@@ -71,7 +72,7 @@ impl State<'_> {
     /// The functions with values in the file.
     fn functions(&self, robot: &Robot) -> impl Iterator<Item = Function> + use<> {
         let floats = self.base().is_some();
-        Function::of_robot(robot).filter(move |function| floats || !function.is_of_floating_base())
+        rne_codegen::functions_of(robot).filter(move |function| floats || !function.is_of_floating_base())
     }
 
     fn numbers(&self, key: &str) -> Vec<f64> {
@@ -133,26 +134,26 @@ fn of_runtime(arm: &DynArm, function: Function, state: &State<'_>) -> Vec<f64> {
     let wrench = Wrench { force: [wrench[0], wrench[1], wrench[2]], moment: [wrench[3], wrench[4], wrench[5]] };
     let [q, passive, qd, qdd, tau] = [&q, &passive, &qd, &qdd, &tau].map(Vec::as_slice);
     let base = state.base().unwrap_or_else(|| BaseMotion::fixed([0.0; 3]));
-    let numbers = match function {
-        Function::ClosureStep => arm.closure_step(q, passive).map(|(passive, residual)| [passive, residual].concat()),
-        Function::LoopMap => arm.loop_map(q, passive).map(|rows| rows.concat()),
-        Function::LoopMapRateTimesVelocity => arm.loop_map_rate_times_velocity(q, passive, qd),
-        Function::InverseDynamicsOfLoops => arm.inverse_dynamics_of_loops(q, passive, qd, qdd),
-        Function::InverseDynamicsOfLoopsWithWrenches => {
-            arm.inverse_dynamics_of_loops_with_wrenches(q, passive, qd, qdd, &[wrench])
-        }
-        Function::MassMatrixOfLoops => arm.mass_matrix_of_loops(q, passive).map(|rows| rows.concat()),
-        Function::ForwardDynamicsOfLoops => arm.forward_dynamics_of_loops(q, passive, qd, tau),
-        Function::InverseDynamicsOfFloatingLoops => arm
-            .inverse_dynamics_of_floating_loops(q, passive, qd, qdd, &base, &[wrench])
-            .map(|(Wrench { force, moment }, tau)| [&force[..], &moment, &tau].concat()),
-        Function::FloatingMassMatrixOfLoops => arm.floating_mass_matrix_of_loops(q, passive).map(|rows| rows.concat()),
-        Function::FloatingForwardDynamicsOfLoops => arm
-            .floating_forward_dynamics_of_loops(q, passive, qd, tau, &base.omega, &[wrench])
-            .map(|(BaseAcceleration { linear, angular }, qdd)| [&linear[..], &angular, &qdd].concat()),
-        other => unreachable!("{other} is of no closed loop"),
+    let inputs = Inputs {
+        q,
+        qd,
+        qdd,
+        tau,
+        sin: &[],
+        cos: &[],
+        passive,
+        multipliers: &[],
+        wrench: &wrench,
+        wrenches: &[wrench],
+        payload: &Payload::default(),
+        base: &base,
+        omega: &base.omega,
+        twist: &BaseTwist::default(),
+        pose: &Pose::identity(),
+        base_rotation: &Pose::identity().rotation,
+        step: 0.0,
     };
-    numbers.expect("one number per joint")
+    arm.evaluate(function, &inputs).expect("one number per joint")
 }
 
 /// The largest error of each function.

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use fastrand::Rng;
 use rne::{BaseMotion, ForwardDynamics, MassMatrix, Wrench};
-use rne_codegen::{Form, Function, Program, Sizes};
+use rne_codegen::{Form, Function, Program};
 use rne_emit::Precision;
 use rne_model::Robot;
 
@@ -176,7 +176,8 @@ fn c_code_is_the_runtime(name: &str, arms: &[(Form, &Arm)], compiler: &Compiler)
     let mut found = words.into_iter().map(f64::from_bits);
     for (state, (form, arm)) in states.iter().flat_map(|state| arms.iter().map(move |arm| (state, arm))) {
         for function in Function::OF_TREES {
-            let found: Vec<f64> = found.by_ref().take(function.layout(Sizes::of(&arm.robot)).len()).collect();
+            let found: Vec<f64> =
+                found.by_ref().take(function.layout(rne_codegen::sizes_of(&arm.robot)).len()).collect();
             let maker = Maker::Code(*form);
             at(state, |given| equality::error(arm, maker, function, given, &found, tolerance(*form)));
         }

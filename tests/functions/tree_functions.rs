@@ -4,6 +4,7 @@
 use fastrand::Rng;
 use nalgebra::{DMatrix, DVector, Matrix3, UnitQuaternion, Vector3};
 use rne::{BaseMotion, Payload, Wrench};
+use rne_codegen::OfRobot as _;
 use rne_codegen::{Argument, Function};
 use rne_model::{Contact, FixedFrame, Robot};
 use tree_oracle::{self as oracle, Motion};

@@ -2,14 +2,10 @@
 
 use std::str::FromStr;
 
-use rne::{
-    BaseAcceleration, BaseMotion, BaseTwist, DynAccelerationDerivatives, DynArm, DynFloatingNextState,
-    DynFloatingStepDerivatives, DynFloatingTorqueDerivatives, DynNextState, DynNextStateDerivatives,
-    DynStepDerivatives, DynTorqueDerivatives, DynTorqueGradient, DynTorqueHessian, Payload, Pose, Quaternion, Wrench,
-    WrongLength,
-};
+use rne::{BaseMotion, BaseTwist, DynArm, Payload, Pose, Quaternion, Wrench, WrongLength};
 use rne_codegen::{Argument, Capability, Function};
 use rne_model::{Robot, nearest_name};
+use rne_runtime::Inputs;
 
 use crate::outcome::Failure;
 use crate::values::closure;
@@ -186,142 +182,29 @@ impl State {
 
     /// The function's result, in the order of its layout.
     pub(crate) fn numbers(&self, arm: &DynArm) -> Result<Vec<f64>, WrongLength> {
-        let Self { q, passive, qd, qdd, tau, multipliers, wrenches, base, pose, base_rotation, .. } = self;
-        let twist = &self.twist();
-        let (wrench, payload) = (&self.wrench.unwrap_or_else(Wrench::zero), &self.payload.unwrap_or_default());
+        let Self { q, passive, qd, qdd, tau, multipliers, wrenches, base, pose, base_rotation, step, .. } = self;
         let (sin, cos): (Vec<f64>, Vec<f64>) = q.iter().map(|&q| rne::Scalar::sin_cos(q)).unzip();
-        let mut numbers = Vec::new();
-        macro_rules! argument {
-            (sin) => {
-                &sin
-            };
-            (cos) => {
-                &cos
-            };
-            (q) => {
-                q
-            };
-            (passive) => {
-                passive
-            };
-            (qd) => {
-                qd
-            };
-            (qdd) => {
-                qdd
-            };
-            (tau) => {
-                tau
-            };
-            (step) => {
-                self.step
-            };
-            (multipliers) => {
-                multipliers
-            };
-            (wrench) => {
-                wrench
-            };
-            (wrenches) => {
-                wrenches
-            };
-            (payload) => {
-                payload
-            };
-            (base) => {
-                base
-            };
-            (omega) => {
-                &base.omega
-            };
-            (twist) => {
-                twist
-            };
-            (pose) => {
-                pose
-            };
-            (base_rotation) => {
-                base_rotation
-            };
-        }
-        macro_rules! calls {
-            ($(
-                $variant:ident = $name:ident($($argument:ident: $kind:ident),*)
-                    -> $returned:ident $(at $of_frame:ident)?:
-                    $summary:literal $(, $details:literal)?;
-            )*) => {
-                match self.function {
-                    $(Function::$variant => arm.$name($(argument!($argument)),*)?.tell(&mut numbers),)*
-                }
-            };
-        }
-        rne_codegen::functions!(calls);
-        Ok(numbers)
+        let inputs = Inputs {
+            q,
+            qd,
+            qdd,
+            tau,
+            sin: &sin,
+            cos: &cos,
+            passive,
+            multipliers,
+            wrench: &self.wrench.unwrap_or_default(),
+            wrenches,
+            payload: &self.payload.unwrap_or_default(),
+            base,
+            omega: &base.omega,
+            twist: &self.twist(),
+            pose,
+            base_rotation,
+            step: *step,
+        };
+        arm.evaluate(self.function, &inputs)
     }
-}
-
-/// Results of the runtime as numbers, in the order of a function's layout.
-trait Told {
-    fn tell(&self, numbers: &mut Vec<f64>);
-}
-
-impl Told for f64 {
-    fn tell(&self, numbers: &mut Vec<f64>) {
-        numbers.push(*self);
-    }
-}
-
-impl<E: Told> Told for Vec<E> {
-    fn tell(&self, numbers: &mut Vec<f64>) {
-        for element in self {
-            element.tell(numbers);
-        }
-    }
-}
-
-/// The wrench on a floating base and the torques, or its acceleration and those of the joints; a step of closed loops.
-impl<E: Told> Told for (E, Vec<f64>) {
-    fn tell(&self, numbers: &mut Vec<f64>) {
-        self.0.tell(numbers);
-        self.1.tell(numbers);
-    }
-}
-
-/// Accelerations of a floating base and of joints, and the wrenches of contacts.
-impl<E: Told, F: Told> Told for (E, Vec<f64>, Vec<F>) {
-    fn tell(&self, numbers: &mut Vec<f64>) {
-        self.0.tell(numbers);
-        self.1.tell(numbers);
-        self.2.tell(numbers);
-    }
-}
-
-impl<E: Told, const N: usize> Told for [E; N] {
-    fn tell(&self, numbers: &mut Vec<f64>) {
-        for element in self {
-            element.tell(numbers);
-        }
-    }
-}
-
-macro_rules! records {
-    ($($record:ident { $($field:ident),* })*) => {$(
-        impl Told for $record<f64> {
-            fn tell(&self, numbers: &mut Vec<f64>) {
-                $(self.$field.tell(numbers);)*
-            }
-        }
-    )*};
-}
-
-records! {
-    Pose { rotation, translation } Wrench { force, moment } DynTorqueDerivatives { dq, dqd }
-    BaseAcceleration { linear, angular } DynFloatingTorqueDerivatives { dq, dqd, domega }
-    DynTorqueGradient { dq, dqd, dqdd } DynAccelerationDerivatives { dq, dqd, dtau }
-    DynTorqueHessian { dq_dq, dq_dqd, dqd_dqd, dq_dqdd } DynNextState { q, qd }
-    DynStepDerivatives { dq, dqd, dtau } DynNextStateDerivatives { q, qd } BaseTwist { linear, angular }
-    DynFloatingNextState { pose, twist, q, qd }
-    DynFloatingStepDerivatives { q_dq, q_dv, q_dtau, v_dq, v_dv, v_dtau }
 }
 
 /// Positions of the dependent joints of closed loops: those that close the loops, from the given ones. A Newton step
