@@ -43,6 +43,7 @@ const DOCUMENTS: &[&str] = &[
     "docs/embedded.md",
     "docs/firmware.md",
     "docs/fleet.md",
+    "docs/function-names.md",
     "docs/functions.md",
     "docs/identify.md",
     "docs/inspection.md",
