@@ -2,7 +2,7 @@
 
 use proc_macro2::{Group, Ident, Literal, Span, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident, quote};
-use rne_codegen::{Argument, Capability, Form, Function, Length, Operations, Program, Record, Shape, Sizes};
+use rne_codegen::{Argument, Capability, Form, Function, Length, Operations, Program, Shape, Sizes};
 use rne_model::Robot;
 use syn::{DeriveInput, GenericParam, Path, Visibility};
 
@@ -382,66 +382,27 @@ impl Target<'_> {
         match shape {
             Shape::Number => quote!(T),
             Shape::Array(length, of) => {
-                let of = self.returned(of, dof);
-                match length {
-                    Length::Joints => quote!([#of; #dof]),
-                    Length::Velocities => {
-                        let velocities = velocities(dof);
-                        quote!([#of; #velocities])
-                    }
-                    Length::Bodies => {
-                        let bodies = bodies(dof);
-                        quote!([#of; #bodies])
-                    }
-                    Length::Tips => {
-                        let tips = &self.tips;
-                        quote!([#of; #tips])
-                    }
-                    Length::Passive => {
-                        let passive = &self.passive;
-                        quote!([#of; #passive])
-                    }
-                    Length::Equations => {
-                        let equations = &self.equations;
-                        quote!([#of; #equations])
-                    }
-                    Length::Fixed(length) => {
-                        let length = Literal::usize_unsuffixed(*length);
-                        quote!([#of; #length])
-                    }
-                }
+                let (of, length) = (self.returned(of, dof), self.size(*length, dof));
+                quote!([#of; #length])
             }
             Shape::Record(record, _) => {
                 let name = format_ident!("{}", record.name());
-                match record {
-                    Record::AccelerationsAndWrenches => {
-                        let tips = &self.tips;
-                        quote!(#krate::#name<#dof, #tips, T>)
-                    }
-                    Record::ClosureStep => {
-                        let (passive, equations) = (&self.passive, &self.equations);
-                        quote!(#krate::#name<#passive, #equations, T>)
-                    }
-                    Record::FloatingTorqueDerivatives | Record::FloatingStepDerivatives => {
-                        let velocities = velocities(dof);
-                        quote!(#krate::#name<#dof, #velocities, T>)
-                    }
-                    Record::TorqueDerivatives
-                    | Record::TorqueGradient
-                    | Record::AccelerationDerivatives
-                    | Record::TorqueHessian
-                    | Record::NextState
-                    | Record::StepDerivatives
-                    | Record::NextStateDerivatives
-                    | Record::MomentumAndRate
-                    | Record::FloatingTorques
-                    | Record::FloatingNextState
-                    | Record::FloatingAccelerations => quote!(#krate::#name<#dof, T>),
-                    Record::Pose | Record::Wrench | Record::BaseAcceleration | Record::BaseTwist => {
-                        quote!(#krate::#name<T>)
-                    }
-                }
+                let sizes = record.sizes().iter().map(|length| self.size(*length, dof));
+                quote!(#krate::#name<#(#sizes,)* T>)
             }
+        }
+    }
+
+    /// A length as it stands in a type.
+    fn size(&self, length: Length, dof: &TokenStream) -> TokenStream {
+        match length {
+            Length::Joints => dof.clone(),
+            Length::Velocities => velocities(dof),
+            Length::Bodies => bodies(dof),
+            Length::Tips => self.tips.clone(),
+            Length::Passive => self.passive.clone(),
+            Length::Equations => self.equations.clone(),
+            Length::Fixed(length) => Literal::usize_unsuffixed(length).into_token_stream(),
         }
     }
 

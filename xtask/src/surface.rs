@@ -67,8 +67,8 @@ impl Surface {
             names.insert(format!("c {}", found.as_str()));
         }
         if self.update {
-            let text: String = names.iter().map(|name| format!("{name}\n")).collect();
-            machine::write(LIST, &text)?;
+            let lines: Vec<&str> = names.iter().map(String::as_str).collect();
+            machine::write(LIST, &format!("{}\n", lines.join("\n")))?;
             println!("{} names in {LIST}", names.len());
             return Ok(Verdict::Holds);
         }
@@ -112,7 +112,8 @@ fn keys(path: &str, value: &Value, names: &mut BTreeSet<String>) {
         Value::Object(members) => {
             for (key, value) in members {
                 // the names of a program are those of its robot
-                let path = if path.ends_with(".names") { format!("{path}.*") } else { format!("{path}.{key}") };
+                let key = if path.rsplit('.').next() == Some("names") { "*" } else { key };
+                let path = format!("{path}.{key}");
                 names.insert(path.clone());
                 keys(&path, value, names);
             }

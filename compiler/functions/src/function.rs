@@ -1,4 +1,4 @@
-//! What the table says of a function.
+//! Properties of a function, by the table.
 
 use crate::table::{SIGNATURES, TABLE};
 use crate::{Answer, Argument, Capability, Entry, Function, Shape};
@@ -195,8 +195,6 @@ impl Function {
     pub const fn divides(self) -> Option<&'static str> {
         self.entry().divides
     }
-
-    #[cfg(feature = "alloc")]
 
     /// The shape of its result for a robot.
     #[cfg(feature = "alloc")]

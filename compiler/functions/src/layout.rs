@@ -1,5 +1,7 @@
 //! The shape of what a function returns.
 
+use crate::Record;
+
 #[cfg(feature = "alloc")]
 use alloc::{boxed::Box, vec::Vec};
 
@@ -245,100 +247,6 @@ pub enum Layout {
     Array(usize, Box<Self>),
     /// Named parts.
     Record(Record, Vec<Self>),
-}
-
-/// The records that functions return.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Record {
-    /// Rotation and translation.
-    Pose,
-    /// Force and moment.
-    Wrench,
-    /// By q and by q̇.
-    TorqueDerivatives,
-    /// M q̇ and its rate.
-    MomentumAndRate,
-    /// The wrench on the base, and the torques.
-    FloatingTorques,
-    /// Linear and angular.
-    BaseAcceleration,
-    /// The acceleration of the base, and those of the joints.
-    FloatingAccelerations,
-    /// These, and the wrench of each contact.
-    AccelerationsAndWrenches,
-    /// By q, by q̇ and by the angular velocity of the base.
-    FloatingTorqueDerivatives,
-    /// Positions of the dependent joints, and what is left of the equations before the step.
-    ClosureStep,
-    /// By q, by q̇ and by q̈.
-    TorqueGradient,
-    /// By q, by q̇ and by τ.
-    AccelerationDerivatives,
-    /// By q twice, by q and q̇, by q̇ twice, by q and q̈.
-    TorqueHessian,
-    /// Positions and velocities after a step.
-    NextState,
-    /// By q, by q̇ and by τ.
-    StepDerivatives,
-    /// Derivatives of the positions and of the velocities after a step.
-    NextStateDerivatives,
-    /// Linear and angular.
-    BaseTwist,
-    /// Pose and velocity of the base, positions and velocities of the joints after a step.
-    FloatingNextState,
-    /// Derivatives of the positions and of the velocities after a step, each by positions, by velocities and by τ.
-    FloatingStepDerivatives,
-}
-
-impl Record {
-    /// The name of its type.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Pose => "Pose",
-            Self::Wrench => "Wrench",
-            Self::TorqueDerivatives => "TorqueDerivatives",
-            Self::MomentumAndRate => "MomentumAndRate",
-            Self::FloatingTorques => "FloatingTorques",
-            Self::BaseAcceleration => "BaseAcceleration",
-            Self::FloatingAccelerations => "FloatingAccelerations",
-            Self::AccelerationsAndWrenches => "AccelerationsAndWrenches",
-            Self::FloatingTorqueDerivatives => "FloatingTorqueDerivatives",
-            Self::ClosureStep => "ClosureStep",
-            Self::TorqueGradient => "TorqueGradient",
-            Self::AccelerationDerivatives => "AccelerationDerivatives",
-            Self::TorqueHessian => "TorqueHessian",
-            Self::NextState => "NextState",
-            Self::StepDerivatives => "StepDerivatives",
-            Self::NextStateDerivatives => "NextStateDerivatives",
-            Self::BaseTwist => "BaseTwist",
-            Self::FloatingNextState => "FloatingNextState",
-            Self::FloatingStepDerivatives => "FloatingStepDerivatives",
-        }
-    }
-
-    /// The names of its parts.
-    #[must_use]
-    pub const fn fields(self) -> &'static [&'static str] {
-        match self {
-            Self::Pose => &["rotation", "translation"],
-            Self::Wrench => &["force", "moment"],
-            Self::TorqueDerivatives => &["dq", "dqd"],
-            Self::MomentumAndRate => &["momentum", "rate"],
-            Self::FloatingTorques => &["wrench", "tau"],
-            Self::BaseAcceleration | Self::BaseTwist => &["linear", "angular"],
-            Self::FloatingAccelerations => &["base", "qdd"],
-            Self::AccelerationsAndWrenches => &["accelerations", "wrenches_on_robot"],
-            Self::FloatingTorqueDerivatives => &["dq", "dqd", "domega"],
-            Self::ClosureStep => &["passive", "residual"],
-            Self::TorqueGradient => &["dq", "dqd", "dqdd"],
-            Self::AccelerationDerivatives | Self::StepDerivatives => &["dq", "dqd", "dtau"],
-            Self::NextState | Self::NextStateDerivatives => &["q", "qd"],
-            Self::TorqueHessian => &["dq_dq", "dq_dqd", "dqd_dqd", "dq_dqdd"],
-            Self::FloatingNextState => &["pose", "twist", "q", "qd"],
-            Self::FloatingStepDerivatives => &["q_dq", "q_dv", "q_dtau", "v_dq", "v_dv", "v_dtau"],
-        }
-    }
 }
 
 #[cfg(feature = "alloc")]

@@ -16,6 +16,7 @@ mod floating_base;
 mod function;
 mod layout;
 mod named;
+mod record;
 mod table;
 
 pub use answer::{Answer, AnswerTable, Labels, MatrixUnit};
@@ -24,5 +25,6 @@ pub use capability::Capability;
 pub use entry::Entry;
 #[cfg(feature = "alloc")]
 pub use layout::Layout;
-pub use layout::{Length, Record, Returned, Shape, Sizes};
+pub use layout::{Length, Returned, Shape, Sizes};
+pub use record::Record;
 pub use table::Function;

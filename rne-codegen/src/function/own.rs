@@ -83,297 +83,271 @@ const ORIGIN_VELOCITY: Own = Own::meaning(
 /// The heading and meaning that a quantity has in the listing of a function alone.
 #[must_use]
 pub fn own(function: Function, quantity: Quantity) -> Option<&'static Own> {
-    all(function).iter().find(|own| own.quantity == quantity)
+    let (_, all) = OWN.iter().find(|(functions, _)| functions.contains(&function))?;
+    all.iter().find(|own| own.quantity == quantity)
 }
 
-fn all(function: Function) -> &'static [Own] {
-    match function {
-        Function::MomentumAndRate => const { &[MOMENTUM, MOMENTUM_RATE] },
-        Function::InverseDynamicsWithPayload
-        | Function::BiasTorquesWithPayload
-        | Function::MassMatrixWithPayload
-        | Function::ForwardDynamicsWithPayload
-        | Function::InverseDynamicsDerivativesWithPayload
-        | Function::ForwardDynamicsDerivativesWithPayload => const { &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA] },
-        Function::CoriolisMatrix => {
-            const {
-                &[Own::of(Quantity::CoriolisElement, |joint| {
-                    format!("row {joint} of the Coriolis matrix: ½ ∂(bias torques)/∂q̇")
-                })]
-            }
-        }
-        Function::Jacobian => {
-            const {
-                &[
-                    Own::of(Quantity::JacobianLinear, |joint| format!("column {joint} of the Jacobian")),
-                    Own::of(Quantity::JacobianAngular, |joint| format!("column {joint} of the Jacobian")),
-                ]
-            }
-        }
-        Function::JacobianRateTimesVelocity => {
-            const { &[Own::of(Quantity::TipAcceleration, |_| "acceleration of the tip where q̈ = 0".to_owned())] }
-        }
-        Function::KineticEnergy => {
-            const { &[Own::of(Quantity::KineticEnergy, |_| "kinetic energy: ½ Σ (m ċ · ċ + ω · I ω)".to_owned())] }
-        }
-        Function::PotentialEnergy => {
-            const {
-                &[
-                    Own::of(Quantity::ComPosition, |joint| format!("centre of mass of link {joint}, in frame 0")),
-                    Own::of(Quantity::PotentialEnergy, |_| "potential energy: -Σ m g · c".to_owned()),
-                ]
-            }
-        }
-        Function::CentreOfMass => {
-            const {
-                &[Own::meaning(
-                    Quantity::ComPosition,
-                    "centre of mass of link i, from the base in world axes; i = 0: of the arm, in the world",
-                    |joint| match joint {
-                        0 => "centre of mass of the arm: Σ m c / Σ m, in the world".to_owned(),
-                        _ => format!("centre of mass of link {joint}, from the base in world axes"),
-                    },
-                )]
-            }
-        }
-        Function::CentreOfMassJacobian => {
-            const {
-                &[
-                    Own::meaning(
-                        Quantity::ComPosition,
-                        "centre of mass of link i, from the base in world axes",
-                        |joint| format!("centre of mass of link {joint}, from the base in world axes"),
-                    ),
-                    Own::meaning(
-                        Quantity::JacobianLinear,
-                        "velocity of the centre of mass per rate of joint i, world axes",
-                        |joint| format!("column {joint} of the Jacobian: what is behind joint {joint} moves with it"),
-                    ),
-                ]
-            }
-        }
-        Function::Regressor => {
-            const { &[Own::of(Quantity::RegressorElement, |joint| format!("torque {joint} per parameter"))] }
-        }
-        Function::ActuatorTorques => {
-            const {
-                &[Own::of(Quantity::ActuatorTorque, |joint| {
-                    format!("motor {joint}: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇)")
-                })]
-            }
-        }
-        Function::InverseMassMatrix => {
-            const {
-                &[
-                    Own::meaning(Quantity::RateDot, "element (i, j) of M⁻¹", |joint| {
-                        format!("row {joint} of the inverse: L⁻ᵀ D⁻¹ L⁻¹")
-                    }),
-                    Own::of(Quantity::LowerFactor, |_| "M = L D Lᵀ".to_owned()),
-                    Own::of(Quantity::ScaledFactor, |_| "M = L D Lᵀ".to_owned()),
-                    Own::of(Quantity::Pivot, |_| "M = L D Lᵀ".to_owned()),
-                    Own::of(Quantity::InversePivot, |_| "M = L D Lᵀ".to_owned()),
-                    Own::meaning(Quantity::Reduced, "element (i, j) of L⁻¹", |joint| format!("row {joint} of L⁻¹")),
-                    Own::meaning(Quantity::Scaled, "element (i, j) of D⁻¹ L⁻¹", |joint| {
-                        format!("row {joint} of D⁻¹ L⁻¹")
-                    }),
-                ]
-            }
-        }
-        Function::GravityTorquesWithPayload => const { &[PAYLOAD_MASS, PAYLOAD_COM] },
-        Function::MomentumAndRateWithPayload => {
-            const { &[MOMENTUM, MOMENTUM_RATE, PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA] }
-        }
-        Function::TorqueGradient => const { &[Own::of(Quantity::WeightedTorque, |_| "derivatives of λᵀτ".to_owned())] },
-        Function::JacobianRate => {
-            const {
-                &[
-                    Own::of(Quantity::JacobianLinearRate, |joint| {
-                        format!("column {joint} of the rate of the Jacobian")
-                    }),
-                    Own::of(Quantity::JacobianAngularRate, |joint| {
-                        format!("column {joint} of the rate of the Jacobian")
-                    }),
-                ]
-            }
-        }
-        Function::TorqueHessian => {
-            const {
-                &[
-                    Own::of(Quantity::WeightedByPosition, |joint| format!("second derivatives of λᵀτ, by q{joint}")),
-                    Own::of(Quantity::WeightedByRate, |joint| format!("second derivatives of λᵀτ, by q̇{joint}")),
-                ]
-            }
-        }
-        Function::EulerStep | Function::EulerStepDerivatives => NEXT,
-        Function::InverseDynamicsOfFloatingBase
-        | Function::FloatingMassMatrix
-        | Function::FloatingBias
-        | Function::FloatingInverseDynamicsDerivatives
-        | Function::InverseDynamicsOfFloatingLoops
-        | Function::FloatingMassMatrixOfLoops => &ON_BASE,
-        Function::FloatingForwardDynamics | Function::FloatingForwardDynamicsOfLoops => {
-            const {
-                &[
-                    Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
-                    Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
-                ]
-            }
-        }
-        Function::CentroidalMomentumMatrix | Function::CentroidalBias => &CENTROIDAL,
-        Function::FloatingRegressor => {
-            const {
-                &[
-                    Own::of(Quantity::BaseForce, |_| "force on the base per parameter".to_owned()),
-                    Own::of(Quantity::BaseMoment, |_| "moment on the base per parameter".to_owned()),
-                    Own::of(Quantity::RegressorElement, |joint| format!("torque {joint} per parameter")),
-                ]
-            }
-        }
-        Function::FloatingKineticEnergy => {
-            const {
-                &[
-                    Own::of(Quantity::KineticEnergy, |_| "kinetic energy: ½ Σ (m ċ · ċ + ω · I ω)".to_owned()),
-                    ORIGIN_VELOCITY,
-                ]
-            }
-        }
-        Function::FloatingPotentialEnergy => {
-            const {
-                &[
-                    Own::meaning(
-                        Quantity::FrameRotation,
-                        "rotation from frame i to frame 0; of the base to the world for i = 0",
-                        |joint| format!("frame {joint}, in frame 0"),
-                    ),
-                    Own::meaning(
-                        Quantity::FrameOrigin,
-                        "origin of that frame, in frame 0; of the base in the world for i = 0",
-                        |joint| format!("frame {joint}, in frame 0"),
-                    ),
-                    Own::of(Quantity::ComPosition, |joint| format!("centre of mass of link {joint}, in frame 0")),
-                    Own::of(Quantity::PotentialEnergy, |_| "potential energy: -Σ m g · c".to_owned()),
-                ]
-            }
-        }
-        Function::CentroidalMomentum => {
-            const {
-                &[
-                    ORIGIN_VELOCITY,
-                    Own::meaning(
-                        Quantity::LinearMomentum,
-                        "linear momentum of link i and all behind it; of the robot, in axes of frame 0, for i = 0",
-                        |joint| match joint {
-                            0 => "momentum of the robot".to_owned(),
-                            _ => format!("momentum of link {joint} and all behind it"),
-                        },
-                    ),
-                    Own::meaning(
-                        Quantity::CentroidalMoment,
-                        "angular momentum about the centre of mass of the robot, in axes of frame 0",
-                        |_| "angular momentum about the centre of mass".to_owned(),
-                    ),
-                ]
-            }
-        }
-        Function::TipJacobians => {
-            const {
-                &[
-                    Own::meaning(Quantity::FrameOrigin, FROM_BASE, |joint| {
-                        format!("origin of frame {joint}, from frame 0")
-                    }),
-                    Own::meaning(Quantity::JacobianLinear, "velocity of a tip per velocity, world axes", |joint| {
-                        format!("columns {joint} of the Jacobians; 0: of the base")
-                    }),
-                    Own::meaning(
-                        Quantity::JacobianAngular,
-                        "angular velocity of a tip per velocity, world axes",
-                        |joint| format!("columns {joint} of the Jacobians; 0: of the base"),
-                    ),
-                ]
-            }
-        }
-        Function::TipAccelerations => {
-            const {
-                &[
-                    Own::meaning(
-                        Quantity::JointPointAcceleration,
-                        "acceleration of joint i, in the axes of its parent",
-                        |joint| format!("acceleration of joint {joint}, in the axes of its parent"),
-                    ),
-                    Own::of(Quantity::TipAcceleration, |_| {
-                        "accelerations of the tips where nothing else accelerates".to_owned()
-                    }),
-                ]
-            }
-        }
-        Function::ForwardDynamicsInContact => {
-            const {
-                &[
-                    Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
-                    Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
-                    Own::of(Quantity::ContactForce, |tip| format!("force of the contact at tip {tip}")),
-                    Own::of(Quantity::ContactMoment, |tip| format!("moment of the contact at tip {tip}")),
-                ]
-            }
-        }
-        Function::FloatingEulerStep => {
-            const {
-                &[
-                    Own::names(
-                        Quantity::FrameRotation,
-                        "rotation of the base: its columns are the axes of frame 0 in the world",
-                    ),
-                    Own::names(Quantity::FrameOrigin, "origin of frame 0 in the world"),
-                    Own::names(Quantity::OriginVelocity, "velocity of the origin of frame 0, in its axes"),
-                    Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
-                    Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
-                    Own::of(Quantity::NextOmega, |_| "angular velocity of the base after the step".to_owned()),
-                    Own::of(Quantity::NextOrigin, |_| "origin of frame 0 after the step".to_owned()),
-                    Own::of(Quantity::NextRotation, |_| "rotation of the base after the step".to_owned()),
-                    Own::of(Quantity::NextVelocity, |_| "velocity of the origin of frame 0 after the step".to_owned()),
-                    Own::of(Quantity::NextRate, |joint| format!("velocity of joint {joint} after the step")),
-                    Own::of(Quantity::NextPosition, |joint| format!("position of joint {joint} after the step")),
-                ]
-            }
-        }
-        Function::FloatingEulerStepDerivatives => {
-            const {
-                &[
-                    Own::names(
-                        Quantity::FrameRotation,
-                        "rotation of the base: its columns are the axes of frame 0 in the world",
-                    ),
-                    Own::names(Quantity::FrameOrigin, "origin of frame 0 in the world"),
-                    Own::names(Quantity::OriginVelocity, "velocity of the origin of frame 0, in its axes"),
-                    Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
-                    Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
-                    Own::of(Quantity::NextOmega, |_| "angular velocity of the base after the step".to_owned()),
-                    Own::meaning(
-                        Quantity::NextOrigin,
-                        "shift of the base after the step, along the axes that frame 0 has then",
-                        |_| "shift of the base after the step".to_owned(),
-                    ),
-                    Own::of(Quantity::NextTurn, |_| "turn of the base after the step".to_owned()),
-                    Own::of(Quantity::NextVelocity, |_| "velocity of the origin of frame 0 after the step".to_owned()),
-                    Own::of(Quantity::NextRate, |joint| format!("velocity of joint {joint} after the step")),
-                    Own::of(Quantity::NextPosition, |joint| format!("position of joint {joint} after the step")),
-                ]
-            }
-        }
-        Function::ClosureStep => {
-            const {
-                &[
-                    Own::of(Quantity::ClosedPosition, |joint| format!("position of joint {joint} after the step")),
-                    Own::of(Quantity::Residual, |_| "what is left of the equations of the loops".to_owned()),
-                ]
-            }
-        }
-        Function::LoopMap => {
-            const { &[Own::of(Quantity::LoopMap, |joint| format!("velocity of joint {joint} per velocity of the others"))] }
-        }
-        Function::LoopMapRateTimesVelocity => {
-            const { &[Own::of(Quantity::LoopBias, |joint| format!("acceleration of joint {joint} where q̈ is 0"))] }
-        }
-        _ => &[],
-    }
-}
+/// The quantities of each function that has some.
+static OWN: &[(&[Function], &[Own])] = &[
+    (&[Function::MomentumAndRate], &[MOMENTUM, MOMENTUM_RATE]),
+    (
+        &[
+            Function::InverseDynamicsWithPayload,
+            Function::BiasTorquesWithPayload,
+            Function::MassMatrixWithPayload,
+            Function::ForwardDynamicsWithPayload,
+            Function::InverseDynamicsDerivativesWithPayload,
+            Function::ForwardDynamicsDerivativesWithPayload,
+        ],
+        &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
+    ),
+    (
+        &[Function::CoriolisMatrix],
+        &[Own::of(Quantity::CoriolisElement, |joint| {
+            format!("row {joint} of the Coriolis matrix: ½ ∂(bias torques)/∂q̇")
+        })],
+    ),
+    (
+        &[Function::Jacobian],
+        &[
+            Own::of(Quantity::JacobianLinear, |joint| format!("column {joint} of the Jacobian")),
+            Own::of(Quantity::JacobianAngular, |joint| format!("column {joint} of the Jacobian")),
+        ],
+    ),
+    (
+        &[Function::JacobianRateTimesVelocity],
+        &[Own::of(Quantity::TipAcceleration, |_| "acceleration of the tip where q̈ = 0".to_owned())],
+    ),
+    (
+        &[Function::KineticEnergy],
+        &[Own::of(Quantity::KineticEnergy, |_| "kinetic energy: ½ Σ (m ċ · ċ + ω · I ω)".to_owned())],
+    ),
+    (
+        &[Function::PotentialEnergy],
+        &[
+            Own::of(Quantity::ComPosition, |joint| format!("centre of mass of link {joint}, in frame 0")),
+            Own::of(Quantity::PotentialEnergy, |_| "potential energy: -Σ m g · c".to_owned()),
+        ],
+    ),
+    (
+        &[Function::CentreOfMass],
+        &[Own::meaning(
+            Quantity::ComPosition,
+            "centre of mass of link i, from the base in world axes; i = 0: of the arm, in the world",
+            |joint| match joint {
+                0 => "centre of mass of the arm: Σ m c / Σ m, in the world".to_owned(),
+                _ => format!("centre of mass of link {joint}, from the base in world axes"),
+            },
+        )],
+    ),
+    (
+        &[Function::CentreOfMassJacobian],
+        &[
+            Own::meaning(Quantity::ComPosition, "centre of mass of link i, from the base in world axes", |joint| {
+                format!("centre of mass of link {joint}, from the base in world axes")
+            }),
+            Own::meaning(
+                Quantity::JacobianLinear,
+                "velocity of the centre of mass per rate of joint i, world axes",
+                |joint| format!("column {joint} of the Jacobian: what is behind joint {joint} moves with it"),
+            ),
+        ],
+    ),
+    (&[Function::Regressor], &[Own::of(Quantity::RegressorElement, |joint| format!("torque {joint} per parameter"))]),
+    (
+        &[Function::ActuatorTorques],
+        &[Own::of(Quantity::ActuatorTorque, |joint| format!("motor {joint}: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇)"))],
+    ),
+    (
+        &[Function::InverseMassMatrix],
+        &[
+            Own::meaning(Quantity::RateDot, "element (i, j) of M⁻¹", |joint| {
+                format!("row {joint} of the inverse: L⁻ᵀ D⁻¹ L⁻¹")
+            }),
+            Own::of(Quantity::LowerFactor, |_| "M = L D Lᵀ".to_owned()),
+            Own::of(Quantity::ScaledFactor, |_| "M = L D Lᵀ".to_owned()),
+            Own::of(Quantity::Pivot, |_| "M = L D Lᵀ".to_owned()),
+            Own::of(Quantity::InversePivot, |_| "M = L D Lᵀ".to_owned()),
+            Own::meaning(Quantity::Reduced, "element (i, j) of L⁻¹", |joint| format!("row {joint} of L⁻¹")),
+            Own::meaning(Quantity::Scaled, "element (i, j) of D⁻¹ L⁻¹", |joint| {
+                format!("row {joint} of D⁻¹ L⁻¹")
+            }),
+        ],
+    ),
+    (&[Function::GravityTorquesWithPayload], &[PAYLOAD_MASS, PAYLOAD_COM]),
+    (&[Function::MomentumAndRateWithPayload], &[MOMENTUM, MOMENTUM_RATE, PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA]),
+    (&[Function::TorqueGradient], &[Own::of(Quantity::WeightedTorque, |_| "derivatives of λᵀτ".to_owned())]),
+    (
+        &[Function::JacobianRate],
+        &[
+            Own::of(Quantity::JacobianLinearRate, |joint| format!("column {joint} of the rate of the Jacobian")),
+            Own::of(Quantity::JacobianAngularRate, |joint| format!("column {joint} of the rate of the Jacobian")),
+        ],
+    ),
+    (
+        &[Function::TorqueHessian],
+        &[
+            Own::of(Quantity::WeightedByPosition, |joint| format!("second derivatives of λᵀτ, by q{joint}")),
+            Own::of(Quantity::WeightedByRate, |joint| format!("second derivatives of λᵀτ, by q̇{joint}")),
+        ],
+    ),
+    (&[Function::EulerStep, Function::EulerStepDerivatives], NEXT),
+    (
+        &[
+            Function::InverseDynamicsOfFloatingBase,
+            Function::FloatingMassMatrix,
+            Function::FloatingBias,
+            Function::FloatingInverseDynamicsDerivatives,
+            Function::InverseDynamicsOfFloatingLoops,
+            Function::FloatingMassMatrixOfLoops,
+        ],
+        &ON_BASE,
+    ),
+    (
+        &[Function::FloatingForwardDynamics, Function::FloatingForwardDynamicsOfLoops],
+        &[
+            Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
+            Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
+        ],
+    ),
+    (&[Function::CentroidalMomentumMatrix, Function::CentroidalBias], &CENTROIDAL),
+    (
+        &[Function::FloatingRegressor],
+        &[
+            Own::of(Quantity::BaseForce, |_| "force on the base per parameter".to_owned()),
+            Own::of(Quantity::BaseMoment, |_| "moment on the base per parameter".to_owned()),
+            Own::of(Quantity::RegressorElement, |joint| format!("torque {joint} per parameter")),
+        ],
+    ),
+    (
+        &[Function::FloatingKineticEnergy],
+        &[Own::of(Quantity::KineticEnergy, |_| "kinetic energy: ½ Σ (m ċ · ċ + ω · I ω)".to_owned()), ORIGIN_VELOCITY],
+    ),
+    (
+        &[Function::FloatingPotentialEnergy],
+        &[
+            Own::meaning(
+                Quantity::FrameRotation,
+                "rotation from frame i to frame 0; of the base to the world for i = 0",
+                |joint| format!("frame {joint}, in frame 0"),
+            ),
+            Own::meaning(
+                Quantity::FrameOrigin,
+                "origin of that frame, in frame 0; of the base in the world for i = 0",
+                |joint| format!("frame {joint}, in frame 0"),
+            ),
+            Own::of(Quantity::ComPosition, |joint| format!("centre of mass of link {joint}, in frame 0")),
+            Own::of(Quantity::PotentialEnergy, |_| "potential energy: -Σ m g · c".to_owned()),
+        ],
+    ),
+    (
+        &[Function::CentroidalMomentum],
+        &[
+            ORIGIN_VELOCITY,
+            Own::meaning(
+                Quantity::LinearMomentum,
+                "linear momentum of link i and all behind it; of the robot, in axes of frame 0, for i = 0",
+                |joint| match joint {
+                    0 => "momentum of the robot".to_owned(),
+                    _ => format!("momentum of link {joint} and all behind it"),
+                },
+            ),
+            Own::meaning(
+                Quantity::CentroidalMoment,
+                "angular momentum about the centre of mass of the robot, in axes of frame 0",
+                |_| "angular momentum about the centre of mass".to_owned(),
+            ),
+        ],
+    ),
+    (
+        &[Function::TipJacobians],
+        &[
+            Own::meaning(Quantity::FrameOrigin, FROM_BASE, |joint| format!("origin of frame {joint}, from frame 0")),
+            Own::meaning(Quantity::JacobianLinear, "velocity of a tip per velocity, world axes", |joint| {
+                format!("columns {joint} of the Jacobians; 0: of the base")
+            }),
+            Own::meaning(Quantity::JacobianAngular, "angular velocity of a tip per velocity, world axes", |joint| {
+                format!("columns {joint} of the Jacobians; 0: of the base")
+            }),
+        ],
+    ),
+    (
+        &[Function::TipAccelerations],
+        &[
+            Own::meaning(
+                Quantity::JointPointAcceleration,
+                "acceleration of joint i, in the axes of its parent",
+                |joint| format!("acceleration of joint {joint}, in the axes of its parent"),
+            ),
+            Own::of(Quantity::TipAcceleration, |_| {
+                "accelerations of the tips where nothing else accelerates".to_owned()
+            }),
+        ],
+    ),
+    (
+        &[Function::ForwardDynamicsInContact],
+        &[
+            Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
+            Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
+            Own::of(Quantity::ContactForce, |tip| format!("force of the contact at tip {tip}")),
+            Own::of(Quantity::ContactMoment, |tip| format!("moment of the contact at tip {tip}")),
+        ],
+    ),
+    (
+        &[Function::FloatingEulerStep],
+        &[
+            Own::names(
+                Quantity::FrameRotation,
+                "rotation of the base: its columns are the axes of frame 0 in the world",
+            ),
+            Own::names(Quantity::FrameOrigin, "origin of frame 0 in the world"),
+            Own::names(Quantity::OriginVelocity, "velocity of the origin of frame 0, in its axes"),
+            Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
+            Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
+            Own::of(Quantity::NextOmega, |_| "angular velocity of the base after the step".to_owned()),
+            Own::of(Quantity::NextOrigin, |_| "origin of frame 0 after the step".to_owned()),
+            Own::of(Quantity::NextRotation, |_| "rotation of the base after the step".to_owned()),
+            Own::of(Quantity::NextVelocity, |_| "velocity of the origin of frame 0 after the step".to_owned()),
+            Own::of(Quantity::NextRate, |joint| format!("velocity of joint {joint} after the step")),
+            Own::of(Quantity::NextPosition, |joint| format!("position of joint {joint} after the step")),
+        ],
+    ),
+    (
+        &[Function::FloatingEulerStepDerivatives],
+        &[
+            Own::names(
+                Quantity::FrameRotation,
+                "rotation of the base: its columns are the axes of frame 0 in the world",
+            ),
+            Own::names(Quantity::FrameOrigin, "origin of frame 0 in the world"),
+            Own::names(Quantity::OriginVelocity, "velocity of the origin of frame 0, in its axes"),
+            Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
+            Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
+            Own::of(Quantity::NextOmega, |_| "angular velocity of the base after the step".to_owned()),
+            Own::meaning(
+                Quantity::NextOrigin,
+                "shift of the base after the step, along the axes that frame 0 has then",
+                |_| "shift of the base after the step".to_owned(),
+            ),
+            Own::of(Quantity::NextTurn, |_| "turn of the base after the step".to_owned()),
+            Own::of(Quantity::NextVelocity, |_| "velocity of the origin of frame 0 after the step".to_owned()),
+            Own::of(Quantity::NextRate, |joint| format!("velocity of joint {joint} after the step")),
+            Own::of(Quantity::NextPosition, |joint| format!("position of joint {joint} after the step")),
+        ],
+    ),
+    (
+        &[Function::ClosureStep],
+        &[
+            Own::of(Quantity::ClosedPosition, |joint| format!("position of joint {joint} after the step")),
+            Own::of(Quantity::Residual, |_| "what is left of the equations of the loops".to_owned()),
+        ],
+    ),
+    (
+        &[Function::LoopMap],
+        &[Own::of(Quantity::LoopMap, |joint| format!("velocity of joint {joint} per velocity of the others"))],
+    ),
+    (
+        &[Function::LoopMapRateTimesVelocity],
+        &[Own::of(Quantity::LoopBias, |joint| format!("acceleration of joint {joint} where q̈ is 0"))],
+    ),
+];

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use rne_codegen::{Argument, Function, Name, Program, Quantity, Record};
+use rne_codegen::{Argument, Function, Name, Program, Quantity};
 use rne_model::{Joint, JointIdentifier};
 
 use super::signature::{fields, head, parameters_type, record_type, records};
@@ -39,7 +39,7 @@ pub(super) fn header(file: &File) -> Result<String, ConstantTooLarge> {
     text.push_str(&limits(file, &upper));
     text.push_str(&parameters(file, &upper)?);
     for (record, parts) in records(file) {
-        let (about, name) = (comment("///", about(record)), record_type(file, record));
+        let (about, name) = (comment("///", record.about()), record_type(file, record));
         let _ = writeln!(text, "\n{about}typedef struct {{");
         for field in fields(file, record, &parts) {
             let _ = writeln!(text, "    {field};");
@@ -222,60 +222,6 @@ fn limits(file: &File, upper: &str) -> String {
         text.push_str(&initialiser(&format!("{upper}_{name}"), &numbers));
     }
     text
-}
-
-const fn about(record: Record) -> &'static str {
-    match record {
-        Record::Pose => {
-            "Rows of the rotation from the axes of a frame to those of the world, and the frame's origin there, m."
-        }
-        Record::Wrench => "Force, N, and moment, N m.",
-        Record::FloatingTorques => {
-            "Force and moment that must act on the base beside gravity, about the origin of frame 0, and the torques."
-        }
-        Record::BaseAcceleration => {
-            "Acceleration of the origin of frame 0 less gravity, m/s², and angular acceleration, rad/s², in its axes."
-        }
-        Record::AccelerationsAndWrenches => "Accelerations, and what contacts exert on the robot at each tip.",
-        Record::FloatingAccelerations => "Acceleration of the base, and accelerations of the joints.",
-        Record::MomentumAndRate => "Momenta of the joints, M q̇, and their rates without external torques.",
-        Record::FloatingTorqueDerivatives => {
-            "Force and moment on the base and torques, by positions, velocities and angular velocity of the base; axes \
-             of frame 0."
-        }
-        Record::ClosureStep => {
-            "Positions of the dependent joints after a Newton step, and what is left of the equations before it."
-        }
-        Record::TorqueGradient => {
-            "Derivatives of the torques, each times its multiplier and added up: by positions, by velocities and by \
-             accelerations."
-        }
-        Record::AccelerationDerivatives => {
-            "Accelerations by positions, by velocities and by torques; row i is acceleration i, column j is joint j."
-        }
-        Record::TorqueHessian => {
-            "Second derivatives of the torques, each times its multiplier and added up: element (i, j) is by joint i \
-             and by joint j."
-        }
-        Record::NextState => "Positions, rad or m, and velocities, rad/s or m/s, after a step.",
-        Record::StepDerivatives => {
-            "Positions or velocities after a step by positions, by velocities and by torques; row i is position or \
-             velocity i, column j is joint j."
-        }
-        Record::NextStateDerivatives => "Derivatives of the positions and of the velocities after a step.",
-        Record::BaseTwist => {
-            "Velocity of the origin of frame 0, m/s, and angular velocity of the base, rad/s, in its axes."
-        }
-        Record::FloatingNextState => {
-            "Pose and velocity of the base, positions, rad or m, and velocities, rad/s or m/s, of the joints after a \
-             step."
-        }
-        Record::FloatingStepDerivatives => {
-            "Positions and velocities after a step by positions, by velocities and by torques; six rows and columns of \
-             the base, in axes of frame 0, stand before those of the joints."
-        }
-        Record::TorqueDerivatives => "Torques by positions and by velocities; row i is torque i, column j is joint j.",
-    }
 }
 
 /// Conventions and table, and why the code can be trusted.

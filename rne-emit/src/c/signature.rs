@@ -98,28 +98,7 @@ pub(super) fn record_type(file: &File, record: Record) -> String {
 /// The name of a record's type, of a file with this prefix.
 #[must_use]
 pub fn record_name(prefix: &str, record: Record) -> String {
-    let name = match record {
-        Record::Pose => "pose",
-        Record::Wrench => "wrench",
-        Record::TorqueDerivatives => "torque_derivatives",
-        Record::MomentumAndRate => "momentum",
-        Record::FloatingTorques => "floating_torques",
-        Record::BaseAcceleration => "base_acceleration",
-        Record::FloatingAccelerations => "floating_accelerations",
-        Record::AccelerationsAndWrenches => "accelerations_and_wrenches",
-        Record::FloatingTorqueDerivatives => "floating_torque_derivatives",
-        Record::ClosureStep => "closure",
-        Record::TorqueGradient => "gradient",
-        Record::AccelerationDerivatives => "acceleration_derivatives",
-        Record::TorqueHessian => "hessian",
-        Record::NextState => "next_state",
-        Record::StepDerivatives => "step_derivatives",
-        Record::NextStateDerivatives => "next_state_derivatives",
-        Record::BaseTwist => "base_twist",
-        Record::FloatingNextState => "floating_next_state",
-        Record::FloatingStepDerivatives => "floating_step_derivatives",
-    };
-    format!("{prefix}_{name}")
+    format!("{prefix}_{}", record.c_name())
 }
 
 /// The type of the run-time parameters.
