@@ -191,8 +191,8 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         Definition { mechanism, coordinates: Joints(PhantomData), velocities: Known, tips: Known, contacts: &[] }
     }
 
-    /// This arm with its named tips, for the functions that take wrenches at tips and for those of a floating base; `NV`
-    /// is `DOF` + 6. A tip on a link that the arm does not have is on the base, and carries no load.
+    /// This arm with its named tips, for the functions that take wrenches at tips and for those of a floating base;
+    /// `NV` is `DOF` + 6. A tip on a link that the arm does not have is on the base, and carries no load.
     #[must_use]
     pub fn with_tips<const NV: usize, const TIPS: usize>(
         &self,

@@ -125,15 +125,15 @@ impl<T: Scalar> BaseMotion<T> {
 }
 
 impl<T: Scalar> Pose<T> {
-    /// From the first seven elements of Pinocchio's `q` with a free flyer: the position, then the quaternion x y z w, of
-    /// any length. It is the pose in the placement of the free flyer, which is the world in most models.
+    /// From the first seven elements of Pinocchio's `q` with a free flyer: the position, then the quaternion x y z w,
+    /// of any length. It is the pose in the placement of the free flyer, which is the world in most models.
     #[must_use]
     pub fn from_pinocchio(&[a, b, c, x, y, z, w]: &[T; 7]) -> Self {
         Self { rotation: Quaternion { w, x, y, z }.rotation_of_any_length(), translation: [a, b, c] }
     }
 
-    /// From the first seven elements of MuJoCo's `qpos` with a free joint: the position, then the quaternion w x y z, of
-    /// any length.
+    /// From the first seven elements of MuJoCo's `qpos` with a free joint: the position, then the quaternion w x y z,
+    /// of any length.
     #[must_use]
     pub fn from_mujoco(&[a, b, c, w, x, y, z]: &[T; 7]) -> Self {
         Self { rotation: Quaternion { w, x, y, z }.rotation_of_any_length(), translation: [a, b, c] }

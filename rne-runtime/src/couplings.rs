@@ -1,7 +1,7 @@
 //! Joints that follow others, of a robot with a number of joints known at run time.
 //!
-//! The order of the operations is part of the contract; generated code repeats it: terms in the order of the joints, one
-//! after the other.
+//! The order of the operations is part of the contract; generated code repeats it: terms in the order of the joints,
+//! one after the other.
 
 use rne_model::Robot;
 

@@ -1,5 +1,5 @@
-//! The functions of a robot by their definitions: the seven steps on numbers, and everything else derived from them. They
-//! stand once, for [`Arm`](crate::Arm) with its arrays and for `DynArm` with its lists.
+//! The functions of a robot by their definitions: the seven steps on numbers, and everything else derived from them.
+//! They stand once, for [`Arm`](crate::Arm) with its arrays and for `DynArm` with its lists.
 
 use rne_model::{Contact, FixedFrame};
 
@@ -44,7 +44,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         self.coordinates.of_joints(values)
     }
 
-    /// What `of_tip` makes of the frame of each tip.
+    /// The results of `of_tip` for the frame of each tip.
     pub(crate) fn each_tip<X: Clone>(self, of_tip: impl Fn(&FixedFrame<S>) -> X) -> P::Of<X> {
         self.tips.of(|tip| of_tip(&self.mechanism.frames[tip]))
     }
@@ -117,8 +117,8 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
     }
 }
 
-/// The functions of a trait, each with what it is: those of [`Arm`](crate::Arm), of an arm with its tips, and the methods
-/// of `DynArm`.
+/// The functions of a trait, each with what it is: those of [`Arm`](crate::Arm), of an arm with its tips, and the
+/// methods of `DynArm`.
 macro_rules! definitions {
     (@known [$($size:ident),*] $trait:path; $robot_type:ty; $(
         $(#[$doc:meta])* fn $name:ident($($arg:ident: $kind:ident),*) -> $shape:ident = |$robot:ident| $body:expr;

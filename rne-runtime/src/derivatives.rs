@@ -109,7 +109,8 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         (dq, dqd)
     }
 
-    /// Rows of the base and of the coordinates, by the positions, by the rates, and by the angular velocity of the base.
+    /// Rows of the base and of the coordinates, by the positions, by the rates, and by the angular velocity of the
+    /// base.
     #[allow(clippy::type_complexity)] // three matrices
     pub(crate) fn floating_derivatives<T: Scalar>(
         self,
@@ -148,7 +149,8 @@ definitions! { InverseDynamicsDerivatives<DOF> {
 } }
 
 definitions! { FloatingInverseDynamicsDerivatives<DOF, NV, TIPS> {
-    /// As [`FloatingInverseDynamicsDerivatives`], with one of `wrenches` for each of the [tips](Self::tips): 6 + n rows.
+    /// As [`FloatingInverseDynamicsDerivatives`], with one of `wrenches` for each of the [tips](Self::tips): 6 + n
+    /// rows.
     fn floating_inverse_dynamics_derivatives(q: joints, qd: joints, qdd: joints, base: motion, wrenches: wrenches)
         -> FloatingTorqueDerivatives =
         |robot| robot.floating_derivatives([q, qd, qdd], base, wrenches.all_still().as_ref());

@@ -4,13 +4,13 @@ use crate::shapes::records;
 use crate::{BaseTwist, Pose, Scalar, Wrench};
 
 records! {
-    /// The linear model of a step of a robot whose base nothing holds: rows belong to the next state, columns to the state
-    /// and to the torques.
+    /// The linear model of a step of a robot whose base nothing holds: rows belong to the next state, columns to the
+    /// state and to the torques.
     ///
-    /// `NV` = `DOF` + 6. A change of the positions has three components of the origin of frame 0 and three of its rotation
-    /// vector, both in axes of frame 0, and one for each joint: position + R δp and R exp(δθ). These are the axes before
-    /// the step for the columns, and after it for the rows. A change of the velocities has the linear and the angular
-    /// velocity of frame 0 in its axes, then the joints.
+    /// `NV` = `DOF` + 6. A change of the positions has three components of the origin of frame 0 and three of its
+    /// rotation vector, both in axes of frame 0, and one for each joint: position + R δp and R exp(δθ). These are the
+    /// axes before the step for the columns, and after it for the rows. A change of the velocities has the linear and
+    /// the angular velocity of frame 0 in its axes, then the joints.
     FloatingStepDerivatives<DOF, NV>, DynFloatingStepDerivatives {
         /// Derivatives of the next positions by the positions.
         q_dq: [[T; NV]; NV] | Vec<Vec<T>>,

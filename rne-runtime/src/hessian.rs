@@ -11,8 +11,8 @@ use crate::{
 };
 
 records! {
-    /// The second derivatives of λᵀτ for one state: of the torques, each times its multiplier and added up. Element (i, j)
-    /// is by the motion of joint i and by that of joint j.
+    /// The second derivatives of λᵀτ for one state: of the torques, each times its multiplier and added up. Element (i,
+    /// j) is by the motion of joint i and by that of joint j.
     ///
     /// Those by q̇ and q̈ and by q̈ twice are zero: the torques are linear in q̈, with M(q).
     ///

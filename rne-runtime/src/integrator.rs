@@ -21,8 +21,8 @@ records! {
 }
 
 records! {
-    /// The derivatives of `DOF` positions or velocities after a step. Row i belongs to position or velocity i of the next
-    /// state, column j to joint j.
+    /// The derivatives of `DOF` positions or velocities after a step. Row i belongs to position or velocity i of the
+    /// next state, column j to joint j.
     StepDerivatives<DOF>, DynStepDerivatives {
         /// By the positions, per rad or m.
         dq: [[T; DOF]; DOF] | Vec<Vec<T>>,
@@ -34,8 +34,8 @@ records! {
 }
 
 records! {
-    /// The linear model of a step: with the state x = (q, q̇), the changes δx' = A δx + B δτ. The rows of A are `dq` beside
-    /// `dqd`, those of B are `dtau`, of the positions above the velocities.
+    /// The linear model of a step: with the state x = (q, q̇), the changes δx' = A δx + B δτ. The rows of A are `dq`
+    /// beside `dqd`, those of B are `dtau`, of the positions above the velocities.
     NextStateDerivatives<DOF>, DynNextStateDerivatives {
         /// Derivatives of the next positions.
         q: StepDerivatives<DOF, T> | DynStepDerivatives<T>,

@@ -279,7 +279,8 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
 
 definitions! { Kinematics<DOF> {
     /// As [`Kinematics::forward_kinematics`]: the tip in the world.
-    fn forward_kinematics(q: joints) -> a_pose = |robot| robot.mechanism.forward_kinematics(robot.of_joints(q).as_ref());
+    fn forward_kinematics(q: joints) -> a_pose =
+        |robot| robot.mechanism.forward_kinematics(robot.of_joints(q).as_ref());
     /// As [`Kinematics::link_poses`]: the link frames in the world, base to tip. Links whose joints follow others have
     /// none; [`at_frame`](Self::at_frame) finds them.
     fn link_poses(q: joints) -> poses =

@@ -50,7 +50,8 @@ pub trait InverseDynamicsGradient<const DOF: usize> {
 records! {
     /// The derivatives of the accelerations for one state. Row i is acceleration i, column j is joint j.
     ///
-    /// Units: of an acceleration (rad/s², or m/s² for a prismatic joint) per rad or m, per rad/s or m/s, and per N m or N.
+    /// Units: of an acceleration (rad/s², or m/s² for a prismatic joint) per rad or m, per rad/s or m/s, and per N m or
+    /// N.
     AccelerationDerivatives<DOF>, DynAccelerationDerivatives {
         /// ∂q̈_i/∂q_j.
         dq: [[T; DOF]; DOF] | Vec<Vec<T>>,

@@ -87,7 +87,8 @@ definitions! { @counted
         (q, qd)
     };
     /// As [`RungeKuttaStepDerivatives::runge_kutta_step_derivatives`].
-    fn runge_kutta_step_derivatives(q: joints, qd: joints, tau: joints, step: number) -> NextStateDerivatives = |robot| {
+    fn runge_kutta_step_derivatives(q: joints, qd: joints, tau: joints, step: number)
+        -> NextStateDerivatives = |robot| {
         let accelerations =
             |q: &Vec<T>, qd: &Vec<T>| Ok::<_, Infallible>(robot.forward_dynamics([q, qd, tau], AtTip::Nothing));
         let derivatives = |q: &Vec<T>, qd: &Vec<T>| {

@@ -95,7 +95,9 @@ pub(crate) use every;
 macro_rules! records {
     ($(
         $(#[$doc:meta])*
-        $name:ident<$($size:ident),*>, $counted:ident { $($(#[$field_doc:meta])* $field:ident: $known:ty | $lists:ty,)* }
+        $name:ident<$($size:ident),*>, $counted:ident {
+            $($(#[$field_doc:meta])* $field:ident: $known:ty | $lists:ty,)*
+        }
     )*) => { $(
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, PartialEq)]

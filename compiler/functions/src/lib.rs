@@ -1,5 +1,5 @@
-//! The functions of a robot as data, below everything else of rne: their names, arguments, results, units and sentences.
-//! There is no formula here, and nothing of a robot but the numbers of its joints, tips and loops.
+//! The functions of a robot as data, below everything else of rne: their names, arguments, results, units and
+//! sentences. There is no formula here, and nothing of a robot but the numbers of its joints, tips and loops.
 
 #![no_std]
 

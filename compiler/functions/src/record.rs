@@ -71,8 +71,8 @@ records! {
     AccelerationDerivatives = "acceleration_derivatives" [Joints] { dq, dqd, dtau }:
         "Accelerations by positions, by velocities and by torques; row i is acceleration i, column j is joint j.";
     TorqueHessian = "hessian" [Joints] { dq_dq, dq_dqd, dqd_dqd, dq_dqdd }:
-        "Second derivatives of the torques, each times its multiplier and added up: element (i, j) is by joint i and by \
-         joint j.";
+        "Second derivatives of the torques, each times its multiplier and added up: element (i, j) is by joint i and \
+         by joint j.";
     NextState = "next_state" [Joints] { q, qd }: "Positions, rad or m, and velocities, rad/s or m/s, after a step.";
     StepDerivatives = "step_derivatives" [Joints] { dq, dqd, dtau }:
         "Positions or velocities after a step by positions, by velocities and by torques; row i is position or \

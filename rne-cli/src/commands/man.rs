@@ -22,7 +22,7 @@ pub(crate) struct Arguments {
     /// Print the page of this command [default: the page of rne]
     #[arg(value_name = "COMMAND", conflicts_with = "output")]
     command: Option<String>,
-    /// Write the pages of rne and of all its commands to this folder; it is made where there is none
+    /// Write the pages of rne and of all its commands to this folder, which is made if it is not there
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
 }

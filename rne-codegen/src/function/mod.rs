@@ -56,8 +56,8 @@ pub trait OfRobot: Sized {
     #[must_use]
     fn frame(self, robot: &Robot) -> Option<FrameId>;
 
-    /// The name of its code for a robot: its own, or at a frame `jacobian_of_camera`. A character of a joint's name that
-    /// is no letter, digit or `_` becomes `_`.
+    /// The name of its code for a robot: its own, or at a frame `jacobian_of_camera`. A character of a joint's name
+    /// that is no letter, digit or `_` becomes `_`.
     #[must_use]
     fn name_for(self, robot: &Robot) -> String;
 

@@ -1,4 +1,4 @@
-//! What the listing of a function says of the quantities that it has under headings of its own.
+//! Headings and meanings of the quantities that the listing of a function shows by themselves.
 
 use super::Function;
 use crate::quantity::Quantity;
