@@ -35,7 +35,7 @@ macro_rules! records {
                 match self { $(Self::$record => &[$(Length::$size),*]),* }
             }
 
-            /// What it is, with units and frames.
+            /// The sentence that says what it is, with units and frames.
             #[must_use]
             pub const fn about(self) -> &'static str {
                 match self { $(Self::$record => $about),* }
