@@ -8,73 +8,48 @@ use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PySlice, PyTuple};
 use rne::compiled::{Arguments, CompiledArm, Destination, EvaluationError, Function, Number};
-use rne_codegen::{Layout, Record};
+use rne_codegen::{Length, Record, Shape, Sizes};
 
 use crate::arrays::{Given, Held, are_single, memory, room, states, writable};
 use crate::errors::of_evaluation;
 
-/// The shape of a result for one state: what numpy users expect of it.
-fn shape(function: Function, arm: &CompiledArm) -> Vec<usize> {
-    fn of(layout: &Layout, shape: &mut Vec<usize>) {
-        match layout {
-            Layout::Number => {}
-            Layout::Array(length, of_each) => {
-                shape.push(*length);
-                of(of_each, shape);
-            }
-            // homogeneous matrices
-            Layout::Record(Record::Pose, _) => shape.extend([4, 4]),
-            // force, then moment
-            Layout::Record(Record::Wrench | Record::BaseAcceleration | Record::BaseTwist, _) => shape.push(6),
-            Layout::Record(
-                Record::TorqueDerivatives
-                | Record::MomentumAndRate
-                | Record::FloatingTorques
-                | Record::FloatingAccelerations
-                | Record::AccelerationsAndWrenches
-                | Record::FloatingTorqueDerivatives
-                | Record::TorqueGradient
-                | Record::AccelerationDerivatives
-                | Record::TorqueHessian
-                | Record::NextState
-                | Record::StepDerivatives
-                | Record::NextStateDerivatives
-                | Record::FloatingNextState
-                | Record::FloatingStepDerivatives
-                | Record::ClosureStep,
-                parts,
-            ) => {
-                shape.push(parts.len());
-                if let Some(part) = parts.first() {
-                    of(part, shape);
-                }
-            }
+/// The shape of a part of a result for one state, as numpy users expect it.
+fn shape_of(part: &Shape, sizes: Sizes) -> Vec<usize> {
+    const TRIPLE: Shape = Shape::Array(Length::Fixed(3), &Shape::Number);
+    match part {
+        Shape::Number => Vec::new(),
+        Shape::Array(length, of_each) => [vec![length.of(sizes)], shape_of(of_each, sizes)].concat(),
+        // homogeneous matrices
+        Shape::Record(Record::Pose, _) => vec![4, 4],
+        // force, then moment
+        Shape::Record(_, parts) if **parts == [TRIPLE; 2] => vec![6],
+        Shape::Record(_, parts) => {
+            [vec![parts.len()], parts.first().map_or(Vec::new(), |part| shape_of(part, sizes))].concat()
         }
     }
-    let mut found = Vec::new();
-    let layout = arm.layout(function);
-    if let Layout::Record(
-        Record::FloatingTorques
-        | Record::FloatingAccelerations
-        | Record::AccelerationsAndWrenches
-        | Record::FloatingTorqueDerivatives
-        | Record::FloatingNextState
-        | Record::FloatingStepDerivatives
-        | Record::ClosureStep,
-        _,
-    ) = layout
-    {
-        // parts of different lengths stand one behind the other
-        return vec![layout.len()];
+}
+
+/// The parts of a record, if they have different shapes: they stand one after the other.
+fn unlike(shape: &Shape) -> Option<&'static [Shape]> {
+    match *shape {
+        Shape::Record(record, parts) if record != Record::Pose => {
+            parts.iter().any(|part| *part != parts[0]).then_some(parts)
+        }
+        _ => None,
     }
-    of(&layout, &mut found);
-    if let [rows, bodies, parameters] = found[..]
-        && function.is_of_every_link()
-    {
+}
+
+/// The shape of a result for one state, as numpy users expect it.
+fn shape(function: Function, arm: &CompiledArm) -> Vec<usize> {
+    if unlike(function.shape()).is_some() {
+        return vec![arm.layout(function).len()];
+    }
+    let found = shape_of(function.shape(), rne_codegen::sizes_of(arm.robot()));
+    match found[..] {
         // a column per parameter: Y @ parameters are torques
-        found = vec![rows, bodies * parameters];
+        [rows, bodies, parameters] if function.is_of_every_link() => vec![rows, bodies * parameters],
+        _ => found,
     }
-    found
 }
 
 /// Computes a function: arrays of single precision give single precision, everything else double.
@@ -235,48 +210,37 @@ fn as_python<'py, T: Element + Number>(
     of_state: &[usize],
 ) -> PyResult<Bound<'py, PyAny>> {
     let (py, dof) = (result.py(), arm.dof());
-    let parts = |parts: &[(usize, &[usize])]| {
-        let mut from = 0;
-        let parts = parts.iter().map(|(skipped, shape)| {
-            let start = from + skipped;
-            from = start + shape.iter().product::<usize>();
+    let parts = |mut from: usize, shapes: &[Vec<usize>]| {
+        let parts = shapes.iter().map(|shape| {
+            let start = from;
+            from += shape.iter().product::<usize>();
             part(&result, many, start..from, shape)
         });
         Ok(PyTuple::new(py, parts.collect::<PyResult<Vec<_>>>()?)?.into_any())
     };
-    match arm.layout(function) {
-        Layout::Record(
-            Record::TorqueDerivatives
-            | Record::MomentumAndRate
-            | Record::TorqueGradient
-            | Record::AccelerationDerivatives
-            | Record::TorqueHessian
-            | Record::NextState,
-            parts,
-        ) => {
+    match *function.shape() {
+        Shape::Record(Record::NextStateDerivatives, _) => linear_model(&result, many, [dof, dof]),
+        Shape::Record(Record::FloatingStepDerivatives, _) => linear_model(&result, many, [6 + dof, dof]),
+        Shape::Record(Record::FloatingNextState, _) => {
+            let pose = rewritten(&result, many, &[4, 4], |numbers, matrix| homogeneous(numbers, matrix))?;
+            let others = parts(12, &[vec![6], vec![dof], vec![dof]])?;
+            PyTuple::new(py, [pose])?.into_any().add(others)
+        }
+        Shape::Record(record, all) if record != Record::Pose => {
+            if let Some(all) = unlike(function.shape()) {
+                // a record in the first place stands there by its parts
+                let (first, rest) = all.split_at(1);
+                let first = first.iter().flat_map(|part| unlike(part).unwrap_or(std::slice::from_ref(part)));
+                let sizes = rne_codegen::sizes_of(arm.robot());
+                let shapes: Vec<_> = first.chain(rest).map(|part| shape_of(part, sizes)).collect();
+                return parts(0, &shapes);
+            }
             let of = |index: usize| match many {
                 None => result.get_item(index),
                 Some(_) => result.get_item((PySlice::full(py), index)),
             };
-            let parts = (0..parts.len()).map(of).collect::<PyResult<Vec<_>>>()?;
+            let parts = (0..all.len()).map(of).collect::<PyResult<Vec<_>>>()?;
             Ok(PyTuple::new(py, parts)?.into_any())
-        }
-        Layout::Record(record @ (Record::FloatingTorques | Record::FloatingAccelerations | Record::ClosureStep), _) => {
-            let first = if record == Record::ClosureStep { arm.robot().closed.passive.len() } else { 6 };
-            parts(&[(0, &[first]), (0, &[of_state.iter().product::<usize>() - first])])
-        }
-        Layout::Record(Record::AccelerationsAndWrenches, _) => {
-            parts(&[(0, &[6]), (0, &[dof]), (0, &[arm.robot().tip_count(), 6])])
-        }
-        Layout::Record(Record::FloatingNextState, _) => {
-            let pose = rewritten(&result, many, &[4, 4], |numbers, matrix| homogeneous(numbers, matrix))?;
-            let others = parts(&[(12, &[6]), (0, &[dof]), (0, &[dof])])?;
-            PyTuple::new(py, [pose])?.into_any().add(others)
-        }
-        Layout::Record(Record::NextStateDerivatives, _) => linear_model(&result, many, [dof, dof]),
-        Layout::Record(Record::FloatingStepDerivatives, _) => linear_model(&result, many, [6 + dof, dof]),
-        Layout::Record(Record::FloatingTorqueDerivatives, _) => {
-            parts(&[(0, &[6 + dof, dof]), (0, &[6 + dof, dof]), (0, &[6 + dof, 3])])
         }
         _ => finished(result, many.is_none() && of_state.is_empty()),
     }

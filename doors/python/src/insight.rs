@@ -12,7 +12,7 @@ use rne_codegen::{Form, Order, Program, ordered_for_registers};
 use rne_diagnose::{Diagnosis, Observation};
 use rne_emit::{Additions, Precision, Prefix, Selection};
 
-use crate::arm::{Arm, Origin, function_named};
+use crate::arm::{Arm, Origin, function_named, name};
 use crate::arrays::refuse_masked;
 use crate::errors::of_evaluation;
 use crate::notebook;

@@ -263,8 +263,9 @@ impl<T: Element + Number> Rows<T> {
                 let accelerations = |q: &Vec<T>, qd: &Vec<T>| of_states(state, 1, dynamics, q, qd);
                 let by = |q: &Vec<T>, qd: &Vec<T>| {
                     let found = of_states(state, 1, by_state, q, qd)?;
-                    let matrix =
-                        |of: usize| found[of * dof * dof..][..dof * dof].chunks_exact(dof).map(<[T]>::to_vec).collect();
+                    let matrix = |of: usize| -> Matrix<T> {
+                        found[of * dof * dof..][..dof * dof].chunks_exact(dof).map(<[T]>::to_vec).collect()
+                    };
                     Ok([matrix(0), matrix(1), matrix(2)])
                 };
                 let found = steps::runge_kutta_step_derivatives(accelerations, by, now.each_ref(), step[state])?;

@@ -14,7 +14,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyCapsule;
 use rne::compiled::{Arguments, Array, CompiledArm, Destination, Function, Number};
-use rne_codegen::{Layout, Record, Sizes};
+use rne_codegen::{Layout, Record};
 
 use crate::arm::Arm;
 
