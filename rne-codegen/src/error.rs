@@ -4,7 +4,7 @@ use std::fmt;
 
 use rne_model::Robot;
 
-use crate::function::Function;
+use crate::function::{Capability, Function};
 use crate::ir::Name;
 
 /// Why a robot cannot be compiled.
@@ -252,6 +252,63 @@ impl CompileError {
             *suspect = Suspect { planned: is_planned, number: Extreme::of(robot) };
         }
         self
+    }
+}
+
+/// Refusals of a function for a robot.
+pub trait CheckFor: Sized {
+    /// Refuses a function that a robot does not have.
+    ///
+    /// # Errors
+    /// When a joint follows others and the function returns numbers of every link; when the function is of robots with
+    /// closed loops or of robots without, and this robot is of the other kind.
+    fn check_kind(self, robot: &Robot) -> Result<(), CompileError>;
+
+    /// Refuses a function that a robot does not have, or has not the base or the contacts for.
+    ///
+    /// # Errors
+    /// Those of [`check_kind`](Self::check_kind) and of [`check_base`](Self::check_base).
+    fn check_for(self, robot: &Robot) -> Result<(), CompileError>;
+
+    /// Whether a robot has the base and the contacts that the function needs. The compiler takes a robot whose file has
+    /// no `floating_base` as one whose base has no mass; whoever computes numbers of the robot asks this first, because
+    /// that mass was probably left out.
+    ///
+    /// # Errors
+    /// [`CompileError::NoFloatingBase`] for a function of a floating base, and a robot without one;
+    /// [`CompileError::NoContacts`] for the motion in contact, which is a free fall without contacts.
+    fn check_base(self, robot: &Robot) -> Result<(), CompileError>;
+}
+
+impl CheckFor for Function {
+    fn check_kind(self, robot: &Robot) -> Result<(), CompileError> {
+        let function = self;
+        let follower = robot.joints.iter().find(|joint| joint.coupling.is_some() && self.is_of_every_link());
+        if let Some(joint) = follower {
+            return Err(CompileError::OfEveryLink { function, follower: joint.name.clone() });
+        }
+        match robot.closed.loops.first() {
+            Some(closed) if !self.is_of_closed_loops() => {
+                Err(CompileError::HasClosedLoops { function, name: closed.name.clone() })
+            }
+            None if self.is_of_closed_loops() => Err(CompileError::NoClosedLoops { function }),
+            _ => Ok(()),
+        }
+    }
+
+    fn check_for(self, robot: &Robot) -> Result<(), CompileError> {
+        self.check_base(robot)?;
+        self.check_kind(robot)
+    }
+
+    fn check_base(self, robot: &Robot) -> Result<(), CompileError> {
+        if self.is_of_floating_base() && robot.floating_base.is_none() {
+            return Err(CompileError::NoFloatingBase { function: self, robot: robot.name.clone() });
+        }
+        if self.capability() == Capability::ContactDynamics && robot.contacts.is_empty() {
+            return Err(CompileError::NoContacts { function: self });
+        }
+        Ok(())
     }
 }
 

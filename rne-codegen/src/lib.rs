@@ -47,7 +47,7 @@ use rne_model::Robot;
 
 pub use argument_array::ArgumentArray;
 pub use equation::{Equation, Operation as TermOperation, Term};
-pub use error::{CompileError, Extreme, GraphMistake, Remedy, Suspect};
+pub use error::{CheckFor, CompileError, Extreme, GraphMistake, Remedy, Suspect};
 pub use exact::ExactFunction;
 pub use expression::{Expression, ExpressionKind};
 pub use factorization::Factorization;

@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use rne_codegen::CheckFor as _;
 use rne_codegen::OfRobot as _;
 use rne_codegen::plan::PlanSet;
 use rne_codegen::{Algorithm, CompileError, Compiler, Form, Function, Layout, Target};

@@ -2,7 +2,7 @@
 //! function, both forms. On a unit without fused multiply-add to the bit.
 
 use fastrand::Rng;
-use rne_codegen::OfRobot as _;
+use rne_codegen::CheckFor as _;
 use rne_codegen::{Arguments as Numbers, Compiler, Interpreter, Target};
 use rne_machine::{Arguments, Array, CompiledArm, Destination, Form, Function, OutOfRange};
 use rne_model::Robot;

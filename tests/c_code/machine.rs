@@ -13,7 +13,7 @@ use fastrand::Rng;
 use rne::Scalar;
 use rne::VectorUnit;
 use rne::compiled::{Arguments, Array, CompiledArm, Destination};
-use rne_codegen::OfRobot as _;
+use rne_codegen::CheckFor as _;
 use rne_codegen::{Arguments as Numbers, Compiler, Form, Function, Interpreter, Target};
 use rne_model::Robot;
 use rne_search::PlanFile;

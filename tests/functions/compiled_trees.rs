@@ -9,7 +9,7 @@ use crate::equality::{error, is_compared};
 use crate::tree_functions::State;
 use crate::trees::robot;
 use crate::{couplings, motors, random_trees};
-use rne_codegen::OfRobot as _;
+use rne_codegen::CheckFor as _;
 
 /// States in a run of many.
 const STATES: u64 = 5;

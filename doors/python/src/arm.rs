@@ -8,7 +8,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use rne::compiled::{CompiledArm, Form, Function, PlanFile};
-use rne_codegen::OfRobot as _;
+use rne_codegen::CheckFor as _;
 use rne_codegen::{Argument, Compiler};
 use rne_model::{Convention, Joint, Robot};
 

@@ -15,7 +15,7 @@ use crate::arm::Arm;
 use crate::arrays::{Given, Held, are_single, array_of, pose_of_twelve, states};
 use crate::errors::of_evaluation;
 use crate::functions::{homogeneous, run};
-use rne_codegen::OfRobot as _;
+use rne_codegen::CheckFor as _;
 
 /// A matrix by rows.
 type Matrix<T> = Vec<Vec<T>>;

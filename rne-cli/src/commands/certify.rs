@@ -13,7 +13,7 @@ use rne_certify::image::Image;
 use rne_certify::joint_functions::JointFunction;
 use rne_certify::observer::LowPass;
 use rne_certify::{misra, sha256};
-use rne_codegen::OfRobot as _;
+use rne_codegen::CheckFor as _;
 use rne_codegen::{Argument, Form, Function, Order, Program};
 use rne_emit::{CCode, Precision, Prefix};
 use rne_model::Robot;

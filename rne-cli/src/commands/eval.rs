@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rne::DynArm;
-use rne_codegen::OfRobot as _;
+use rne_codegen::CheckFor as _;
 use rne_codegen::{Argument, Function, Layout, Record, Step};
 use rne_diagnose::worksheet::{Quantity, Worksheet};
 use rne_model::{Joint, JointKind, Robot};

@@ -4,7 +4,7 @@ use std::fmt;
 
 use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use rne_codegen::OfRobot as _;
+use rne_codegen::CheckFor as _;
 use rne_codegen::plan::Trick;
 use rne_codegen::{Argument, Form, Function, Order, Quantity, Step};
 use rne_model::{Convention, Robot};

@@ -8,7 +8,6 @@ pub use rne_functions::{
 };
 use rne_model::{FrameId, Robot};
 
-use crate::error::CompileError;
 use crate::named::{UnknownName, named};
 
 pub use own::{Own, own};
@@ -64,28 +63,6 @@ pub trait OfRobot: Sized {
     /// Whether it holds still the base of a robot with a floating base: the plan of the robot is not for it.
     #[must_use]
     fn holds_floating_base(self, robot: &Robot) -> bool;
-
-    /// Refuses a function that a robot does not have.
-    ///
-    /// # Errors
-    /// When a joint follows others and the function returns numbers of every link; when the function is of robots with
-    /// closed loops or of robots without, and this robot is of the other kind.
-    fn check_kind(self, robot: &Robot) -> Result<(), CompileError>;
-
-    /// Refuses a function that a robot does not have, or has not the base or the contacts for.
-    ///
-    /// # Errors
-    /// Those of [`check_kind`](Self::check_kind) and of [`check_base`](Self::check_base).
-    fn check_for(self, robot: &Robot) -> Result<(), CompileError>;
-
-    /// Whether a robot has the base and the contacts that the function needs. The compiler takes a robot whose file has
-    /// no `floating_base` as one whose base has no mass; whoever computes numbers of the robot asks this first, because
-    /// that mass was probably left out.
-    ///
-    /// # Errors
-    /// [`CompileError::NoFloatingBase`] for a function of a floating base, and a robot without one;
-    /// [`CompileError::NoContacts`] for the motion in contact, which is a free fall without contacts.
-    fn check_base(self, robot: &Robot) -> Result<(), CompileError>;
 }
 
 impl OfRobot for Function {
@@ -106,36 +83,6 @@ impl OfRobot for Function {
 
     fn holds_floating_base(self, robot: &Robot) -> bool {
         function_of_plan(robot).is_of_floating_base() && !self.is_of_floating_base()
-    }
-
-    fn check_kind(self, robot: &Robot) -> Result<(), CompileError> {
-        let function = self;
-        let follower = robot.joints.iter().find(|joint| joint.coupling.is_some() && self.is_of_every_link());
-        if let Some(joint) = follower {
-            return Err(CompileError::OfEveryLink { function, follower: joint.name.clone() });
-        }
-        match robot.closed.loops.first() {
-            Some(closed) if !self.is_of_closed_loops() => {
-                Err(CompileError::HasClosedLoops { function, name: closed.name.clone() })
-            }
-            None if self.is_of_closed_loops() => Err(CompileError::NoClosedLoops { function }),
-            _ => Ok(()),
-        }
-    }
-
-    fn check_for(self, robot: &Robot) -> Result<(), CompileError> {
-        self.check_base(robot)?;
-        self.check_kind(robot)
-    }
-
-    fn check_base(self, robot: &Robot) -> Result<(), CompileError> {
-        if self.is_of_floating_base() && robot.floating_base.is_none() {
-            return Err(CompileError::NoFloatingBase { function: self, robot: robot.name.clone() });
-        }
-        if self.capability() == Capability::ContactDynamics && robot.contacts.is_empty() {
-            return Err(CompileError::NoContacts { function: self });
-        }
-        Ok(())
     }
 }
 
