@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use rne_codegen::CheckFor as _;
-use rne_codegen::OfRobot as _;
 use rne_codegen::plan::PlanSet;
 use rne_codegen::{Algorithm, CompileError, Compiler, Form, Function, Layout, Target};
 use rne_model::{FrameId, Reader, Robot, UnknownFrame, plan_of, read_file};

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use rne_codegen::CheckFor as _;
-use rne_codegen::OfRobot as _;
 use rne_codegen::{Form, Function, Order, Program, Target, ordered_for_registers};
 use rne_emit::{Precision, Prefix};
 use rne_model::{FrameId, Robot};
