@@ -330,10 +330,13 @@ impl<S: Constant> DynArm<S> {
         rates: Option<(&[T], &[T])>,
     ) -> Result<Equations<T>, WrongLength> {
         has_length("passive", passive, self.closed.passive.len())?;
-        let q = self.couplings.of_joints(&self.closed.of_tree(self.of_closed("q", q)?, passive));
+        let q = self.closed.of_tree(self.of_closed("q", q)?, passive);
+        let q = self.couplings.of_joints(&q).into_owned();
         let zero = vec![T::zero(); q.len()];
         let qd = match rates {
-            Some((qd, passive)) => self.couplings.of_joints(&self.closed.of_tree(self.of_closed("qd", qd)?, passive)),
+            Some((qd, passive)) => {
+                self.couplings.of_joints(&self.closed.of_tree(self.of_closed("qd", qd)?, passive)).into_owned()
+            }
             None => zero.clone(),
         };
         let mut equations = Equations { residuals: Vec::new(), rows: Vec::new(), biases: Vec::new() };

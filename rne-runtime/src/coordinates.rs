@@ -8,6 +8,9 @@ use crate::{Constant, Scalar};
 
 /// The matrix G of the couplings: the joints have G q, G q̇ and G q̈, the torques of the coordinates are Gᵀ τ.
 pub(crate) trait Coordinates<J: PerJoint, S: Constant>: Copy {
+    /// Numbers of all joints: those of the coordinates, where each joint is one.
+    type OfJoints<'v, T: Scalar>: AsRef<[T]>;
+
     /// Collections with one element for each coordinate.
     fn each(self) -> J;
 
@@ -15,13 +18,13 @@ pub(crate) trait Coordinates<J: PerJoint, S: Constant>: Copy {
     fn are_joints(self) -> bool;
 
     /// The values of all joints, from one for each coordinate.
-    fn of_joints<T: Scalar>(self, values: &[T]) -> J::Of<T>;
+    fn of_joints<T: Scalar>(self, values: &[T]) -> Self::OfJoints<'_, T>;
 
     /// Sines and cosines of all joints, from those of the coordinates and the positions `q` of all joints.
-    fn turns<T: Scalar>(self, sin: &[T], cos: &[T], q: &[T]) -> [J::Of<T>; 2];
+    fn turns<'v, T: Scalar>(self, turns: [&'v [T]; 2], q: &[T]) -> [Self::OfJoints<'v, T>; 2];
 
     /// The torques of the actuators of all joints, from one for each coordinate: a follower has no actuator.
-    fn applied<T: Scalar>(self, torques: &[T]) -> J::Of<T>;
+    fn applied<T: Scalar>(self, torques: &[T]) -> Self::OfJoints<'_, T>;
 
     /// The elements of the coordinates, from one element for each joint.
     fn only<X: Clone>(self, of_joints: J::Of<X>) -> J::Of<X>;
@@ -68,6 +71,8 @@ pub(crate) trait Coordinates<J: PerJoint, S: Constant>: Copy {
 pub(crate) struct Joints<S>(pub(crate) PhantomData<S>);
 
 impl<const DOF: usize, S: Constant> Coordinates<Known<DOF>, S> for Joints<S> {
+    type OfJoints<'v, T: Scalar> = &'v [T];
+
     fn each(self) -> Known<DOF> {
         Known
     }
@@ -76,16 +81,16 @@ impl<const DOF: usize, S: Constant> Coordinates<Known<DOF>, S> for Joints<S> {
         true
     }
 
-    fn of_joints<T: Scalar>(self, values: &[T]) -> [T; DOF] {
-        core::array::from_fn(|joint| values[joint])
+    fn of_joints<T: Scalar>(self, values: &[T]) -> &[T] {
+        values
     }
 
-    fn turns<T: Scalar>(self, sin: &[T], cos: &[T], _: &[T]) -> [[T; DOF]; 2] {
-        [sin, cos].map(|x| core::array::from_fn(|joint| x[joint]))
+    fn turns<'v, T: Scalar>(self, turns: [&'v [T]; 2], _: &[T]) -> [&'v [T]; 2] {
+        turns
     }
 
-    fn applied<T: Scalar>(self, torques: &[T]) -> [T; DOF] {
-        core::array::from_fn(|joint| torques[joint])
+    fn applied<T: Scalar>(self, torques: &[T]) -> &[T] {
+        torques
     }
 
     fn only<X: Clone>(self, of_joints: [X; DOF]) -> [X; DOF] {

@@ -3,6 +3,8 @@
 //! The order of the operations is part of the contract; generated code repeats it: terms in the order of the joints,
 //! one after the other.
 
+use std::borrow::Cow;
+
 use rne_model::Robot;
 
 use crate::coordinates::Coordinates;
@@ -49,9 +51,20 @@ impl<S: Constant> Couplings<S> {
     pub(crate) fn dof(&self) -> usize {
         self.coordinates.len()
     }
+
+    /// The values of the coordinates at their joints, and zeros at the others.
+    fn spread<T: Scalar>(&self, values: &[T]) -> Vec<T> {
+        let mut all = vec![T::zero(); self.follows.len()];
+        for (&joint, &value) in self.coordinates.iter().zip(values) {
+            all[joint] = value;
+        }
+        all
+    }
 }
 
 impl<S: Constant> Coordinates<Counted, S> for &Couplings<S> {
+    type OfJoints<'v, T: Scalar> = Cow<'v, [T]>;
+
     fn each(self) -> Counted {
         Counted(self.dof())
     }
@@ -60,31 +73,33 @@ impl<S: Constant> Coordinates<Counted, S> for &Couplings<S> {
         self.coordinates.len() == self.follows.len()
     }
 
-    fn of_joints<T: Scalar>(self, values: &[T]) -> Vec<T> {
-        let mut all = self.applied(values);
+    fn of_joints<T: Scalar>(self, values: &[T]) -> Cow<'_, [T]> {
+        if self.are_joints() {
+            return Cow::Borrowed(values);
+        }
+        let mut all = self.spread(values);
         for (joint, follows) in self.follows.iter().enumerate() {
             if let Some(follows) = follows {
                 let terms = follows.iter().map(|(followed, ratio)| all[*followed] * ratio.to());
                 all[joint] = terms.reduce(|sum, term| sum + term).unwrap_or_else(T::zero);
             }
         }
-        all
+        Cow::Owned(all)
     }
 
-    fn turns<T: Scalar>(self, sin: &[T], cos: &[T], q: &[T]) -> [Vec<T>; 2] {
-        let [mut sin, mut cos] = [self.applied(sin), self.applied(cos)];
+    fn turns<'v, T: Scalar>(self, turns: [&'v [T]; 2], q: &[T]) -> [Cow<'v, [T]>; 2] {
+        if self.are_joints() {
+            return turns.map(Cow::Borrowed);
+        }
+        let [mut sin, mut cos] = turns.map(|values| self.spread(values));
         for (joint, _) in self.follows.iter().enumerate().filter(|(_, follows)| follows.is_some()) {
             (sin[joint], cos[joint]) = T::sin_cos(q[joint]);
         }
-        [sin, cos]
+        [sin, cos].map(Cow::Owned)
     }
 
-    fn applied<T: Scalar>(self, torques: &[T]) -> Vec<T> {
-        let mut all = vec![T::zero(); self.follows.len()];
-        for (&joint, &value) in self.coordinates.iter().zip(torques) {
-            all[joint] = value;
-        }
-        all
+    fn applied<T: Scalar>(self, torques: &[T]) -> Cow<'_, [T]> {
+        if self.are_joints() { Cow::Borrowed(torques) } else { Cow::Owned(self.spread(torques)) }
     }
 
     fn only<X: Clone>(self, of_joints: Vec<X>) -> Vec<X> {

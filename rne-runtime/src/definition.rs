@@ -23,7 +23,7 @@ pub(crate) struct Definition<'a, J: PerJoint, V: PerJoint, P: PerJoint, S: Const
     pub(crate) contacts: &'a [Contact],
 }
 
-impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
+impl<'a, J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'a, J, V, P, S> {
     /// The base at rest under the robot's gravity.
     pub(crate) fn fixed_base<T: Scalar>(self) -> BaseMotion<T> {
         self.mechanism.fixed_base()
@@ -40,7 +40,10 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
     }
 
     /// The values of all joints, from one for each coordinate.
-    pub(crate) fn of_joints<T: Scalar>(self, values: &[T]) -> J::Of<T> {
+    pub(crate) fn of_joints<T: Scalar>(
+        self,
+        values: &[T],
+    ) -> <J::Coordinates<'a, S> as Coordinates<J, S>>::OfJoints<'_, T> {
         self.coordinates.of_joints(values)
     }
 
@@ -92,7 +95,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
     /// Torques from sines and cosines of the positions.
     pub(crate) fn torques_from_turns<T: Scalar>(self, [sin, cos]: [&[T]; 2], [q, qd, qdd]: [&[T]; 3]) -> J::Of<T> {
         let [q, qd, qdd] = [q, qd, qdd].map(|values| self.of_joints(values));
-        let [sin, cos] = self.coordinates.turns(sin, cos, q.as_ref());
+        let [sin, cos] = self.coordinates.turns([sin, cos], q.as_ref());
         let turns = Some((sin.as_ref(), cos.as_ref()));
         let joints = JointMotions { turns, ..JointMotions::new(q.as_ref(), qd.as_ref(), qdd.as_ref()) };
         self.coordinates.torques(self.mechanism.torques(joints, &self.fixed_base(), AtTip::Nothing))
