@@ -148,7 +148,10 @@ for writer, (command, end, force) in WRITERS.items():
     folder = lambda folder: (folder / "folder").mkdir()
     onto(writer, "a folder", "folder", "refused", folder)
     onto(writer, "a folder with a slash", "folder/", "refused", folder)
-    onto(writer, "a folder that is not there", f"missing/x{end}", "refused")
+    if writer.startswith("emit"):
+        onto(writer, "a folder that is not there", f"missing/x{end}", "taken", writes=["missing"])
+    else:
+        onto(writer, "a folder that is not there", f"missing/x{end}", "refused")
     onto(writer, "a file for a folder", f"user.txt/x{end}", "refused")
     onto(writer, "a long name", LONG + end, "refused")
     onto(writer, "no name", "", "any")
@@ -172,7 +175,7 @@ def folder_of_somebody(folder):
 
 for writer in FOLDERS:
     onto(writer, "a file of somebody", "user.txt", "refused")
-onto("man", "a folder that is not there", "man", "refused")
+onto("man", "a folder that is not there", "man", "taken", writes=["man"])
 onto("man", "a folder", "man", "taken", lambda folder: (folder / "man").mkdir(), writes=["man"])
 onto("firmware", "a folder that is not there", "firmware", "taken", writes=["firmware"])
 onto("firmware", "a folder of somebody", "mine", "refused", folder_of_somebody)
