@@ -9,33 +9,17 @@ macro_rules! named {
     ($(#[$doc:meta])* $type:ident, $what:literal {
         $($(#[$variant_doc:meta])* $variant:ident = $name:expr),* $(,)?
     }) => {
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        pub enum $type { $($(#[$variant_doc])* $variant),* }
-
-        impl $type {
-            /// All of them, in order.
-            pub const ALL: [Self; [$($name),*].len()] = [$(Self::$variant),*];
-
-            /// Its name, as it is written in code and on the command line.
-            #[must_use]
-            pub const fn name(self) -> &'static str {
-                match self { $(Self::$variant => $name),* }
-            }
-        }
-
-        impl std::fmt::Display for $type {
-            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str(self.name())
-            }
+        rne_functions::named! {
+            $(#[$doc])*
+            $type { $($(#[$variant_doc])* $variant = $name),* }
         }
 
         impl std::str::FromStr for $type {
             type Err = $crate::UnknownName;
 
             fn from_str(text: &str) -> Result<Self, $crate::UnknownName> {
-                Self::ALL.into_iter().find(|one| one.name() == text).ok_or_else(|| {
-                    $crate::UnknownName { found: text.to_owned(), what: $what, allowed: &[$($name),*] }
+                Self::named(text).ok_or_else(|| {
+                    $crate::UnknownName { found: text.to_owned(), what: $what, allowed: &Self::NAMES }
                 })
             }
         }

@@ -1,4 +1,4 @@
-//! Derivatives of the torques, and of the wrench on a base that nothing holds, by dual numbers through the seven steps:
+//! Derivatives of the torques, and of the wrench on a floating base, by dual numbers through the seven steps:
 //! exact up to rounding, one direction at a time.
 
 use crate::at_tip::AtTip;
@@ -57,7 +57,7 @@ struct OfFloatingBase<J: PerJoint, T: Clone> {
 }
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    /// The derivatives of a robot whose base nothing holds, with constant wrenches at its tips.
+    /// The derivatives of a robot with a floating base, with constant wrenches at its tips.
     fn floating_derivatives<T: Scalar>(
         self,
         JointMotions { q, qd, qdd, .. }: JointMotions<'_, T>,

@@ -1,4 +1,4 @@
-//! Dynamics of a robot whose base nothing holds: torques and the wrench that must act on this base, the mass matrix of
+//! Dynamics of a robot with a floating base: torques and the wrench that must act on this base, the mass matrix of
 //! 6 + n rows, and the motion that follows from torques.
 //!
 //! M has the base first, force above moment, then the joints. Its columns are the torques and wrenches of unit

@@ -1,4 +1,4 @@
-//! How the state after a step of a robot whose base nothing holds changes with the state before it and with the
+//! How the state after a step of a robot with a floating base changes with the state before it and with the
 //! torques: the derivatives of the accelerations are -M⁻¹ times those of the wrench on the base and of the torques.
 
 use core::array::from_fn;

@@ -1,4 +1,4 @@
-//! How the torques of a robot whose base nothing holds change with its state, and the matrices of Pinocchio.
+//! How the torques of a robot with a floating base change with its state, and the matrices of Pinocchio.
 
 use crate::pose_log::cross;
 use crate::shapes::records;
@@ -8,7 +8,7 @@ use crate::{BaseMotion, Scalar, Wrench};
 const BASE: usize = 6;
 
 records! {
-    /// The derivatives of the wrench on a base that nothing holds and of the torques, for one state.
+    /// The derivatives of the wrench on a floating base and of the torques, for one state.
     ///
     /// `NV` = `DOF` + 6 rows: the force on the base (N), the moment about the origin of frame 0 (N m), both in axes of
     /// frame 0, then the torques (N m, or N for a prismatic joint). Columns are per rad or m, and per rad/s or m/s.
@@ -25,7 +25,7 @@ records! {
     }
 }
 
-/// How the torques of a robot whose base nothing holds change with its state. The base, `NV` and the tips are those of
+/// How the torques of a robot with a floating base change with its state. The base, `NV` and the tips are those of
 /// [`FloatingBase`](crate::FloatingBase).
 pub trait FloatingInverseDynamicsDerivatives<const DOF: usize, const NV: usize, const TIPS: usize> {
     /// The derivatives of

@@ -1,4 +1,4 @@
-//! The step of the semi-implicit Euler method of a robot whose base nothing holds, with the rotation of the base as a
+//! The step of the semi-implicit Euler method of a robot with a floating base, with the rotation of the base as a
 //! matrix.
 
 #[cfg(feature = "arm")]
@@ -14,7 +14,7 @@ use crate::{ArmWithTips, BaseAcceleration, Constant, at_tip::AtTip, definition::
 use crate::{BaseTwist, Pose, Scalar, Wrench};
 
 records! {
-    /// The state of a robot whose base nothing holds, after a step.
+    /// The state of a robot with a floating base, after a step.
     FloatingNextState<DOF>, DynFloatingNextState {
         /// The pose of frame 0 in the world.
         pose: Pose<T> | Pose<T>,
@@ -27,7 +27,7 @@ records! {
     }
 }
 
-/// A step of the semi-implicit Euler method of a robot whose base nothing holds, under torques and wrenches that do not
+/// A step of the semi-implicit Euler method of a robot with a floating base, under torques and wrenches that do not
 /// change during the step. The base, the tips and the wrenches are those of [`FloatingBase`](crate::FloatingBase).
 pub trait FloatingEulerStep<const DOF: usize, const TIPS: usize> {
     /// The state after a step of the duration `step`, s. `pose` is that of frame 0 in the world, `twist` its velocity

@@ -1,10 +1,10 @@
-//! The derivatives of a step of a robot whose base nothing holds, on the manifold of its positions.
+//! The derivatives of a step of a robot with a floating base, on the manifold of its positions.
 
 use crate::shapes::records;
 use crate::{BaseTwist, Pose, Scalar, Wrench};
 
 records! {
-    /// The linear model of a step of a robot whose base nothing holds: rows belong to the next state, columns to the
+    /// The linear model of a step of a robot with a floating base: rows belong to the next state, columns to the
     /// state and to the torques.
     ///
     /// `NV` = `DOF` + 6. A change of the positions has three components of the origin of frame 0 and three of its
@@ -27,7 +27,7 @@ records! {
     }
 }
 
-/// Derivatives of a step of the semi-implicit Euler method of a robot whose base nothing holds, for optimisers. The
+/// Derivatives of a step of the semi-implicit Euler method of a robot with a floating base, for optimisers. The
 /// base, the tips and the wrenches are those of [`FloatingBase`](crate::FloatingBase).
 pub trait FloatingEulerStepDerivatives<const DOF: usize, const NV: usize, const TIPS: usize> {
     /// The derivatives of [`floating_euler_step`](crate::FloatingEulerStep::floating_euler_step) by the state and by

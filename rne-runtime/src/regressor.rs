@@ -35,7 +35,7 @@ const TENSOR: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2,
 /// The numbers of a link in one row of Y.
 type Elements<T> = [T; PER_LINK];
 
-/// The rows of a base that nothing holds, force above moment: of the base's own parameters, and of the links.
+/// The rows of a floating base, force above moment: of the base's own parameters, and of the links.
 struct OfBase<J: PerJoint, T: Scalar> {
     own: [Elements<T>; BASE],
     links: [J::Of<Elements<T>>; BASE],

@@ -15,7 +15,6 @@ macro_rules! known {
     (matrices6) => { [[[T; DOF]; DOF]; 6] };
     (poses) => { [Pose<T>; DOF] };
     (joint_wrenches) => { [Wrench<T>; DOF] };
-    (tip_wrenches) => { [Wrench<T>; TIPS] };
     (tip_rows) => { [[[T; NV]; 6]; TIPS] };
     (tip_vectors) => { [[T; 6]; TIPS] };
     (regressor) => { [[[T; 10]; DOF]; DOF] };

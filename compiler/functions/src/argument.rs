@@ -27,7 +27,7 @@ pub enum Argument {
     Wrenches,
     /// Angular velocity of a base whose accelerations are no argument.
     BaseVelocity,
-    /// Linear and angular velocity of a base that nothing holds.
+    /// Linear and angular velocity of a floating base.
     BaseTwist,
     /// Where such a base stands in the world.
     BasePose,

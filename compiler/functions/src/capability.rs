@@ -1,7 +1,7 @@
 //! The capabilities of a robot: each is a trait that a struct derives.
 
 use crate::Function;
-use crate::named::named;
+use crate::named;
 
 named! {
     /// A capability of a robot, named as the trait that a struct derives.
@@ -48,7 +48,7 @@ named! {
         FloatingKinematics = "FloatingKinematics",
         /// The robot while contacts hold some of its tips.
         ContactDynamics = "ContactDynamics",
-        /// Derivatives of the torques and of the wrench on a base that nothing holds.
+        /// Derivatives of the torques and of the wrench on a floating base.
         FloatingInverseDynamicsDerivatives = "FloatingInverseDynamicsDerivatives",
         /// The robot with closed loops.
         ClosedLoops = "ClosedLoops",
@@ -79,7 +79,7 @@ impl Capability {
         Function::ALL.into_iter().filter(move |function| function.capability() == self)
     }
 
-    /// Whether its trait has the number of velocities of a robot whose base nothing holds.
+    /// Whether its trait has the number of velocities of a robot with a floating base.
     #[must_use]
     pub const fn has_velocities(self) -> bool {
         matches!(

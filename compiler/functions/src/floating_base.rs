@@ -1,4 +1,4 @@
-//! The functions of a robot whose base nothing holds.
+//! The functions of a robot with a floating base.
 
 use crate::Function;
 use crate::answer::{AXES, Answer, AnswerTable, Labels};

@@ -94,7 +94,7 @@ impl Function {
         self.takes(Argument::Wrenches) || self.shape().has_tips()
     }
 
-    /// The same function of the arm with a payload, where there is one.
+    /// The function of the same result for an arm with a payload, if the table has it.
     #[must_use]
     pub const fn with_payload(self) -> Option<Self> {
         match self {
@@ -128,7 +128,7 @@ impl Function {
         self.entry().returns_torques
     }
 
-    /// Whether it is a function of a robot whose base nothing holds.
+    /// Whether it is a function of a robot with a floating base.
     #[must_use]
     pub const fn is_of_floating_base(self) -> bool {
         self.capability().has_velocities()

@@ -167,9 +167,9 @@ impl Returned {
 pub enum Length {
     /// One element per joint.
     Joints,
-    /// Six elements of a base that nothing holds, and one per joint.
+    /// Six elements of a floating base, and one per joint.
     Velocities,
-    /// One element of a base that nothing holds, and one per link of a robot whose joints all move freely.
+    /// One element of a floating base, and one per link of a robot whose joints all move freely.
     Bodies,
     /// One element per tip.
     Tips,

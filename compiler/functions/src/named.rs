@@ -1,6 +1,8 @@
 //! Enums whose variants have names in code and on the command line.
 
-/// An enum with all its variants in order, and their names.
+/// An enum with all its variants in order, and their names. The compiler has enums of this kind, too.
+#[doc(hidden)]
+#[macro_export]
 macro_rules! named {
     ($(#[$doc:meta])* $type:ident {
         $($(#[$variant_doc:meta])* $variant:ident = $name:expr),* $(,)?
@@ -36,4 +38,3 @@ macro_rules! named {
         }
     };
 }
-pub(crate) use named;

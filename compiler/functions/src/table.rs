@@ -8,7 +8,7 @@ use crate::closed_loops::CLOSED_LOOPS;
 use crate::entry::Signature;
 use crate::fixed_base::FIXED_BASE;
 use crate::floating_base::FLOATING_BASE;
-use crate::named::named;
+use crate::named;
 use crate::{Argument, Entry, Returned};
 
 /// Every function in the order of [`Function`]: its variant, its method with the arguments by their names and kinds,

@@ -15,7 +15,7 @@ pub use own::{Own, own};
 /// The function with a name.
 ///
 /// # Errors
-/// When there is none.
+/// When no function has this name.
 pub fn function_named(name: &str) -> Result<Function, UnknownName> {
     Function::named(name).ok_or_else(|| UnknownName {
         found: name.to_owned(),

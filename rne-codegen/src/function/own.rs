@@ -61,7 +61,7 @@ const NEXT: &[Own] = &[
     Own::of(Quantity::NextPosition, |joint| format!("position of joint {joint} after the step")),
 ];
 
-/// The force and the moment that must act on a base that nothing holds.
+/// The force and the moment that must act on a floating base.
 const ON_BASE: [Own; 2] = [
     Own::of(Quantity::BaseForce, |_| "force that must act on the base".to_owned()),
     Own::of(Quantity::BaseMoment, |_| "moment that must act on the base, about the origin of frame 0".to_owned()),
@@ -73,7 +73,7 @@ const CENTROIDAL: [Own; 2] = [
     Own::of(Quantity::CentroidalMoment, |_| "rate of the angular momentum about the centre of mass".to_owned()),
 ];
 
-/// The velocity of a base that nothing holds.
+/// The velocity of a floating base.
 const ORIGIN_VELOCITY: Own = Own::meaning(
     Quantity::OriginVelocity,
     "velocity of the frame's origin; of frame 0 for i = 0, in its axes",
