@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use rne_model::{Inertia, NegativeMoment};
 use rne_runtime::{NegativeMass, Pose};
 
 /// Numbers that an argument cannot have. A number that is not a number passes in a rotation and as a mass: results show
@@ -11,6 +12,8 @@ use rne_runtime::{NegativeMass, Pose};
 pub enum OutOfRange {
     /// The mass of a payload is below zero.
     Mass(NegativeMass),
+    /// A principal moment of inertia of a payload is below zero.
+    Moment(NegativeMoment),
     /// The duration of a step is not a finite number above zero, s.
     Step(f64),
     /// The rotation of this argument is not a rotation.
@@ -22,7 +25,8 @@ impl OutOfRange {
     #[must_use]
     pub fn elements(argument: &str) -> usize {
         match argument {
-            "payload" | "step" => 1,
+            "step" => 1,
+            "payload" => 10,
             // a pose begins with its rotation
             "pose" | "base_rotation" => 9,
             _ => 0,
@@ -36,7 +40,11 @@ impl OutOfRange {
     pub fn check(argument: &str, number: impl Fn(usize) -> Option<f64>) -> Result<(), Self> {
         let at = |element| number(element).unwrap_or(f64::NAN);
         match argument {
-            "payload" => NegativeMass::check(at(0)).map_err(Self::Mass),
+            "payload" => {
+                NegativeMass::check(at(0)).map_err(Self::Mass)?;
+                let [xx, yy, zz, xy, xz, yz] = [4, 5, 6, 7, 8, 9].map(at);
+                Inertia { xx, yy, zz, xy, xz, yz }.check_of_payload().map_err(Self::Moment)
+            }
             "step" if !(at(0) > 0.0 && at(0).is_finite()) => Err(Self::Step(at(0))),
             "pose" | "base_rotation" => {
                 let rotation = [0, 3, 6].map(|row| [row, row + 1, row + 2].map(at));
@@ -52,6 +60,7 @@ impl fmt::Display for OutOfRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Mass(mass) => mass.fmt(f),
+            Self::Moment(moment) => moment.fmt(f),
             Self::Step(step) => write!(f, "the step is {step} s, but it must be a finite number above 0"),
             Self::Rotation(argument) => write!(
                 f,

@@ -69,8 +69,11 @@ impl States {
         let q = rows[0].clone();
         rows[4] = q.iter().map(|&q| Scalar::sin_cos(q).0).collect();
         rows[5] = q.iter().map(|&q| Scalar::sin_cos(q).1).collect();
-        // no payload has a mass below zero
-        rows[8].iter_mut().step_by(10).for_each(|mass| *mass = mass.abs());
+        // no payload has a mass or a principal moment of inertia below zero
+        for payload in rows[8].chunks_mut(10) {
+            payload[0] = payload[0].abs();
+            payload[4..7].iter_mut().for_each(|moment| *moment = 10.0 + moment.abs());
+        }
         // no step goes back in time
         rows[19].iter_mut().for_each(|step| *step = step.abs());
         let rotations: Vec<[f64; 9]> = (0..STATES).map(|_| rotation(rng)).collect();
@@ -382,7 +385,10 @@ fn what_an_argument_cannot_be_is_refused_by_every_function_that_takes_it() {
         [[2.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 2.0], [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, -1.0], [0.0; 9]];
     let rotations: Vec<Vec<f64>> = rotations.map(|rotation| [&rotation[..], &[0.0; 3]].concat()).to_vec();
     let steps: Vec<Vec<f64>> = [0.0, -0.0, -1e-3, f64::NAN, f64::INFINITY].map(|step| vec![step]).to_vec();
-    let wrong = [("step", &steps), ("pose", &rotations), ("base_rotation", &rotations), ("payload", &vec![vec![-1.0]])];
+    // a mass below zero; moments below zero about one axis, and about an axis between two
+    let inertia = |[xx, yy, zz, xy]: [f64; 4]| vec![1.0, 0.0, 0.0, 0.0, xx, yy, zz, xy, 0.0, 0.0];
+    let payloads = vec![vec![-1.0], inertia([0.1, 0.1, -0.1, 0.0]), inertia([0.1, 0.1, 0.1, 0.2])];
+    let wrong = [("step", &steps), ("pose", &rotations), ("base_rotation", &rotations), ("payload", &payloads)];
     let states = States::random(&mut Rng::with_seed(57), 2);
     let mut refused = 0;
     for function in Function::OF_TREES.into_iter().filter(|function| has(&arm, *function)) {

@@ -1,5 +1,6 @@
 //! Inertia tensors: the point they refer to, and their principal moments.
 
+use std::fmt;
 use std::ops::{Add, Mul, Sub};
 
 use crate::double::decimal_digits;
@@ -48,7 +49,40 @@ fn largest(inertia: &Inertia) -> f64 {
     inertia.rows().iter().flatten().fold(0.0, |largest: f64, element| largest.max(element.abs()))
 }
 
+/// A principal moment of inertia of a payload, kg m², that is below zero by more than rounding. No body has one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NegativeMoment(pub f64);
+
+impl fmt::Display for NegativeMoment {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "the payload's inertia has a principal moment of {:.3e} kg m²: no body has less than 0; write the inertia \
+             about the centre of mass, not about the tip",
+            self.0
+        )
+    }
+}
+
 impl Inertia {
+    /// Refuses the inertia of a payload that has a principal moment below zero. A number that is not finite passes.
+    ///
+    /// # Errors
+    /// The least principal moment.
+    pub fn check_of_payload(&self) -> Result<(), NegativeMoment> {
+        let slack = OF_SIX_DIGITS * largest(self);
+        let Self { xx, yy, zz, xy, xz, yz } = *self;
+        let [a, b, c] = [xx + slack, yy + slack, zz + slack];
+        // by Sylvester's criterion, which takes no iteration: a table has a payload in each row
+        let minor = b * c - yz * yz;
+        let determinant = a * minor - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz);
+        if a > 0.0 && a * b > xy * xy && determinant > 0.0 {
+            return Ok(());
+        }
+        let negative = self.principal_moments().filter(|[least, ..]| *least < -slack);
+        negative.map_or(Ok(()), |[least, ..]| Err(NegativeMoment(least)))
+    }
+
     /// The principal moments, ascending, kg m²; `None` when an element is not finite. A body has none below zero.
     #[must_use]
     pub fn principal_moments(&self) -> Option<[f64; 3]> {

@@ -169,6 +169,8 @@ pub use golden::{GoldenFile, GoldenState};
 #[cfg(feature = "std")]
 pub use identifier::JointIdentifier;
 #[cfg(feature = "std")]
+pub use inertia::NegativeMoment;
+#[cfg(feature = "std")]
 pub use keys::{Key, Mapping, mappings};
 #[cfg(feature = "std")]
 pub use robot::{InertiaReference, Joint, Limits, Robot};

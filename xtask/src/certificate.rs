@@ -20,13 +20,14 @@ Exit status: 1 when a function panics, calls, branches or has grown by more than
 Examples:
   cargo xtask certificate             judge
   cargo xtask certificate --update    judge, and write docs/embedded.md anew
-  cargo xtask certificate --sample    judge the Cortex-M4F alone, in Rust and in C
+  cargo xtask certificate --sample    judge the Cortex-M4F alone, in Rust, and every third robot in C
   cargo xtask certificate --install   get what is missing by apt-get (Debian) first")]
 pub(crate) struct Certificate {
     /// Write docs/embedded.md anew
     #[arg(long)]
     update: bool,
-    /// Judge the Cortex-M4F alone, in Rust and in C: neither M7F nor fused multiply-add, RISC-V and WebAssembly
+    /// Judge the Cortex-M4F alone, in Rust, and every third robot in C: neither M7F nor fused multiply-add, RISC-V and
+    /// WebAssembly
     #[arg(long, conflicts_with = "update")]
     sample: bool,
     /// First get what is missing by apt-get; where that fails, say so in one line and exit with 0

@@ -182,13 +182,14 @@ impl Place {
         only_file(&wheels)
     }
 
-    /// The command line, built, with whose numbers those of logs are compared; optimised, for the tests call it often.
+    /// The command line, built, with whose numbers those of logs are compared: as tests of all formats build it, so that
+    /// it is compiled once.
     pub(crate) fn command_line(&self) -> Result<PathBuf> {
         let shell = &self.shell;
-        machine::without_flags(cmd!(shell, "cargo build --quiet --release --locked --bin rne --features rne-cli/full"))
-            .quiet()
-            .run()?;
-        Ok(machine::target_folder("target")?.join("release").join(format!("rne{}", std::env::consts::EXE_SUFFIX)))
+        let build =
+            cmd!(shell, "cargo build --quiet --profile test --locked --workspace --features rne-cli/full --bin rne");
+        machine::without_flags(build).quiet().run()?;
+        Ok(machine::target_folder("target")?.join("debug").join(format!("rne{}", std::env::consts::EXE_SUFFIX)))
     }
 
     /// The library that the tests load in the place of NVIDIA's driver.

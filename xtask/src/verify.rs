@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use anyhow::{Result, bail};
 use clap::Args;
+use serde_json::{Value, json};
 use xshell::cmd;
 
 use crate::Verdict;
@@ -45,6 +46,9 @@ struct Step {
     needs: Needs,
 }
 
+/// A word of a command that stands for `--test NAME` of every test outside the packages of `cargo test`.
+const TESTS_OF_REST: &str = "TESTS_OF_REST";
+
 /// Requirements of a step.
 enum Needs {
     Nothing,
@@ -60,8 +64,9 @@ enum Needs {
     Tag,
 }
 
-/// Each with a target folder that an earlier one has filled as far as possible. None names a package where it can do
-/// without: cargo would leave out the features that other packages ask of shared crates, and compile all of them anew.
+/// Each with a target folder that an earlier one has filled as far as possible. None names or excludes a package where
+/// it can do without: cargo would leave out the features that other packages ask of shared crates, and compile all of
+/// them anew. So the four that test all formats of logs select all packages, and share what they compile.
 const STEPS: &[Step] = &[
     Step {
         name: "intervals",
@@ -93,8 +98,22 @@ const STEPS: &[Step] = &[
         needs: Needs::Nothing,
     },
     Step {
+        name: "rest",
+        about: "tests of the packages that `cargo test` leaves out, with all formats of logs",
+        variables: &[],
+        command: &["cargo", "test", "--workspace", "--features", "rne-cli/full", "--lib", "--bins", TESTS_OF_REST],
+        needs: Needs::Nothing,
+    },
+    Step {
+        name: "examples",
+        about: "examples in the reference of all packages",
+        variables: &[],
+        command: &["cargo", "test", "--workspace", "--features", "rne-cli/full", "--doc"],
+        needs: Needs::Nothing,
+    },
+    Step {
         name: "formats",
-        about: "logs in bags and Parquet, which a build without their features leaves out",
+        about: "the command line with logs in bags and Parquet, which a build without their features leaves out",
         variables: &[],
         command: &[
             "cargo",
@@ -102,9 +121,6 @@ const STEPS: &[Step] = &[
             "--workspace",
             "--features",
             "rne-cli/full",
-            "--lib",
-            "--test",
-            "logs",
             "--test",
             "cli",
             "--",
@@ -116,7 +132,6 @@ const STEPS: &[Step] = &[
             "tables",
             "log::",
             "log_tables",
-            "documents",
         ],
         needs: Needs::Nothing,
     },
@@ -134,12 +149,15 @@ const STEPS: &[Step] = &[
         command: &[
             "cargo",
             "test",
+            "--workspace",
+            "--features",
+            "rne-cli/full",
             "--test",
             "cli",
             "--",
             "--include-ignored",
             "certify",
-            "commands_of_documents",
+            "documents",
             "examples_of_helps",
             "what_is_written_builds",
         ],
@@ -333,19 +351,41 @@ impl Step {
     fn words(&self, oldest: &str) -> String {
         let quoted = |value: &str| if value.contains(' ') { format!("'{value}'") } else { value.to_owned() };
         let variables = self.variables.iter().map(|(name, value)| format!("{name}={}", quoted(value)));
-        let command = self.command.iter().map(|word| word.replace("OLDEST", oldest));
+        let command = self.command.iter().map(|word| {
+            if *word == TESTS_OF_REST { "--test NAME of each".to_owned() } else { word.replace("OLDEST", oldest) }
+        });
         variables.chain(command).collect::<Vec<_>>().join(" ")
     }
 
     fn holds(&self, oldest: &str) -> Result<bool> {
         let shell = machine::shell()?;
-        let command: Vec<String> = self.command.iter().map(|word| word.replace("OLDEST", oldest)).collect();
+        let mut command = Vec::new();
+        for word in self.command {
+            if *word == TESTS_OF_REST {
+                command.extend(tests_of_rest()?.into_iter().flat_map(|name| ["--test".to_owned(), name]));
+            } else {
+                command.push(word.replace("OLDEST", oldest));
+            }
+        }
         let (program, arguments) = command.split_first().expect("a command has a program");
         let command = machine::without_flags(cmd!(shell, "{program} {arguments...}")).quiet();
         // this program runs in the toolchain of its caller
         let command = command.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO").envs(self.variables.iter().copied());
         Ok(command.run().is_ok())
     }
+}
+
+/// The names of the tests of packages that are no default members of the workspace, as cargo tells them.
+fn tests_of_rest() -> Result<Vec<String>> {
+    let shell = machine::shell()?;
+    let metadata = cmd!(shell, "cargo metadata --no-deps --format-version 1").quiet().read()?;
+    let metadata: Value = serde_json::from_str(&metadata)?;
+    let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
+    let by_default = list(&metadata["workspace_default_members"]);
+    let packages = list(&metadata["packages"]).into_iter().filter(|package| !by_default.contains(&package["id"]));
+    let targets = packages.flat_map(|package| list(&package["targets"]));
+    let tests = targets.filter(|target| target["kind"] == json!(["test"]) && target["test"] == json!(true));
+    Ok(tests.filter_map(|target| Some(target["name"].as_str()?.to_owned())).collect())
 }
 
 impl Needs {

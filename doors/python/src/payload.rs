@@ -39,14 +39,9 @@ pub(crate) fn payload<'py>(
     if [(xy, yx), (xz, zx), (yz, zy)].into_iter().any(is_other) {
         return Err(PyValueError::new_err("`inertia` is a symmetric tensor of shape (3, 3)"));
     }
-    let moments = Inertia { xx, yy, zz, xy, xz, yz }.principal_moments();
-    if let Some([least, ..]) = moments.filter(|&[least, _, most]| least < -1e-6 * most.abs()) {
-        return Err(PyValueError::new_err(format!(
-            "`inertia` has a principal moment of {least:.3e} kg m²: no body has less than 0; write the inertia about \
-             the \
-             centre of mass, not about the tip"
-        )));
-    }
+    Inertia { xx, yy, zz, xy, xz, yz }
+        .check_of_payload()
+        .map_err(|error| PyValueError::new_err(error.to_string()))?;
     array_of(py, &[], &[10], vec![mass, x, y, z, xx, yy, zz, xy, xz, yz])
 }
 

@@ -19,7 +19,8 @@ WRONG = {
     "step": (STEPS, "must be a finite number above 0"),
     "pose": (POSES, "must have the length 1, be at right angles|unit vectors at right angles"),
     "base_rotation": ([pose[:3, :3] for pose in POSES], "must have the length 1, be at right angles"),
-    "payload": ([[-1.0] + [0.0] * 9], "the payload's mass is -1 kg"),
+    "payload": ([[-1.0] + [0.0] * 9, [1.0, 0, 0, 0, 0.1, 0.1, -0.1, 0, 0, 0], [1.0, 0, 0, 0, 0.1, 0.1, 0.1, 0.2, 0, 0]],
+                "the payload's mass is -1 kg|a principal moment of -1.000e-01 kg m²"),
 }
 
 

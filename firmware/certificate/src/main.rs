@@ -38,13 +38,14 @@ failed.
 Examples:
   cargo xtask certificate             judge
   cargo xtask certificate --update    judge, and write docs/embedded.md anew
-  cargo xtask certificate --sample    judge the Cortex-M4F alone, in Rust and in C"
+  cargo xtask certificate --sample    judge the Cortex-M4F alone, in Rust, and every third robot in C"
 )]
 struct Arguments {
     /// Write docs/embedded.md anew
     #[arg(long)]
     update: bool,
-    /// Judge the Cortex-M4F alone, in Rust and in C: neither M7F nor fused multiply-add, RISC-V and WebAssembly
+    /// Judge the Cortex-M4F alone, in Rust, and every third robot in C: neither M7F nor fused multiply-add, RISC-V and
+    /// WebAssembly
     #[arg(long, conflicts_with = "update")]
     sample: bool,
 }
@@ -94,7 +95,7 @@ const SCHEDULER: &str = "-Cllvm-args=-pre-RA-sched=list-ilp";
 fn examine(workspace: &Path, sample: bool) -> Result<Report> {
     let expected = Log::of_host();
     thread::scope(|scope| {
-        let c = scope.spawn(|| step("C", || c_code::examine(workspace, &expected)));
+        let c = scope.spawn(|| step("C", || c_code::examine(workspace, sample, &expected)));
         let of_c = || c.join().map_err(|_| anyhow!("C: a panic"))?;
         examine_beside(workspace, sample, &expected, of_c)
     })

@@ -1,11 +1,9 @@
 //! Tables of states in files, CSV or arrays of numpy, that are read in parts.
 
-use std::array;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 use std::path::Path;
 
-use rne::Payload;
 use rne_logs::{CsvRows, Npy};
 use rne_machine::OutOfRange;
 use rne_model::{did_you_mean, open_file};
@@ -13,7 +11,6 @@ use rne_model::{did_you_mean, open_file};
 use crate::files::csv_table::quoted;
 use crate::files::input_file::{self, is_standard_input, is_stream};
 use crate::outcome::Failure;
-use crate::values::state::check_moments;
 
 /// States of a part: some megabytes, whatever the file's size.
 pub(crate) const PART: usize = 16_384;
@@ -36,14 +33,7 @@ impl Restricted {
     fn mistake(&self, row: &[f64], name: impl Fn(usize) -> String) -> Option<String> {
         self.0.iter().find_map(|&(argument, first)| {
             let number = |element: usize| row.get(first + element).copied();
-            let mistake = match OutOfRange::check(argument, number) {
-                Err(mistake) => mistake.to_string(),
-                Ok(()) if argument != "payload" => return None,
-                Ok(()) => {
-                    let payload = Payload::from_array(array::from_fn(|element| number(element).unwrap_or(0.0)));
-                    check_moments(&payload).err()?
-                }
-            };
+            let mistake = OutOfRange::check(argument, number).err()?;
             Some(format!("{}: {mistake}", name(first)))
         })
     }

@@ -231,20 +231,6 @@ fn passive(function: Function, list: Option<&List>, q: Option<&[f64]>, robot: &R
 const PAYLOAD: &str =
     "mass, centre of mass and inertia about it: m,cx,cy,cz,xx,yy,zz,xy,xz,yz; or m,cx,cy,cz of a point";
 
-/// A principal moment below zero by this part of the largest one is rounding.
-const ROUNDED: f64 = 1e-6;
-
-/// Refuses a payload with a principal moment of inertia below zero.
-pub(crate) fn check_moments(payload: &Payload<f64>) -> Result<(), String> {
-    let negative = |&[least, _, most]: &[f64; 3]| least < -ROUNDED * most.abs();
-    payload.inertia.principal_moments().filter(negative).map_or(Ok(()), |[least, ..]| {
-        Err(format!(
-            "the payload's inertia has a principal moment of {least:.3e} kg m²: no body has less than 0; write the \
-             inertia about the centre of mass, not about the tip"
-        ))
-    })
-}
-
 /// A payload from its list: mass and centre of mass, and inertia where it is given.
 pub(crate) fn payload(List(values): &List) -> Result<Payload<f64>, Failure> {
     if values.len() != 4 && values.len() != 10 {
@@ -255,7 +241,7 @@ pub(crate) fn payload(List(values): &List) -> Result<Payload<f64>, Failure> {
     all.iter_mut().zip(values).for_each(|(number, value)| *number = *value);
     let payload = Payload::from_array(all);
     payload.check().map_err(|error| Failure::usage(format_args!("--payload: {error}")))?;
-    check_moments(&payload).map_err(|error| Failure::usage(format_args!("--payload: {error}")))?;
+    payload.inertia.check_of_payload().map_err(|error| Failure::usage(format_args!("--payload: {error}")))?;
     Ok(payload)
 }
 
