@@ -45,7 +45,7 @@ struct Floating;
 
 /// A chain whose base nothing holds, in the seven steps.
 #[derive(InverseDynamics, FloatingBase, BatchFloatingInverseDynamics)]
-#[robot(path = "../robots/planar2.yaml")]
+#[robot(path = "../robots/planar2.yaml", allow_lints)]
 struct Drifting;
 
 /// Around the lengths of a register, and beyond those for which threads are used.

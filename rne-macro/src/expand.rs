@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 use rne_codegen::plan::PlanSet;
-use rne_codegen::{Algorithm, Capability, Compiler, Form, Program};
+use rne_codegen::{Algorithm, Capability, CheckFor as _, Compiler, Form, Program};
 use rne_model::{Checked, Reader, Report, Robot};
 use rne_search::{Fingerprint, PlanFile};
 use syn::{Data, DeriveInput};
@@ -41,6 +41,10 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
         let robot = Robot { rotors: attribute.rotors, ..robot };
         let span = attribute.source.as_ref().map_or_else(Span::call_site, Source::span);
         let compiler = compiler(&robot, capability, attribute.form, loaded.plan.as_ref(), span, &mut errors)?;
+        if let Some(error) = without_base(&robot, capability).filter(|_| !attribute.allow_lints) {
+            errors.at_span(span, error);
+            return None;
+        }
         let programs = programs(&robot, capability, attribute.form, &compiler, span, &mut errors)?;
         Some((robot, programs))
     });
@@ -293,6 +297,13 @@ fn default_plans(robot: &Robot) -> PlanSet {
     let plans = PlanSet::default_of(robot);
     known.push((print, plans.clone()));
     plans
+}
+
+/// What is wrong with a robot without the floating base or the contacts that a derive is about: its numbers would be
+/// those of a base without mass.
+fn without_base(robot: &Robot, capability: Capability) -> Option<String> {
+    let refused = capability.functions().find_map(|function| function.check_base(robot).err());
+    refused.map(|error| format!("{error}; or add `allow_lints` to the attribute, for a base that has no mass"))
 }
 
 fn programs(

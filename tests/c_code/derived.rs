@@ -260,7 +260,7 @@ macro_rules! robot {
                 rne::FloatingEulerStep,
                 rne::FloatingEulerStepDerivatives,
             )]
-            #[robot(path = $path, form = $form, inline)]
+            #[robot(path = $path, form = $form, inline, allow_lints)]
             pub(crate) struct Robot;
 
             impl Everything<{ Robot::DOF }, { Robot::DOF + 6 }, { Robot::DOF + 1 }> for Robot {}

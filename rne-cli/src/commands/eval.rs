@@ -8,7 +8,7 @@ use rne::DynArm;
 use rne_codegen::CheckFor as _;
 use rne_codegen::{Argument, Function, Layout, Record, Step};
 use rne_diagnose::worksheet::{Quantity, Worksheet};
-use rne_model::{Joint, JointKind, Robot};
+use rne_model::Robot;
 use serde_json::{Value, json};
 
 use crate::commands::compare::{self, Manner};
@@ -156,7 +156,8 @@ pub(crate) const DIGITS_BY_HAND: u8 = 4;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let (robot, lints) = arguments.robot()?;
-    let remark = degrees(arguments, &robot) + &impossible_payload(arguments) + &lints;
+    let q = arguments.q.as_ref().map_or(&[][..], |List(q)| q);
+    let remark = limits::Degrees::of(&robot, [q]).remark() + &impossible_payload(arguments) + &lints;
     let outcome = computed(arguments, robot)?;
     let outcome = Outcome { remark: outcome.remark + &remark, ..outcome };
     let letters = arguments.letters;
@@ -167,17 +168,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         text => letters.page(text, PAGE),
     };
     Ok(Outcome { text, remark: letters.page(&outcome.remark, PAGE), ..outcome })
-}
-
-/// A remark on a position that is probably in degrees: more than a turn, and with few digits, as no angle in radians.
-fn degrees(arguments: &Arguments, robot: &Robot) -> String {
-    let positions = arguments.q.iter().flat_map(|List(q)| robot.independent_joints().zip(q));
-    let is_degrees = |(joint, q): &(&Joint, &f64)| {
-        joint.row.kind == JointKind::Revolute && q.abs() > std::f64::consts::TAU && (10.0 * **q).fract() == 0.0
-    };
-    positions.into_iter().find(is_degrees).map_or_else(String::new, |(joint, q)| {
-        format!("{} is at {q} rad, more than a full turn; if this is in degrees, write {q}deg\n", joint.name)
-    })
 }
 
 /// A remark on a payload whose inertia no distribution of mass has. In a robot file, such a link is a warning.

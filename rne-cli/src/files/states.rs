@@ -15,6 +15,7 @@ use crate::files::state_results::{self, Results};
 use crate::files::state_table::{PART, Restricted, Table};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, QUIET};
+use crate::values::limits::Degrees;
 
 /// A file of states, and where its results go.
 pub(crate) struct Job<'a> {
@@ -123,7 +124,9 @@ impl Job<'_> {
         let mut results = Results::open(self.out.filter(|out| !is_standard_output(out)), &read, self.force, &outputs)?;
         let progress = progress(self.states, table.states, results.is_terminal());
         let start = Instant::now();
-        let (mut states, mut not_finite) = (0_usize, NotFinite::default());
+        let (mut states, mut not_finite, mut degrees) = (0_usize, NotFinite::default(), Degrees::default());
+        // positions come first
+        let turning = compiled.arguments().first().map_or(0, |&(name, dof)| if name == "q" { dof } else { 0 });
         let (mut rows, mut numbers) = (Vec::with_capacity(PART * columns.len()), vec![0.0; PART * outputs.len()]);
         loop {
             rows.clear();
@@ -131,6 +134,7 @@ impl Job<'_> {
             if count == 0 {
                 break;
             }
+            rows.chunks(columns.len()).for_each(|row| degrees.see(self.arm.robot(), &row[..turning]));
             let mut at = 0;
             let mut arguments = Arguments::new();
             for &(name, elements) in compiled.arguments() {
@@ -165,7 +169,8 @@ impl Job<'_> {
             .out
             .filter(|out| !is_standard_output(out))
             .map_or(String::new(), |out| format!("{GOOD}wrote{GOOD:#} {}: ", out.display()));
-        let remark = format!("{place}{} of {states} {noun}{rate}\n{}", self.function, not_finite.remark());
+        let [degrees, not_finite] = [degrees.remark(), not_finite.remark()];
+        let remark = format!("{place}{} of {states} {noun}{rate}\n{degrees}{not_finite}", self.function);
         Ok(Outcome::remark(remark))
     }
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use rne_model::{JointKind, Robot, six_digits};
+use rne_model::{Joint, JointKind, Robot, six_digits};
 
 /// A line for each joint whose position, rad or m, lies outside of its limits in the file: of those of `q`, and of the
 /// dependent joints of closed loops. The numbers are right all the same: limits are no part of the dynamics.
@@ -35,6 +35,41 @@ pub(crate) fn remark(robot: &Robot, q: &[f64], passive: &[f64]) -> String {
         );
     }
     text
+}
+
+/// A position of a revolute joint that is probably in degrees: it is more than a turn, and the positions of all states
+/// have few digits, as no angles in radians.
+#[derive(Default)]
+pub(crate) struct Degrees {
+    /// The first position over a turn, and the name of its joint.
+    first: Option<(String, f64)>,
+    have_digits: bool,
+}
+
+impl Degrees {
+    /// Of the positions of each state.
+    pub(crate) fn of<'a>(robot: &Robot, states: impl IntoIterator<Item = &'a [f64]>) -> Self {
+        let mut degrees = Self::default();
+        states.into_iter().for_each(|q| degrees.see(robot, q));
+        degrees
+    }
+
+    /// The positions of one more state.
+    pub(crate) fn see(&mut self, robot: &Robot, q: &[f64]) {
+        let turns = |(joint, _): &(&Joint, &f64)| joint.row.kind == JointKind::Revolute;
+        for (joint, &q) in robot.independent_joints().zip(q).filter(turns) {
+            self.have_digits |= (10.0 * q).fract() != 0.0;
+            if self.first.is_none() && q.abs() > TAU {
+                self.first = Some((joint.name.clone(), q));
+            }
+        }
+    }
+
+    pub(crate) fn remark(&self) -> String {
+        self.first.as_ref().filter(|_| !self.have_digits).map_or_else(String::new, |(joint, q)| {
+            format!("{joint} is at {q} rad, more than a full turn; if this is in degrees, write {q}deg\n")
+        })
+    }
 }
 
 /// Whether positions, which are in rad, were probably meant in degrees: some joint would be turned by more than a turn,

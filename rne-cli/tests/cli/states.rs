@@ -310,6 +310,9 @@ fn what_is_not_finite_is_told() {
     assert!(found.err.ends_with("note: the results of 2 states are not finite; the first is state 2\n"), "{found:?}");
     let lines: Vec<&str> = found.out.lines().collect();
     assert_eq!((lines[1], lines[2], lines[3]), (lines[4], "NaN,NaN", "NaN,NaN"));
+    let told = "j1 is at 90 rad, more than a full turn; if this is in degrees, write 90deg\n";
+    assert!(gravity("q1,q2\n0,1\n90,0.5\n").err.ends_with(told));
+    assert!(!gravity("q1,q2\n0,1\n90,0.51\n").err.contains("degrees"));
     assert!(gravity("q1,q2\ninf,0\n").err.ends_with("note: the result of state 1 is not finite\n"));
 }
 

@@ -47,7 +47,8 @@ impl<const DOF: usize, T> From<(BaseAcceleration<T>, [T; DOF])> for FloatingAcce
 }
 
 /// Dynamics of a robot whose base nothing holds: it walks, flies or rides. Its base is the link `floating_base` of the
-/// robot file; without that key the base has no mass, and the wrench is what the mount of the robot must bear.
+/// robot file; without that key the derive is an error, unless its attribute has `allow_lints`: then the base has no
+/// mass, and the wrench is what the mount of the robot must bear.
 ///
 /// The tips and their wrenches are those of [`TipWrenches`]. `NV` = `DOF` + 6 velocities: three linear ones of the
 /// base, three angular ones, all in axes of frame 0, then those of the joints. Accelerations are (a - g, ω̇, q̈) with
