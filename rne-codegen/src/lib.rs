@@ -52,8 +52,9 @@ pub use exact::ExactFunction;
 pub use expression::{Expression, ExpressionKind};
 pub use factorization::Factorization;
 pub use function::{
-    Answer, AnswerTable, Argument, ArgumentPart, Capability, Entry, Form, Function, Labels, Layout, Length, MatrixUnit,
-    OfRobot, Own, Record, Returned, Shape, Sizes, function_named, function_of_plan, functions_of, own, sizes_of,
+    Answer, AnswerTable, Argument, ArgumentPart, Axes, Base, Capability, Entry, Form, Function, Labels, Layout, Length,
+    Load, MatrixUnit, OfRobot, Own, Record, Returned, Shape, Sizes, What, function_named, function_of_plan,
+    functions_of, own, sizes_of,
 };
 pub use interpret::{Arguments, Interpreter, Real};
 pub use ir::{

@@ -136,7 +136,7 @@ impl<S: Constant> DynArm<S> {
     pub fn evaluate<T: Scalar>(&self, function: Function, inputs: &Inputs<'_, T>) -> Result<Vec<T>, WrongLength> {
         macro_rules! calls {
             ($(
-                $variant:ident = $name:ident($($argument:ident: $kind:ident),*)
+                $variant:ident $axes:tt = $name:ident($($argument:ident: $kind:ident),*)
                     -> $returned:ident $(at $of_frame:ident)?:
                     $summary:literal $(, $details:literal)?;
             )*) => {

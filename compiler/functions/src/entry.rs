@@ -1,10 +1,13 @@
 //! Entries of the table of functions.
 
-use crate::{Answer, Argument, Capability, Function, Returned};
+use crate::axes::{Axes, Base, Load, What};
+use crate::{Answer, Argument, Capability, Returned};
 
 /// The signature of a function, and the words for its callers.
 #[derive(Debug)]
 pub(crate) struct Signature {
+    /// The parts of its name.
+    pub(crate) axes: Axes,
     /// The first line of its documentation.
     pub(crate) summary: &'static str,
     /// Shapes, units, frames and signs that the names do not tell.
@@ -17,12 +20,12 @@ pub(crate) struct Signature {
     pub(crate) of_frame: Option<&'static str>,
 }
 
-/// Properties of a function.
-#[derive(Debug)]
+/// Properties of what functions compute, on one kind of base.
+#[derive(Clone, Copy, Debug)]
 #[allow(clippy::struct_excessive_bools)] // each is a property by itself
 pub struct Entry {
-    /// The variant, which is at this place.
-    pub function: Function,
+    /// What they compute.
+    pub(crate) what: What,
     /// The trait.
     pub capability: Capability,
     /// The argument of C behind which the result is written. A single number is returned.
@@ -48,9 +51,9 @@ pub struct Entry {
 
 impl Entry {
     /// The entry that most functions have in common.
-    pub(crate) const fn of(function: Function, capability: Capability) -> Self {
+    pub(crate) const fn of(what: What, capability: Capability) -> Self {
         Self {
-            function,
+            what,
             capability,
             output: "",
             listed: "returned",
@@ -65,10 +68,53 @@ impl Entry {
     }
 
     /// The entry that functions which return joint torques have in common.
-    pub(crate) const fn torques(function: Function, capability: Capability) -> Self {
-        Self { output: "tau", returns_torques: true, ..Self::of(function, capability) }
+    pub(crate) const fn torques(what: What, capability: Capability) -> Self {
+        Self { output: "tau", returns_torques: true, ..Self::of(what, capability) }
+    }
+
+    /// The entry among these. Each is there once, and has what C and listings say.
+    pub(crate) const fn find(what: What, rows: &[Self]) -> Self {
+        let (mut found, mut index) = (None, 0);
+        while index < rows.len() {
+            assert!(!rows[index].output.is_empty() && !rows[index].listed.is_empty());
+            if rows[index].what as usize == what as usize {
+                assert!(found.is_none());
+                found = Some(rows[index]);
+            }
+            index += 1;
+        }
+        found.expect("an entry for each kind of base")
+    }
+
+    /// The entry for a robot with this base, load and loops: their trait is another one, and loops may be singular.
+    pub(crate) const fn for_robot(self, Axes { base, load, loops, .. }: Axes) -> Self {
+        let capability = match (loops, base, load) {
+            (true, Base::Floating, _) => Capability::FloatingClosedLoops,
+            (true, _, _) => Capability::ClosedLoops,
+            (false, Base::Moving, _) => Capability::MovingBase,
+            // the trait of an arm has its torques with a payload, too
+            (false, Base::Held, Load::Payload) if !matches!(self.what, What::InverseDynamics) => {
+                Capability::PayloadDynamics
+            }
+            (false, Base::Held, Load::Wrenches) => Capability::TipWrenches,
+            _ => self.capability,
+        };
+        let divides = match self.divides {
+            divides if !loops => divides,
+            _ if self.inverts_mass => Some(MOVES_NO_MASS),
+            _ => Some(SINGULAR_LOOPS),
+        };
+        Self { capability, divides, ..self }
     }
 }
+
+/// Why a solution of the equations of loops may be none.
+pub(crate) const SINGULAR_LOOPS: &str = "the numbers are not finite: the loops are singular in this position (the \
+                                         dependent joints are not determined), or the state is too large";
+
+/// Why accelerations of a robot with loops may be none.
+const MOVES_NO_MASS: &str = "the accelerations are not finite: the mass matrix is singular (a joint moves no mass), \
+                             the loops are singular in this position, or the state is too large";
 
 /// Why a centre of mass may be none.
 pub(crate) const WITHOUT_MASS: &str =

@@ -1,9 +1,9 @@
-//! The functions of a robot on a base that a stand holds or that moves as told.
+//! What is computed of a robot on a base that stands still or that something else moves.
 
-use crate::Function;
 use crate::answer::{AXES, Answer, AnswerTable, Labels, MatrixUnit};
+use crate::axes::What;
 use crate::capability::Capability;
-use crate::entry::{Entry, WITHOUT_MASS};
+use crate::entry::{Entry, SINGULAR_LOOPS, WITHOUT_MASS};
 
 /// A row and a column per joint.
 const fn of_joints(about: &'static str, unit: MatrixUnit) -> AnswerTable {
@@ -21,7 +21,7 @@ const MASS_MATRIX: Entry = Entry {
     answer: Answer::Tables(&[of_joints("", MatrixUnit::Mass)]),
     is_of_motion: true,
     feels_rotors: true,
-    ..Entry::of(Function::MassMatrix, Capability::MassMatrix)
+    ..Entry::of(What::MassMatrix, Capability::MassMatrix)
 };
 
 const FORWARD_DYNAMICS: Entry = Entry {
@@ -33,7 +33,7 @@ const FORWARD_DYNAMICS: Entry = Entry {
     ),
     inverts_mass: true,
     feels_rotors: true,
-    ..Entry::of(Function::ForwardDynamics, Capability::ForwardDynamics)
+    ..Entry::of(What::ForwardDynamics, Capability::ForwardDynamics)
 };
 
 const DERIVATIVES: Entry = Entry {
@@ -41,7 +41,7 @@ const DERIVATIVES: Entry = Entry {
     listed: "returned: the rows of ∂τ/∂q, then those of ∂τ/∂q̇",
     answer: Answer::Tables(&[of_joints("∂τ/∂q", MatrixUnit::PerPosition), of_joints("∂τ/∂q̇", MatrixUnit::PerRate)]),
     is_of_motion: true,
-    ..Entry::of(Function::InverseDynamicsDerivatives, Capability::InverseDynamicsDerivatives)
+    ..Entry::of(What::InverseDynamicsDerivatives, Capability::InverseDynamicsDerivatives)
 };
 
 const MOMENTUM_AND_RATE: Entry = Entry {
@@ -55,7 +55,7 @@ const MOMENTUM_AND_RATE: Entry = Entry {
     )]),
     is_of_motion: true,
     feels_rotors: true,
-    ..Entry::of(Function::MomentumAndRate, Capability::MomentumObserver)
+    ..Entry::of(What::MomentumAndRate, Capability::MomentumObserver)
 };
 
 /// The elements of an inverse mass matrix.
@@ -80,7 +80,7 @@ const ACCELERATION_DERIVATIVES: Entry = Entry {
     ),
     inverts_mass: true,
     feels_rotors: true,
-    ..Entry::of(Function::ForwardDynamicsDerivatives, Capability::ForwardDynamicsDerivatives)
+    ..Entry::of(What::ForwardDynamicsDerivatives, Capability::ForwardDynamicsDerivatives)
 };
 
 /// The part of an entry that the step and its derivatives have in common.
@@ -91,7 +91,7 @@ const STEP: Entry = Entry {
         "the result of the step is not finite: the mass matrix is singular \
          (a joint moves no mass), or the state is too large",
     ),
-    ..Entry::of(Function::EulerStep, Capability::EulerStep)
+    ..Entry::of(What::EulerStep, Capability::EulerStep)
 };
 
 /// A block of the derivatives of a step.
@@ -99,34 +99,36 @@ const fn of_step(about: &'static str) -> AnswerTable {
     AnswerTable::of(about, Labels::Joints, Labels::Joints)
 }
 
+/// The part of an entry that functions of the loops alone have in common.
+const OF_CLOSURE: Entry =
+    Entry { divides: Some(SINGULAR_LOOPS), ..Entry::of(What::ClosureStep, Capability::ClosedLoops) };
+
 /// The functions.
-pub(crate) static FIXED_BASE: &[Entry] = &[
-    Entry { ..Entry::torques(Function::InverseDynamics, Capability::InverseDynamics) },
-    Entry { ..Entry::torques(Function::InverseDynamicsWithWrench, Capability::InverseDynamics) },
-    Entry { ..Entry::torques(Function::InverseDynamicsWithPayload, Capability::InverseDynamics) },
-    Entry { ..Entry::torques(Function::InverseDynamicsFromSinCos, Capability::InverseDynamics) },
-    Entry { is_of_motion: true, ..Entry::torques(Function::GravityTorques, Capability::InverseDynamics) },
-    Entry { is_of_motion: true, ..Entry::torques(Function::BiasTorques, Capability::InverseDynamics) },
+pub(crate) const FIXED_BASE: &[Entry] = &[
+    Entry { ..Entry::torques(What::InverseDynamics, Capability::InverseDynamics) },
+    Entry { ..Entry::torques(What::InverseDynamicsFromSinCos, Capability::InverseDynamics) },
+    Entry { is_of_motion: true, ..Entry::torques(What::GravityTorques, Capability::InverseDynamics) },
+    Entry { is_of_motion: true, ..Entry::torques(What::BiasTorques, Capability::InverseDynamics) },
     MASS_MATRIX,
     Entry {
         output: "coriolis",
         listed: "returned: the rows of the matrix",
         answer: Answer::Tables(&[of_joints("", MatrixUnit::PerRate)]),
         is_of_motion: true,
-        ..Entry::of(Function::CoriolisMatrix, Capability::CoriolisMatrix)
+        ..Entry::of(What::CoriolisMatrix, Capability::CoriolisMatrix)
     },
     FORWARD_DYNAMICS,
     Entry {
         output: "tip",
         listed: "returned: the rows of the rotation, then the translation",
         answer: Answer::Poses,
-        ..Entry::of(Function::ForwardKinematics, Capability::Kinematics)
+        ..Entry::of(What::ForwardKinematics, Capability::Kinematics)
     },
     Entry {
         output: "poses",
         listed: "returned: rotation and translation of every link",
         answer: Answer::Poses,
-        ..Entry::of(Function::LinkPoses, Capability::Kinematics)
+        ..Entry::of(What::LinkPoses, Capability::Kinematics)
     },
     Entry {
         output: "jacobian",
@@ -136,7 +138,7 @@ pub(crate) static FIXED_BASE: &[Entry] = &[
             Labels::Names(&["vx", "vy", "vz", "wx", "wy", "wz"]),
             Labels::Joints,
         )]),
-        ..Entry::of(Function::Jacobian, Capability::Kinematics)
+        ..Entry::of(What::Jacobian, Capability::Kinematics)
     },
     Entry {
         output: "acceleration",
@@ -145,15 +147,15 @@ pub(crate) static FIXED_BASE: &[Entry] = &[
             Labels::Names(&["linear, m/s²", "angular, rad/s²"]),
             AXES,
         )]),
-        ..Entry::of(Function::JacobianRateTimesVelocity, Capability::Kinematics)
+        ..Entry::of(What::JacobianRateTimesVelocity, Capability::Kinematics)
     },
     Entry {
         output: "energy",
         answer: Answer::Number("J"),
         feels_rotors: true,
-        ..Entry::of(Function::KineticEnergy, Capability::Energy)
+        ..Entry::of(What::KineticEnergy, Capability::Energy)
     },
-    Entry { output: "energy", answer: Answer::Number("J"), ..Entry::of(Function::PotentialEnergy, Capability::Energy) },
+    Entry { output: "energy", answer: Answer::Number("J"), ..Entry::of(What::PotentialEnergy, Capability::Energy) },
     Entry {
         output: "centre",
         listed: "returned: x, y, z",
@@ -163,7 +165,7 @@ pub(crate) static FIXED_BASE: &[Entry] = &[
             AXES,
         )]),
         divides: Some(WITHOUT_MASS),
-        ..Entry::of(Function::CentreOfMass, Capability::CentreOfMass)
+        ..Entry::of(What::CentreOfMass, Capability::CentreOfMass)
     },
     Entry {
         output: "jacobian",
@@ -174,13 +176,13 @@ pub(crate) static FIXED_BASE: &[Entry] = &[
             Labels::Joints,
         )]),
         divides: Some(WITHOUT_MASS),
-        ..Entry::of(Function::CentreOfMassJacobian, Capability::CentreOfMass)
+        ..Entry::of(What::CentreOfMassJacobian, Capability::CentreOfMass)
     },
     Entry {
         output: "regressor",
         listed: "returned: torque, link, parameter (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)",
         answer: Answer::PerParameter,
-        ..Entry::of(Function::Regressor, Capability::Regressor)
+        ..Entry::of(What::Regressor, Capability::Regressor)
     },
     DERIVATIVES,
     Entry {
@@ -193,16 +195,15 @@ pub(crate) static FIXED_BASE: &[Entry] = &[
             Labels::Names(&["fx", "fy", "fz", "nx", "ny", "nz"]),
         )]),
         is_irreducible: true,
-        ..Entry::of(Function::JointWrenches, Capability::JointWrenches)
+        ..Entry::of(What::JointWrenches, Capability::JointWrenches)
     },
     MOMENTUM_AND_RATE,
-    Entry { ..Entry::torques(Function::InverseDynamicsOnMovingBase, Capability::MovingBase) },
     Entry {
         output: "tau",
         answer: Answer::Torques,
         is_irreducible: true,
         feels_rotors: true,
-        ..Entry::of(Function::ActuatorTorques, Capability::Actuation)
+        ..Entry::of(What::ActuatorTorques, Capability::Actuation)
     },
     Entry {
         output: "inverse",
@@ -212,29 +213,9 @@ pub(crate) static FIXED_BASE: &[Entry] = &[
         is_of_motion: true,
         inverts_mass: true,
         divides: Some(INVERSE_OF_NOTHING),
-        ..Entry::of(Function::InverseMassMatrix, Capability::MassMatrix)
+        ..Entry::of(What::InverseMassMatrix, Capability::MassMatrix)
     },
-    Entry { is_of_motion: true, ..Entry::torques(Function::GravityTorquesWithPayload, Capability::PayloadDynamics) },
-    Entry { is_of_motion: true, ..Entry::torques(Function::BiasTorquesWithPayload, Capability::PayloadDynamics) },
-    Entry { function: Function::MassMatrixWithPayload, capability: Capability::PayloadDynamics, ..MASS_MATRIX },
-    Entry {
-        function: Function::ForwardDynamicsWithPayload,
-        capability: Capability::PayloadDynamics,
-        ..FORWARD_DYNAMICS
-    },
-    Entry {
-        function: Function::InverseDynamicsDerivativesWithPayload,
-        capability: Capability::PayloadDynamics,
-        ..DERIVATIVES
-    },
-    Entry {
-        function: Function::MomentumAndRateWithPayload,
-        capability: Capability::PayloadDynamics,
-        ..MOMENTUM_AND_RATE
-    },
-    Entry { output: "tau", ..Entry::of(Function::WrenchTorques, Capability::Kinematics) },
-    Entry { ..Entry::torques(Function::InverseDynamicsWithWrenches, Capability::TipWrenches) },
-    Entry { function: Function::ForwardDynamicsWithWrenches, capability: Capability::TipWrenches, ..FORWARD_DYNAMICS },
+    Entry { output: "tau", ..Entry::of(What::WrenchTorques, Capability::Kinematics) },
     Entry {
         output: "gradient",
         listed: "returned: derivatives by q, then by q̇, then by q̈",
@@ -245,29 +226,14 @@ pub(crate) static FIXED_BASE: &[Entry] = &[
         )]),
         is_of_motion: true,
         feels_rotors: true,
-        ..Entry::of(Function::TorqueGradient, Capability::InverseDynamicsGradient)
+        ..Entry::of(What::TorqueGradient, Capability::InverseDynamicsGradient)
     },
     ACCELERATION_DERIVATIVES,
     Entry {
-        function: Function::InverseMassMatrixTimesTorques,
+        what: What::InverseMassMatrixTimesTorques,
         capability: Capability::MassMatrix,
         is_of_motion: true,
         ..FORWARD_DYNAMICS
-    },
-    Entry {
-        function: Function::InverseDynamicsDerivativesWithWrenches,
-        capability: Capability::TipWrenches,
-        ..DERIVATIVES
-    },
-    Entry {
-        function: Function::ForwardDynamicsDerivativesWithWrenches,
-        capability: Capability::TipWrenches,
-        ..ACCELERATION_DERIVATIVES
-    },
-    Entry {
-        function: Function::ForwardDynamicsDerivativesWithPayload,
-        capability: Capability::PayloadDynamics,
-        ..ACCELERATION_DERIVATIVES
     },
     Entry {
         output: "rate",
@@ -277,7 +243,7 @@ pub(crate) static FIXED_BASE: &[Entry] = &[
             Labels::Names(&["vx", "vy", "vz", "wx", "wy", "wz"]),
             Labels::Joints,
         )]),
-        ..Entry::of(Function::JacobianRate, Capability::JacobianDerivatives)
+        ..Entry::of(What::JacobianRate, Capability::JacobianDerivatives)
     },
     Entry {
         output: "derivatives",
@@ -292,7 +258,7 @@ pub(crate) static FIXED_BASE: &[Entry] = &[
             by_position("∂(row wy)/∂q"),
             by_position("∂(row wz)/∂q"),
         ]),
-        ..Entry::of(Function::JacobianDerivatives, Capability::JacobianDerivatives)
+        ..Entry::of(What::JacobianDerivatives, Capability::JacobianDerivatives)
     },
     Entry {
         output: "hessian",
@@ -305,7 +271,7 @@ pub(crate) static FIXED_BASE: &[Entry] = &[
         ]),
         is_of_motion: true,
         feels_rotors: true,
-        ..Entry::of(Function::TorqueHessian, Capability::InverseDynamicsHessian)
+        ..Entry::of(What::TorqueHessian, Capability::InverseDynamicsHessian)
     },
     Entry {
         output: "next",
@@ -318,7 +284,7 @@ pub(crate) static FIXED_BASE: &[Entry] = &[
         ..STEP
     },
     Entry {
-        function: Function::EulerStepDerivatives,
+        what: What::EulerStepDerivatives,
         capability: Capability::EulerStepDerivatives,
         output: "derivatives",
         listed: "returned: the rows of ∂q'/∂q, ∂q'/∂q̇ and ∂q'/∂τ, then those of ∂q̇'/∂q, ∂q̇'/∂q̇ and ∂q̇'/∂τ",
@@ -331,5 +297,40 @@ pub(crate) static FIXED_BASE: &[Entry] = &[
             of_step("∂q̇'/∂τ (rad/s or m/s, per N m or N)"),
         ]),
         ..STEP
+    },
+    Entry {
+        output: "step",
+        listed: "returned: positions of the dependent joints after the step, then the equations before it",
+        answer: Answer::Tables(&[
+            AnswerTable::of("after the step (rad, prismatic: m)", Labels::Names(&["passive"]), Labels::Passive),
+            AnswerTable::of(
+                "before the step (m, and products of axes)",
+                Labels::Names(&["residual"]),
+                Labels::Equations,
+            ),
+        ]),
+        ..OF_CLOSURE
+    },
+    Entry {
+        output: "map",
+        listed: "returned: the rows of the matrix",
+        answer: Answer::Tables(&[AnswerTable::of(
+            "velocity of each dependent joint per velocity; SI units",
+            Labels::Passive,
+            Labels::Joints,
+        )]),
+        what: What::LoopMap,
+        ..OF_CLOSURE
+    },
+    Entry {
+        output: "acceleration",
+        listed: "returned: accelerations of the dependent joints",
+        answer: Answer::Tables(&[AnswerTable::of(
+            "accelerations where q̈ is 0 (rad/s², prismatic: m/s²)",
+            Labels::Names(&["passive"]),
+            Labels::Passive,
+        )]),
+        what: What::LoopMapRateTimesVelocity,
+        ..OF_CLOSURE
     },
 ];

@@ -1,7 +1,7 @@
-//! The functions of a robot with a floating base.
+//! What is computed of a robot with a floating base.
 
-use crate::Function;
 use crate::answer::{AXES, Answer, AnswerTable, Labels};
+use crate::axes::What;
 use crate::capability::Capability;
 use crate::entry::{Entry, WITHOUT_MASS};
 
@@ -11,7 +11,7 @@ const VELOCITIES: Labels = Labels::BaseAndJoints;
 const ALONG_AND_ABOUT: Labels = Labels::Names(&["x", "y", "z", "about x", "about y", "about z"]);
 
 /// Torques, and the wrench on the base.
-pub(crate) const TORQUES: Entry = Entry {
+const TORQUES: Entry = Entry {
     output: "torques",
     listed: "returned: force and moment on the base, then the torques",
     answer: Answer::Tables(&[
@@ -19,11 +19,11 @@ pub(crate) const TORQUES: Entry = Entry {
         AnswerTable::of("moment on the base (N m), about the origin of frame 0", Labels::Names(&["moment"]), AXES),
         AnswerTable::of("torques (N m, prismatic: N)", Labels::Names(&["tau"]), Labels::Joints),
     ]),
-    ..Entry::of(Function::InverseDynamicsOfFloatingBase, Capability::FloatingBase)
+    ..Entry::of(What::InverseDynamics, Capability::FloatingBase)
 };
 
 /// The mass matrix with the rows of the base.
-pub(crate) const MASS_MATRIX: Entry = Entry {
+const MASS_MATRIX: Entry = Entry {
     output: "mass",
     listed: "returned: the rows of the matrix",
     answer: Answer::Tables(&[AnswerTable::of(
@@ -32,11 +32,11 @@ pub(crate) const MASS_MATRIX: Entry = Entry {
         VELOCITIES,
     )]),
     feels_rotors: true,
-    ..Entry::of(Function::FloatingMassMatrix, Capability::FloatingBase)
+    ..Entry::of(What::MassMatrix, Capability::FloatingBase)
 };
 
 /// Accelerations of the base and of the joints.
-pub(crate) const ACCELERATIONS: Entry = Entry {
+const ACCELERATIONS: Entry = Entry {
     output: "accelerations",
     listed: "returned: linear and angular acceleration of the base, then those of the joints",
     answer: Answer::Tables(&[
@@ -54,7 +54,7 @@ pub(crate) const ACCELERATIONS: Entry = Entry {
     ),
     inverts_mass: true,
     feels_rotors: true,
-    ..Entry::of(Function::FloatingForwardDynamics, Capability::FloatingBase)
+    ..Entry::of(What::ForwardDynamics, Capability::FloatingBase)
 };
 
 /// The part of an entry that the step and its derivatives have in common.
@@ -65,11 +65,11 @@ const STEP: Entry = Entry {
     ),
     inverts_mass: true,
     feels_rotors: true,
-    ..Entry::of(Function::FloatingEulerStep, Capability::FloatingEulerStep)
+    ..Entry::of(What::EulerStep, Capability::FloatingEulerStep)
 };
 
 /// The functions.
-pub(crate) static FLOATING_BASE: &[Entry] = &[
+pub(crate) const FLOATING_BASE: &[Entry] = &[
     TORQUES,
     MASS_MATRIX,
     Entry {
@@ -80,7 +80,7 @@ pub(crate) static FLOATING_BASE: &[Entry] = &[
             Labels::Names(&["bias"]),
             VELOCITIES,
         )]),
-        ..Entry::of(Function::FloatingBias, Capability::FloatingBase)
+        ..Entry::of(What::BiasTorques, Capability::FloatingBase)
     },
     ACCELERATIONS,
     Entry {
@@ -92,7 +92,7 @@ pub(crate) static FLOATING_BASE: &[Entry] = &[
             VELOCITIES,
         )]),
         divides: Some(WITHOUT_MASS),
-        ..Entry::of(Function::CentroidalMomentumMatrix, Capability::CentroidalMomentum)
+        ..Entry::of(What::CentroidalMomentumMatrix, Capability::CentroidalMomentum)
     },
     Entry {
         output: "rate",
@@ -103,25 +103,25 @@ pub(crate) static FLOATING_BASE: &[Entry] = &[
             ALONG_AND_ABOUT,
         )]),
         divides: Some(WITHOUT_MASS),
-        ..Entry::of(Function::CentroidalBias, Capability::CentroidalMomentum)
+        ..Entry::of(What::CentroidalBias, Capability::CentroidalMomentum)
     },
     Entry {
         output: "regressor",
         listed: "returned: force, moment and torque; base and link; parameter \
                  (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)",
         answer: Answer::PerParameter,
-        ..Entry::of(Function::FloatingRegressor, Capability::FloatingRegressor)
+        ..Entry::of(What::Regressor, Capability::FloatingRegressor)
     },
     Entry {
         output: "energy",
         answer: Answer::Number("J"),
         feels_rotors: true,
-        ..Entry::of(Function::FloatingKineticEnergy, Capability::FloatingEnergy)
+        ..Entry::of(What::KineticEnergy, Capability::FloatingEnergy)
     },
     Entry {
         output: "energy",
         answer: Answer::Number("J"),
-        ..Entry::of(Function::FloatingPotentialEnergy, Capability::FloatingEnergy)
+        ..Entry::of(What::PotentialEnergy, Capability::FloatingEnergy)
     },
     Entry {
         output: "momentum",
@@ -132,7 +132,7 @@ pub(crate) static FLOATING_BASE: &[Entry] = &[
             ALONG_AND_ABOUT,
         )]),
         divides: Some(WITHOUT_MASS),
-        ..Entry::of(Function::CentroidalMomentum, Capability::CentroidalMomentum)
+        ..Entry::of(What::CentroidalMomentum, Capability::CentroidalMomentum)
     },
     Entry {
         output: "jacobians",
@@ -142,7 +142,7 @@ pub(crate) static FLOATING_BASE: &[Entry] = &[
             Labels::OfTips(&["vx", "vy", "vz", "wx", "wy", "wz"]),
             VELOCITIES,
         )]),
-        ..Entry::of(Function::TipJacobians, Capability::FloatingKinematics)
+        ..Entry::of(What::TipJacobians, Capability::FloatingKinematics)
     },
     Entry {
         output: "accelerations",
@@ -152,7 +152,7 @@ pub(crate) static FLOATING_BASE: &[Entry] = &[
             Labels::OfTips(&["linear, m/s²", "angular, rad/s²"]),
             AXES,
         )]),
-        ..Entry::of(Function::TipAccelerations, Capability::FloatingKinematics)
+        ..Entry::of(What::TipAccelerations, Capability::FloatingKinematics)
     },
     Entry {
         output: "result",
@@ -177,7 +177,7 @@ pub(crate) static FLOATING_BASE: &[Entry] = &[
         ),
         inverts_mass: true,
         feels_rotors: true,
-        ..Entry::of(Function::ForwardDynamicsInContact, Capability::ContactDynamics)
+        ..Entry::of(What::ForwardDynamicsInContact, Capability::ContactDynamics)
     },
     Entry {
         output: "derivatives",
@@ -187,7 +187,7 @@ pub(crate) static FLOATING_BASE: &[Entry] = &[
             AnswerTable::of("by q̇; SI units", VELOCITIES, Labels::Joints),
             AnswerTable::of("by the angular velocity of the base, in axes of frame 0; SI units", VELOCITIES, AXES),
         ]),
-        ..Entry::of(Function::FloatingInverseDynamicsDerivatives, Capability::FloatingInverseDynamicsDerivatives)
+        ..Entry::of(What::InverseDynamicsDerivatives, Capability::FloatingInverseDynamicsDerivatives)
     },
     Entry {
         output: "next",
@@ -226,7 +226,7 @@ pub(crate) static FLOATING_BASE: &[Entry] = &[
             AnswerTable::of("velocities after the step by the velocities; SI units", VELOCITIES, VELOCITIES),
             AnswerTable::of("velocities after the step by the torques; SI units", VELOCITIES, Labels::Joints),
         ]),
-        function: Function::FloatingEulerStepDerivatives,
+        what: What::EulerStepDerivatives,
         capability: Capability::FloatingEulerStepDerivatives,
         ..STEP
     },

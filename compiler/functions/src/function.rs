@@ -1,5 +1,6 @@
 //! Properties of a function, by the table.
 
+use crate::axes::{Axes, Base, Load, What};
 use crate::table::{SIGNATURES, TABLE};
 use crate::{Answer, Argument, Capability, Entry, Function, Shape};
 #[cfg(feature = "alloc")]
@@ -50,12 +51,12 @@ impl Function {
                 | Capability::Regressor
                 | Capability::FloatingRegressor
                 | Capability::Actuation
-        ) && !matches!(self, Self::ClosureStep | Self::LoopMap | Self::LoopMapRateTimesVelocity)
+        ) && !matches!(self.what(), What::ClosureStep | What::LoopMap | What::LoopMapRateTimesVelocity)
     }
 
     /// Its entry in the table, which stands at its place.
     pub const fn entry(self) -> &'static Entry {
-        TABLE[self as usize]
+        &TABLE[self as usize]
     }
 
     /// The trait that it is a method of.
@@ -94,20 +95,28 @@ impl Function {
         self.takes(Argument::Wrenches) || self.shape().has_tips()
     }
 
-    /// The function of the same result for an arm with a payload, if the table has it.
+    /// The parts of its name.
     #[must_use]
-    pub const fn with_payload(self) -> Option<Self> {
-        match self {
-            Self::InverseDynamics => Some(Self::InverseDynamicsWithPayload),
-            Self::GravityTorques => Some(Self::GravityTorquesWithPayload),
-            Self::BiasTorques => Some(Self::BiasTorquesWithPayload),
-            Self::MassMatrix => Some(Self::MassMatrixWithPayload),
-            Self::ForwardDynamics => Some(Self::ForwardDynamicsWithPayload),
-            Self::InverseDynamicsDerivatives => Some(Self::InverseDynamicsDerivativesWithPayload),
-            Self::ForwardDynamicsDerivatives => Some(Self::ForwardDynamicsDerivativesWithPayload),
-            Self::MomentumAndRate => Some(Self::MomentumAndRateWithPayload),
-            _ => None,
-        }
+    pub const fn axes(self) -> Axes {
+        SIGNATURES[self as usize].axes
+    }
+
+    /// What it computes.
+    #[must_use]
+    pub const fn what(self) -> What {
+        self.axes().what
+    }
+
+    /// The function with these parts of its name, if the table has it.
+    #[must_use]
+    pub fn find(axes: Axes) -> Option<Self> {
+        Self::ALL.into_iter().find(|function| function.axes() == axes)
+    }
+
+    /// The function of the same result for a robot with a payload, if the table has it and this one has no load.
+    #[must_use]
+    pub fn with_payload(self) -> Option<Self> {
+        if self.axes().load == Load::Free { Self::find(self.axes().with_payload()) } else { None }
     }
 
     /// The beginning of its name at a frame, `jacobian` of `jacobian_of_camera`, for a function of the tip that can be
@@ -131,14 +140,13 @@ impl Function {
     /// Whether it is a function of a robot with a floating base.
     #[must_use]
     pub const fn is_of_floating_base(self) -> bool {
-        self.capability().has_velocities()
-            || matches!(self.capability(), Capability::FloatingEnergy | Capability::FloatingEulerStep)
+        matches!(self.axes().base, Base::Floating)
     }
 
     /// Whether it is a function of a robot with closed loops.
     #[must_use]
     pub const fn is_of_closed_loops(self) -> bool {
-        matches!(self.capability(), Capability::ClosedLoops | Capability::FloatingClosedLoops)
+        self.axes().loops
     }
 
     /// Whether rotors that belong to the arm change what it returns.

@@ -8,8 +8,8 @@ extern crate alloc;
 
 mod answer;
 mod argument;
+mod axes;
 mod capability;
-mod closed_loops;
 mod entry;
 mod fixed_base;
 mod floating_base;
@@ -21,6 +21,7 @@ mod table;
 
 pub use answer::{Answer, AnswerTable, Labels, MatrixUnit};
 pub use argument::{Argument, ArgumentPart};
+pub use axes::{Axes, Base, Load, What};
 pub use capability::Capability;
 pub use entry::Entry;
 #[cfg(feature = "alloc")]

@@ -1,18 +1,18 @@
 //! The table of functions: one signature and one entry for each, with all but its formulas.
 //!
-//! A function is added by a line of `functions!` here, an entry in the table of its kind of base, its formulas in
-//! `formulate`, and the runtime's own implementation. A new function is the last line, whatever its capability, so that
-//! the others keep their places, which are the ids of the C library.
+//! A function is added by a line of `functions!` here and the runtime's own implementation; what no other function
+//! computes has an entry in the table of its kind of base and formulas in `formulate`, too. A new function is the last
+//! line, whatever its capability, so that the others keep their places, which are the ids of the C library.
 
-use crate::closed_loops::CLOSED_LOOPS;
-use crate::entry::Signature;
+use crate::axes::{Axes, Base, What};
+use crate::entry::{Entry, Signature};
 use crate::fixed_base::FIXED_BASE;
 use crate::floating_base::FLOATING_BASE;
 use crate::named;
-use crate::{Argument, Entry, Returned};
+use crate::{Argument, Returned};
 
-/// Every function in the order of [`Function`]: its variant, its method with the arguments by their names and kinds,
-/// what it returns, and what it computes. `at NAME` follows what is returned where the function of the tip can be taken
+/// Every function in the order of [`Function`]: its variant, its [`Axes`], its method with the arguments by their names
+/// and kinds, what it returns, and what it computes. `at NAME` follows what is returned where the function of the tip can be taken
 /// at any frame of a link instead; its name there begins with NAME. `$callback!` is given the list, so that each door
 /// makes its methods of it.
 #[macro_export]
@@ -20,149 +20,149 @@ use crate::{Argument, Entry, Returned};
 macro_rules! functions {
     ($callback:ident) => {
         $callback! {
-            InverseDynamics = inverse_dynamics(q: Positions, qd: Rates, qdd: Accelerations) -> Vector:
+            InverseDynamics [InverseDynamics] = inverse_dynamics(q: Positions, qd: Rates, qdd: Accelerations) -> Vector:
                 "Torques for positions `q`, velocities `qd` and accelerations `qdd`, with a free tip.",
                 "tau: what the actuators must deliver, M(q) q̈ + C(q, q̇) q̇ + g(q). No friction; rotor inertia in an \
                  arm with its rotors only.";
-            InverseDynamicsWithWrench =
+            InverseDynamicsWithWrench [InverseDynamics.with_wrench] =
                 inverse_dynamics_with_wrench(q: Positions, qd: Rates, qdd: Accelerations, wrench: Wrench) -> Vector:
                 "Torques when the last link exerts a force and a moment on its environment, at the tip, in tip axes.",
                 "force (N), moment (N m): exerted BY the last link ON its environment, about the origin of the tip \
                  frame (tool included); what the environment exerts on the robot is the negative of them. tau: τ_free \
                  + Jᵀ w.";
-            InverseDynamicsWithPayload =
+            InverseDynamicsWithPayload [InverseDynamics.with_payload] =
                 inverse_dynamics_with_payload(q: Positions, qd: Rates, qdd: Accelerations, payload: Payload) -> Vector:
                 "Torques when a payload is fixed to the tip: its mass, centre of mass and inertia, in tip axes.",
                 "payload: mass (kg); centre of mass x, y, z from the origin of the tip frame (m; tool included); \
                  inertia about the centre of mass xx, yy, zz, xy, xz, yz (kg m²; xy is the tensor's element, -∫ x y \
                  dm). tau: those of the arm whose last link has this payload too.";
-            InverseDynamicsFromSinCos = inverse_dynamics_from_sin_cos(
+            InverseDynamicsFromSinCos [InverseDynamicsFromSinCos] = inverse_dynamics_from_sin_cos(
                 sin: Sines, cos: Cosines, q: Positions, qd: Rates, qdd: Accelerations
             ) -> Vector:
                 "Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints alone.",
                 "sine[i], cosine[i]: those of q[i], without the constant part of the joint's angle. Those of a \
                  prismatic joint are not used, as q[i] of a revolute joint is not.";
-            GravityTorques = gravity_torques(q: Positions) -> Vector:
+            GravityTorques [GravityTorques] = gravity_torques(q: Positions) -> Vector:
                 "Torques that hold the arm still against gravity, τ(q, 0, 0).";
-            BiasTorques = bias_torques(q: Positions, qd: Rates) -> Vector:
+            BiasTorques [BiasTorques] = bias_torques(q: Positions, qd: Rates) -> Vector:
                 "Coriolis, centrifugal and gravity torques, τ(q, q̇, 0).";
-            MassMatrix = mass_matrix(q: Positions) -> Matrix:
+            MassMatrix [MassMatrix] = mass_matrix(q: Positions) -> Matrix:
                 "The mass matrix M(q), symmetric: column j holds the torques for q̈ = e_j of an arm at rest.",
                 "mass[i][j]: torque of joint i for a unit acceleration of joint j, from rest and without gravity; kg \
                  m², kg m or kg, as the kinds of joints i and j have it. Rotor inertia in an arm with its rotors \
                  only.";
-            CoriolisMatrix = coriolis_matrix(q: Positions, qd: Rates) -> Matrix:
+            CoriolisMatrix [CoriolisMatrix] = coriolis_matrix(q: Positions, qd: Rates) -> Matrix:
                 "The Coriolis matrix C(q, q̇) of Christoffel: Ṁ - 2C is skew, and C = ½ ∂(bias torques)/∂q̇.",
                 "coriolis[i][j]: row i is torque i. Its product with q̇ are the Coriolis and centrifugal torques.";
-            ForwardDynamics = forward_dynamics(q: Positions, qd: Rates, tau: Torques) -> Vector:
+            ForwardDynamics [ForwardDynamics] = forward_dynamics(q: Positions, qd: Rates, tau: Torques) -> Vector:
                 "Accelerations for positions `q`, velocities `qd` and torques `tau`, with a free tip.",
                 "qdd: M(q)⁻¹ (τ - C(q, q̇) q̇ - g(q)). A singular mass matrix (a joint that moves nothing) gives \
                  numbers that are not finite.";
-            ForwardKinematics = forward_kinematics(q: Positions) -> Pose at pose:
+            ForwardKinematics [ForwardKinematics] = forward_kinematics(q: Positions) -> Pose at pose:
                 "The tip in the world, base and tool included.",
                 "tip->rotation: its columns are the axes of the tip frame, in world axes. tip->translation: its \
                  origin in the world, m.";
-            LinkPoses = link_poses(q: Positions) -> Poses:
+            LinkPoses [LinkPoses] = link_poses(q: Positions) -> Poses:
                 "The frame of every row of the table in the world.",
                 "poses[i]: at the far end of link i + 1 in a standard table, on its joint in a modified one; axes as \
                  columns, origin in m. The tool is not included.";
-            Jacobian = jacobian(q: Positions) -> SpatialRows at jacobian:
+            Jacobian [Jacobian] = jacobian(q: Positions) -> SpatialRows at jacobian:
                 "The geometric Jacobian of the tip in world axes: three linear rows, then three angular ones.",
                 "jacobian: its product with q̇ is the velocity of the origin of the tip frame (m/s) above the angular \
                  velocity of the last link (rad/s).";
-            JacobianRateTimesVelocity =
+            JacobianRateTimesVelocity [JacobianRateTimesVelocity] =
                 jacobian_rate_times_velocity(q: Positions, qd: Rates) -> Spatial at jacobian_rate_times_velocity:
                 "J̇ q̇: the acceleration of the tip in world axes when q̈ = 0, linear, then angular.",
                 "acceleration: of the origin of the tip frame (m/s²), then angular (rad/s²). At any other q̈ they are \
                  J q̈ + J̇ q̇.";
-            KineticEnergy = kinetic_energy(q: Positions, qd: Rates) -> Number:
+            KineticEnergy [KineticEnergy] = kinetic_energy(q: Positions, qd: Rates) -> Number:
                 "Kinetic energy, J.",
                 "½ q̇ᵀ M(q) q̇ of the links, and of the rotors in an arm with its rotors.";
-            PotentialEnergy = potential_energy(q: Positions) -> Number:
+            PotentialEnergy [PotentialEnergy] = potential_energy(q: Positions) -> Number:
                 "Potential energy in gravity, J; zero where a mass is at the origin of frame 0.",
                 "-Σ m g·c, with c from the origin of frame 0 to each centre of mass.";
-            CentreOfMass = centre_of_mass(q: Positions) -> Point:
+            CentreOfMass [CentreOfMass] = centre_of_mass(q: Positions) -> Point:
                 "The centre of mass of all links in the world, base included.",
                 "centre: Σ m c / Σ m, m. Rotors are not included. An arm without mass gives numbers that are not \
                  finite.";
-            CentreOfMassJacobian = centre_of_mass_jacobian(q: Positions) -> PointRows:
+            CentreOfMassJacobian [CentreOfMassJacobian] = centre_of_mass_jacobian(q: Positions) -> PointRows:
                 "The Jacobian of the centre of mass in world axes: its velocity per joint velocity.",
                 "jacobian: its product with q̇ is the velocity of the centre of mass, m/s. An arm without mass gives \
                  numbers that are not finite.";
-            Regressor = regressor(q: Positions, qd: Rates, qdd: Accelerations) -> Regressor:
+            Regressor [Regressor] = regressor(q: Positions, qd: Rates, qdd: Accelerations) -> Regressor:
                 "Torques per inertial parameter: joint, link, (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz).",
                 "regressor[i][j][k]: torque i per parameter k of link j, gravity included. The parameters refer to \
                  the link frame of the table: c and J from its origin, in its axes; Jxy is the tensor's element, -∫ x \
                  y dm.";
-            InverseDynamicsDerivatives =
+            InverseDynamicsDerivatives [InverseDynamicsDerivatives] =
                 inverse_dynamics_derivatives(q: Positions, qd: Rates, qdd: Accelerations) -> TorqueDerivatives:
                 "∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics`; row i is torque i.",
                 "dq[i][j], dqd[i][j]: of torque i, by joint j. The derivative by q̈ is the mass matrix.";
-            JointWrenches = joint_wrenches(q: Positions, qd: Rates, qdd: Accelerations) -> Wrenches:
+            JointWrenches [JointWrenches] = joint_wrenches(q: Positions, qd: Rates, qdd: Accelerations) -> Wrenches:
                 "Force and moment that link i-1 exerts on link i, at joint i, in axes fixed to link i.",
                 "wrenches[i]: exerted BY the link before joint i + 1 ON the link behind it, with a free tip; force in \
                  N, moment in N m; axis z is that of the joint. The moment is about the origin of the frame before it \
                  in a standard table, about the foot of the common normal on its axis in a modified one.";
-            MomentumAndRate = momentum_and_rate(q: Positions, qd: Rates, tau: Torques) -> MomentumAndRate:
+            MomentumAndRate [MomentumAndRate] = momentum_and_rate(q: Positions, qd: Rates, tau: Torques) -> MomentumAndRate:
                 "The momentum of the joints, M(q) q̇, and the rate it would have without external torques.",
                 "momentum: row i of M(q) q̇ (N m s, or N s for a prismatic joint), rotors included in an arm with its \
                  rotors. rate: τ + C(q, q̇)ᵀ q̇ - g(q) (N m or N); what the momentum changes faster than that is the \
                  external torque, so an observer needs no accelerations. tau: of the actuators, without friction.";
-            InverseDynamicsOnMovingBase =
+            InverseDynamicsOnMovingBase [InverseDynamics.moving] =
                 inverse_dynamics_on_moving_base(q: Positions, qd: Rates, qdd: Accelerations, base: Base) -> Vector:
                 "Torques on a base that moves as told, under gravity as told, with a free tip.",
                 "base_omega (rad/s), base_omega_dot (rad/s²): of frame 0. base_acceleration (m/s²): of its origin, \
                  gravity not included. base_gravity (m/s²): points down, and replaces the robot's own. All in the axes \
                  of frame 0.";
-            ActuatorTorques = actuator_torques(qd: Rates, qdd: Accelerations) -> Vector:
+            ActuatorTorques [ActuatorTorques] = actuator_torques(qd: Rates, qdd: Accelerations) -> Vector:
                 "What rotors behind gears and friction add to the torques.",
                 "G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇), to be added to the torques of the links. Friction of Coulomb \
                  is zero at rest; a joint without a motor needs nothing.";
-            InverseMassMatrix = inverse_mass_matrix(q: Positions) -> Matrix:
+            InverseMassMatrix [InverseMassMatrix] = inverse_mass_matrix(q: Positions) -> Matrix:
                 "The inverse of the mass matrix, M(q)⁻¹, symmetric: column j holds the accelerations for τ = e_j.",
                 "inverse[i][j]: acceleration of joint i for a unit torque at joint j, from rest and without gravity. \
                  Rotor inertia in an arm with its rotors only. A singular mass matrix (a joint that moves nothing) \
                  gives numbers that are not finite.";
-            GravityTorquesWithPayload = gravity_torques_with_payload(q: Positions, payload: Payload) -> Vector:
+            GravityTorquesWithPayload [GravityTorques.with_payload] = gravity_torques_with_payload(q: Positions, payload: Payload) -> Vector:
                 "Torques that hold the arm and a payload at its tip still against gravity.",
                 "payload: as in inverse_dynamics_with_payload.";
-            BiasTorquesWithPayload = bias_torques_with_payload(q: Positions, qd: Rates, payload: Payload) -> Vector:
+            BiasTorquesWithPayload [BiasTorques.with_payload] = bias_torques_with_payload(q: Positions, qd: Rates, payload: Payload) -> Vector:
                 "Coriolis, centrifugal and gravity torques of the arm with a payload at its tip.",
                 "payload: as in inverse_dynamics_with_payload.";
-            MassMatrixWithPayload = mass_matrix_with_payload(q: Positions, payload: Payload) -> Matrix:
+            MassMatrixWithPayload [MassMatrix.with_payload] = mass_matrix_with_payload(q: Positions, payload: Payload) -> Matrix:
                 "The mass matrix of the arm with a payload at its tip, symmetric.",
                 "mass[i][j]: as in mass_matrix. payload: as in inverse_dynamics_with_payload.";
-            ForwardDynamicsWithPayload =
+            ForwardDynamicsWithPayload [ForwardDynamics.with_payload] =
                 forward_dynamics_with_payload(q: Positions, qd: Rates, tau: Torques, payload: Payload) -> Vector:
                 "Accelerations for positions `q`, velocities `qd` and torques `tau` with a payload at the tip.",
                 "qdd: as in forward_dynamics. payload: as in inverse_dynamics_with_payload.";
-            InverseDynamicsDerivativesWithPayload = inverse_dynamics_derivatives_with_payload(
+            InverseDynamicsDerivativesWithPayload [InverseDynamicsDerivatives.with_payload] = inverse_dynamics_derivatives_with_payload(
                 q: Positions, qd: Rates, qdd: Accelerations, payload: Payload
             ) -> TorqueDerivatives:
                 "∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics_with_payload`; row i is torque i.",
                 "dq[i][j], dqd[i][j]: of torque i, by joint j. The derivative by q̈ is mass_matrix_with_payload.";
-            MomentumAndRateWithPayload = momentum_and_rate_with_payload(
+            MomentumAndRateWithPayload [MomentumAndRate.with_payload] = momentum_and_rate_with_payload(
                 q: Positions, qd: Rates, tau: Torques, payload: Payload
             ) -> MomentumAndRate:
                 "The momentum of the joints with a payload at the tip, and its rate without external torques.",
                 "momentum, rate: as in momentum_and_rate. payload: as in inverse_dynamics_with_payload.";
-            WrenchTorques = wrench_torques(q: Positions, wrench: Wrench) -> Vector at wrench_torques:
+            WrenchTorques [WrenchTorques] = wrench_torques(q: Positions, wrench: Wrench) -> Vector at wrench_torques:
                 "Torques Jᵀ w of a force and a moment that the last link exerts at the tip, in tip axes.",
                 "force (N), moment (N m): as in inverse_dynamics_with_wrench. tau: its torques minus those of \
                  inverse_dynamics.";
-            InverseDynamicsWithWrenches = inverse_dynamics_with_wrenches(
+            InverseDynamicsWithWrenches [InverseDynamics.with_wrenches] = inverse_dynamics_with_wrenches(
                 q: Positions, qd: Rates, qdd: Accelerations, wrenches: Wrenches
             ) -> Vector:
                 "Torques when the robot exerts a force and a moment at each of its tips, in axes of the tip.",
                 "wrenches[k]: force (N), then moment (N m), exerted BY the robot ON its environment, about the origin \
                  of tip k. The tips are the frames of the list tips of the robot file, in its order; without the list, \
                  the tip frame. tau: τ_free + Σ Jₖᵀ wₖ.";
-            ForwardDynamicsWithWrenches = forward_dynamics_with_wrenches(
+            ForwardDynamicsWithWrenches [ForwardDynamics.with_wrenches] = forward_dynamics_with_wrenches(
                 q: Positions, qd: Rates, tau: Torques, wrenches: Wrenches
             ) -> Vector:
                 "Accelerations for positions `q`, velocities `qd`, torques `tau` and a wrench at each tip.",
                 "wrenches: as in inverse_dynamics_with_wrenches. qdd: as in forward_dynamics.";
-            InverseDynamicsOfFloatingBase = inverse_dynamics_of_floating_base(
+            InverseDynamicsOfFloatingBase [InverseDynamics.floating.with_wrenches] = inverse_dynamics_of_floating_base(
                 q: Positions, qd: Rates, qdd: Accelerations, base: Base, wrenches: Wrenches
             ) -> FloatingTorques:
                 "Torques, and the wrench that must act on the base, when nothing holds the base and it moves as told.",
@@ -170,12 +170,12 @@ macro_rules! functions {
                  what an inertial measurement unit reads. wrenches: as in inverse_dynamics_with_wrenches. wrench: \
                  force (N) and moment (N m) that must act ON the base beside gravity, about the origin of frame 0, in \
                  its axes; zero in free flight. tau: of the actuators.";
-            FloatingMassMatrix = floating_mass_matrix(q: Positions) -> FloatingMatrix:
+            FloatingMassMatrix [MassMatrix.floating] = floating_mass_matrix(q: Positions) -> FloatingMatrix:
                 "The mass matrix of a robot whose base nothing holds, symmetric: six rows of the base, then the joints.",
                 "mass[i][j]: rows are the force (N) on the base, the moment (N m) about the origin of frame 0 and the \
                  torques; columns are the acceleration of this origin less gravity, the angular acceleration of the \
                  base and the accelerations of the joints. The base in axes of frame 0.";
-            FloatingBias = floating_bias(
+            FloatingBias [BiasTorques.floating.with_wrenches] = floating_bias(
                 q: Positions, qd: Rates, omega: BaseVelocity, wrenches: Wrenches
             ) -> FloatingVector:
                 "Wrench on a base that nothing holds and torques, for zero accelerations: velocity products and tips.",
@@ -183,7 +183,7 @@ macro_rules! functions {
                  inverse_dynamics_with_wrenches. bias: force (N), moment (N m) about the origin of frame 0, then \
                  torques, where the acceleration of this origin less gravity, the angular acceleration and those of \
                  the joints are zero.";
-            FloatingForwardDynamics = floating_forward_dynamics(
+            FloatingForwardDynamics [ForwardDynamics.floating.with_wrenches] = floating_forward_dynamics(
                 q: Positions, qd: Rates, tau: Torques, omega: BaseVelocity, wrenches: Wrenches
             ) -> FloatingAccelerations:
                 "Accelerations of the base and of the joints for torques `tau`, when nothing holds the base.",
@@ -191,17 +191,17 @@ macro_rules! functions {
                  the origin of frame 0 less gravity (m/s²), which an accelerometer reads, and angular acceleration \
                  (rad/s²), in axes of frame 0. qdd: of the joints. A base without mass makes the mass matrix \
                  singular: the numbers mean nothing or are not finite.";
-            CentroidalMomentumMatrix = centroidal_momentum_matrix(q: Positions) -> FloatingRows:
+            CentroidalMomentumMatrix [CentroidalMomentumMatrix.floating] = centroidal_momentum_matrix(q: Positions) -> FloatingRows:
                 "The matrix A of a robot whose base nothing holds: A v is its momentum about its centre of mass.",
                 "map[i][j]: rows are the linear momentum (N s) and the angular momentum about the centre of mass \
                  (N m s); columns are the velocity of the origin of frame 0, the angular velocity of the base and the \
                  velocities of the joints. All vectors are in axes of frame 0.";
-            CentroidalBias = centroidal_bias(q: Positions, qd: Rates, omega: BaseVelocity) -> Spatial:
+            CentroidalBias [CentroidalBias.floating] = centroidal_bias(q: Positions, qd: Rates, omega: BaseVelocity) -> Spatial:
                 "The rate of the momentum about the centre of mass when all accelerations are zero.",
                 "omega: angular velocity of the base (rad/s), in axes of frame 0. rate: force (N), then moment about \
                  the centre of mass (N m), in axes of frame 0. A times the accelerations, as in \
                  floating_mass_matrix, plus this rate is what acts on the robot beside gravity.";
-            FloatingRegressor = floating_regressor(
+            FloatingRegressor [Regressor.floating] = floating_regressor(
                 q: Positions, qd: Rates, qdd: Accelerations, base: Base
             ) -> FloatingRegressor:
                 "Wrench on a base that nothing holds and torques per inertial parameter of the base and of each link.",
@@ -209,19 +209,19 @@ macro_rules! functions {
                  force (N) on the base, the moment (N m) about the origin of frame 0 and the torques; j is 0 for the \
                  base and counts the links from 1; k is the parameter, as in regressor. Those of the base refer to \
                  frame 0.";
-            FloatingKineticEnergy = floating_kinetic_energy(q: Positions, qd: Rates, twist: BaseTwist) -> Number:
+            FloatingKineticEnergy [KineticEnergy.floating] = floating_kinetic_energy(q: Positions, qd: Rates, twist: BaseTwist) -> Number:
                 "Kinetic energy of a robot whose base nothing holds, J.",
                 "twist: velocity of the origin of frame 0 (m/s), then angular velocity of the base (rad/s), in axes of \
                  frame 0. ½ vᵀ M v of these and of the joints, M as in floating_mass_matrix.";
-            FloatingPotentialEnergy = floating_potential_energy(q: Positions, pose: BasePose) -> Number:
+            FloatingPotentialEnergy [PotentialEnergy.floating] = floating_potential_energy(q: Positions, pose: BasePose) -> Number:
                 "Potential energy of such a robot in gravity, J; zero where a mass is at the origin of the world.",
                 "pose: of frame 0 in the world, in whose axes the robot file has gravity; rotation and origin (m). -Σ \
                  m g·c, with c from the origin of the world to each centre of mass.";
-            CentroidalMomentum = centroidal_momentum(q: Positions, qd: Rates, twist: BaseTwist) -> Spatial:
+            CentroidalMomentum [CentroidalMomentum.floating] = centroidal_momentum(q: Positions, qd: Rates, twist: BaseTwist) -> Spatial:
                 "The momentum of a robot whose base nothing holds, and its angular momentum about the centre of mass.",
                 "twist: as in floating_kinetic_energy. momentum: linear (N s), then angular about the centre of mass \
                  (N m s), in axes of frame 0: centroidal_momentum_matrix times the velocities, in fewer operations.";
-            TipJacobians = tip_jacobians(q: Positions, base_rotation: BaseRotation) -> TipRows:
+            TipJacobians [TipJacobians.floating] = tip_jacobians(q: Positions, base_rotation: BaseRotation) -> TipRows:
                 "The Jacobian of each tip of a robot whose base nothing holds, in world axes: linear rows, then angular.",
                 "base_rotation: its columns are the axes of frame 0 in the world. jacobians[k]: times the velocities, it \
                  is the velocity of the origin of tip k (m/s) above its angular velocity (rad/s), in world axes; \
@@ -229,7 +229,7 @@ macro_rules! functions {
                  of frame 0, and the velocities of the joints. The identity as base_rotation gives base axes, the \
                  transpose of the rotation of a tip in frame 0 gives axes of this tip. The tips are those of \
                  inverse_dynamics_with_wrenches.";
-            TipAccelerations = tip_accelerations(
+            TipAccelerations [TipAccelerations.floating] = tip_accelerations(
                 q: Positions, qd: Rates, omega: BaseVelocity, base_rotation: BaseRotation
             ) -> TipVectors:
                 "Accelerations of the tips of a robot on a floating base that accelerates nowhere: J̇ v, in world axes.",
@@ -238,7 +238,7 @@ macro_rules! functions {
                  (rad/s²), where the acceleration of the origin of frame 0, the angular acceleration of the base and \
                  those of the joints are zero. At others, those of the tip are its Jacobian times them, plus these. No \
                  linear velocity enters.";
-            ForwardDynamicsInContact = forward_dynamics_in_contact(
+            ForwardDynamicsInContact [ForwardDynamicsInContact.floating] = forward_dynamics_in_contact(
                 q: Positions, qd: Rates, tau: Torques, omega: BaseVelocity, base_rotation: BaseRotation
             ) -> AccelerationsAndWrenches:
                 "Accelerations of a robot on a floating base while its contacts hold tips, and the wrenches of these.",
@@ -248,7 +248,7 @@ macro_rules! functions {
                  (N m) about the origin of tip k, exerted ON the robot by its contact, in world axes; the moment of a \
                  point and all of a tip without a contact are zero. 1e-8 1/kg is added to the diagonal of J M⁻¹ Jᵀ, so \
                  that contacts that hold more than the robot can move have finite forces in double precision.";
-            FloatingInverseDynamicsDerivatives = floating_inverse_dynamics_derivatives(
+            FloatingInverseDynamicsDerivatives [InverseDynamicsDerivatives.floating.with_wrenches] = floating_inverse_dynamics_derivatives(
                 q: Positions, qd: Rates, qdd: Accelerations, base: Base, wrenches: Wrenches
             ) -> FloatingTorqueDerivatives:
                 "Derivatives of `inverse_dynamics_of_floating_base` by q, by q̇ and by the angular velocity of the base.",
@@ -258,103 +258,103 @@ macro_rules! functions {
                  velocity of the base. The base in axes of frame 0, in which its acceleration less gravity stays the \
                  same; so its position and orientation do not enter. The derivative by the accelerations is \
                  floating_mass_matrix.";
-            ClosureStep = closure_step(q: Positions, passive: Passive) -> ClosureStep:
+            ClosureStep [ClosureStep.of_loops] = closure_step(q: Positions, passive: Passive) -> ClosureStep:
                 "One Newton step towards closed loops: better positions of the dependent joints, and what is left.",
                 "passive: positions of the dependent joints (rad, prismatic: m), a guess. passive of the result: after \
                  the step. residual: the equations of the loops at the guess, loop by loop: p₂ - p₁ of the two places \
                  (m), in the axes of the loop, then the products of axes that must be perpendicular. Where the guess \
                  is singular, the numbers are not finite.";
-            LoopMap = loop_map(q: Positions, passive: Passive) -> PassiveRows:
+            LoopMap [LoopMap.of_loops] = loop_map(q: Positions, passive: Passive) -> PassiveRows:
                 "The matrix G of closed loops: the velocities of the dependent joints are G q̇.",
                 "passive: positions of the dependent joints that close the loops; steps of closure_step find them. \
                  map[i][j]: velocity of dependent joint i per velocity of joint j. Its transpose maps torques of dependent \
                  joints to torques of q. In a singular position the numbers are not finite.";
-            LoopMapRateTimesVelocity =
+            LoopMapRateTimesVelocity [LoopMapRateTimesVelocity.of_loops] =
                 loop_map_rate_times_velocity(q: Positions, passive: Passive, qd: Rates) -> PassiveVector:
                 "Accelerations of the dependent joints of closed loops where the others do not accelerate: Ġ q̇.",
                 "passive: as in loop_map. acceleration: rad/s², prismatic: m/s². Their accelerations are G q̈ plus these.";
-            InverseDynamicsOfLoops = inverse_dynamics_of_loops(
+            InverseDynamicsOfLoops [InverseDynamics.of_loops] = inverse_dynamics_of_loops(
                 q: Positions, passive: Passive, qd: Rates, qdd: Accelerations
             ) -> Vector:
                 "Torques of a robot with closed loops, of the joints that move by themselves.",
                 "passive: as in loop_map. tau: what the actuators of the joints of q must deliver, Gᵀ times the torques of \
                  the tree; the dependent joints have no actuators.";
-            InverseDynamicsOfLoopsWithWrenches = inverse_dynamics_of_loops_with_wrenches(
+            InverseDynamicsOfLoopsWithWrenches [InverseDynamics.with_wrenches.of_loops] = inverse_dynamics_of_loops_with_wrenches(
                 q: Positions, passive: Passive, qd: Rates, qdd: Accelerations, wrenches: Wrenches
             ) -> Vector:
                 "Torques of a robot with closed loops when it exerts a force and a moment at each tip.",
                 "passive: as in loop_map. wrenches: as in inverse_dynamics_with_wrenches. tau: as in \
                  inverse_dynamics_of_loops.";
-            MassMatrixOfLoops = mass_matrix_of_loops(q: Positions, passive: Passive) -> Matrix:
+            MassMatrixOfLoops [MassMatrix.of_loops] = mass_matrix_of_loops(q: Positions, passive: Passive) -> Matrix:
                 "The mass matrix of a robot with closed loops, of the joints that move by themselves: symmetric.",
                 "passive: as in loop_map. mass[i][j]: torque of joint i for a unit acceleration of joint j, from rest and \
                  without gravity; kg m², kg m or kg.";
-            ForwardDynamicsOfLoops = forward_dynamics_of_loops(
+            ForwardDynamicsOfLoops [ForwardDynamics.of_loops] = forward_dynamics_of_loops(
                 q: Positions, passive: Passive, qd: Rates, tau: Torques
             ) -> Vector:
                 "Accelerations of a robot with closed loops for torques `tau` of the joints that move by themselves.",
                 "passive: as in loop_map. qdd: of the joints of q; those of the dependent joints are G q̈ + Ġ q̇.";
-            InverseDynamicsOfFloatingLoops = inverse_dynamics_of_floating_loops(
+            InverseDynamicsOfFloatingLoops [InverseDynamics.floating.with_wrenches.of_loops] = inverse_dynamics_of_floating_loops(
                 q: Positions, passive: Passive, qd: Rates, qdd: Accelerations, base: Base, wrenches: Wrenches
             ) -> FloatingTorques:
                 "Torques of a robot with closed loops, and the wrench on its base, when nothing holds the base.",
                 "passive: as in loop_map. base, wrenches, wrench: as in inverse_dynamics_of_floating_base. tau: as in \
                  inverse_dynamics_of_loops.";
-            FloatingMassMatrixOfLoops = floating_mass_matrix_of_loops(q: Positions, passive: Passive) -> FloatingMatrix:
+            FloatingMassMatrixOfLoops [MassMatrix.floating.of_loops] = floating_mass_matrix_of_loops(q: Positions, passive: Passive) -> FloatingMatrix:
                 "The mass matrix of a robot with closed loops whose base nothing holds: six rows, then the joints.",
                 "passive: as in loop_map. mass[i][j]: as in floating_mass_matrix, of the joints of q.";
-            FloatingForwardDynamicsOfLoops = floating_forward_dynamics_of_loops(
+            FloatingForwardDynamicsOfLoops [ForwardDynamics.floating.with_wrenches.of_loops] = floating_forward_dynamics_of_loops(
                 q: Positions, passive: Passive, qd: Rates, tau: Torques, omega: BaseVelocity, wrenches: Wrenches
             ) -> FloatingAccelerations:
                 "Accelerations of the base and of the joints of a robot with closed loops, when nothing holds the base.",
                 "passive: as in loop_map. omega, wrenches, base: as in floating_forward_dynamics. qdd: as in \
                  forward_dynamics_of_loops.";
-            TorqueGradient = torque_gradient(
+            TorqueGradient [TorqueGradient] = torque_gradient(
                 q: Positions, qd: Rates, qdd: Accelerations, multipliers: Multipliers
             ) -> TorqueGradient:
                 "The gradient of λᵀτ: of the torques of `inverse_dynamics`, each times its multiplier λ and added up.",
                 "multipliers: λ, as an optimiser has them for the equations of motion. dq, dqd, dqdd: derivatives of \
                  λᵀτ by the positions, velocities and accelerations, which are λᵀ ∂τ/∂q, λᵀ ∂τ/∂q̇ and M(q) λ, in \
                  fewer operations. The unit of λᵀτ per that of the joint.";
-            ForwardDynamicsDerivatives = forward_dynamics_derivatives(
+            ForwardDynamicsDerivatives [ForwardDynamicsDerivatives] = forward_dynamics_derivatives(
                 q: Positions, qd: Rates, tau: Torques
             ) -> AccelerationDerivatives:
                 "∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂τ of `forward_dynamics`; row i is acceleration i.",
                 "dq[i][j], dqd[i][j], dtau[i][j]: of acceleration i, by joint j; -M⁻¹ times the derivatives of the \
                  torques at these accelerations, and M⁻¹, which is symmetric. A singular mass matrix (a joint that \
                  moves nothing) gives numbers that are not finite.";
-            InverseMassMatrixTimesTorques = inverse_mass_matrix_times_torques(q: Positions, tau: Torques) -> Vector:
+            InverseMassMatrixTimesTorques [InverseMassMatrixTimesTorques] = inverse_mass_matrix_times_torques(q: Positions, tau: Torques) -> Vector:
                 "M(q)⁻¹ τ: the accelerations that torques add, in fewer operations than the inverse has.",
                 "qdd: accelerations for the torques tau from rest and without gravity; at any motion, how the \
                  accelerations change with the torques. tau may be any vector, of torques or of impulses (N m s or N s): \
                  then qdd are the changes of the velocities. Rotor inertia in an arm with its rotors only. A singular \
                  mass matrix (a joint that moves nothing) gives numbers that are not finite.";
-            InverseDynamicsDerivativesWithWrenches = inverse_dynamics_derivatives_with_wrenches(
+            InverseDynamicsDerivativesWithWrenches [InverseDynamicsDerivatives.with_wrenches] = inverse_dynamics_derivatives_with_wrenches(
                 q: Positions, qd: Rates, qdd: Accelerations, wrenches: Wrenches
             ) -> TorqueDerivatives:
                 "∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics_with_wrenches`; row i is torque i.",
                 "dq[i][j], dqd[i][j]: of torque i, by joint j. wrenches: as in inverse_dynamics_with_wrenches; they do \
                  not change in axes of their tips. The derivative by q̈ is the mass matrix.";
-            ForwardDynamicsDerivativesWithWrenches = forward_dynamics_derivatives_with_wrenches(
+            ForwardDynamicsDerivativesWithWrenches [ForwardDynamicsDerivatives.with_wrenches] = forward_dynamics_derivatives_with_wrenches(
                 q: Positions, qd: Rates, tau: Torques, wrenches: Wrenches
             ) -> AccelerationDerivatives:
                 "∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂τ of `forward_dynamics_with_wrenches`; row i is acceleration i.",
                 "dq[i][j], dqd[i][j], dtau[i][j]: as in forward_dynamics_derivatives. wrenches: as in \
                  inverse_dynamics_derivatives_with_wrenches.";
-            ForwardDynamicsDerivativesWithPayload = forward_dynamics_derivatives_with_payload(
+            ForwardDynamicsDerivativesWithPayload [ForwardDynamicsDerivatives.with_payload] = forward_dynamics_derivatives_with_payload(
                 q: Positions, qd: Rates, tau: Torques, payload: Payload
             ) -> AccelerationDerivatives:
                 "∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂τ of `forward_dynamics_with_payload`; row i is acceleration i.",
                 "dq[i][j], dqd[i][j], dtau[i][j]: as in forward_dynamics_derivatives. payload: as in \
                  inverse_dynamics_with_payload.";
-            JacobianRate = jacobian_rate(q: Positions, qd: Rates) -> SpatialRows at jacobian_rate:
+            JacobianRate [JacobianRate] = jacobian_rate(q: Positions, qd: Rates) -> SpatialRows at jacobian_rate:
                 "The rate J̇ of the geometric Jacobian at velocities `qd`, in world axes.",
                 "rate[r][i]: of element (r, i) of jacobian. Its product with q̇ is jacobian_rate_times_velocity.";
-            JacobianDerivatives = jacobian_derivatives(q: Positions) -> SpatialMatrices at jacobian_derivatives:
+            JacobianDerivatives [JacobianDerivatives] = jacobian_derivatives(q: Positions) -> SpatialMatrices at jacobian_derivatives:
                 "∂J/∂q: the derivatives of the geometric Jacobian by the positions, in world axes.",
                 "derivatives[r][i][j]: of element (r, i) of jacobian, by joint j. The three linear matrices are \
                  symmetric. The sum over j of these times q̇[j] is jacobian_rate.";
-            TorqueHessian = torque_hessian(
+            TorqueHessian [TorqueHessian] = torque_hessian(
                 q: Positions, qd: Rates, qdd: Accelerations, multipliers: Multipliers
             ) -> TorqueHessian:
                 "The Hessian of λᵀτ: of the torques of `inverse_dynamics`, each times its multiplier λ and added up.",
@@ -362,19 +362,19 @@ macro_rules! functions {
                  dqd_dqd[i][j], dq_dqdd[i][j]: second derivatives of λᵀτ by the position (dqd_dqd: velocity) of joint i \
                  and by the position, velocity or acceleration of joint j. dq_dq and dqd_dqd are symmetric. The other \
                  second derivatives, by q̇ and q̈ and by q̈ twice, are zero: the torques are linear in q̈, with M(q).";
-            EulerStep = euler_step(q: Positions, qd: Rates, tau: Torques, step: Step) -> NextState:
+            EulerStep [EulerStep] = euler_step(q: Positions, qd: Rates, tau: Torques, step: Step) -> NextState:
                 "A step of the semi-implicit Euler method under torques `tau`: positions and velocities after it.",
                 "step: its duration h (s). qd of the result: q̇ + h q̈ with the accelerations q̈ of forward_dynamics. q \
                  of the result: q plus h times these velocities. A singular mass matrix (a joint that moves nothing) \
                  gives numbers that are not finite.";
-            EulerStepDerivatives = euler_step_derivatives(
+            EulerStepDerivatives [EulerStepDerivatives] = euler_step_derivatives(
                 q: Positions, qd: Rates, tau: Torques, step: Step
             ) -> NextStateDerivatives:
                 "Derivatives of `euler_step` by q, by q̇ and by τ: the linear model of a step.",
                 "q.dq[i][j], q.dqd[i][j], q.dtau[i][j]: of position i after the step, by joint j; qd.dq and so on: of \
                  velocity i after the step. With the state x = (q, q̇), the matrices A and B of δx' = A δx + B δτ are \
                  made of these blocks.";
-            FloatingEulerStep = floating_euler_step(
+            FloatingEulerStep [EulerStep.floating.with_wrenches] = floating_euler_step(
                 q: Positions, qd: Rates, tau: Torques, pose: BasePose, twist: BaseTwist, step: Step, wrenches: Wrenches
             ) -> FloatingNextState:
                 "A step of the semi-implicit Euler method where nothing holds the base: the state after it.",
@@ -385,7 +385,7 @@ macro_rules! functions {
                  ones. The base turns by the unit quaternion (1 - s, 2 u) / (1 + s) with u = h omega / 4 and s = u·u. \
                  The rotation after the step is orthogonal to rounding, however many steps came before. A base without \
                  mass gives numbers that mean nothing or are not finite.";
-            FloatingEulerStepDerivatives = floating_euler_step_derivatives(
+            FloatingEulerStepDerivatives [EulerStepDerivatives.floating.with_wrenches] = floating_euler_step_derivatives(
                 q: Positions, qd: Rates, tau: Torques, pose: BasePose, twist: BaseTwist, step: Step, wrenches: Wrenches
             ) -> FloatingStepDerivatives:
                 "Derivatives of `floating_euler_step` by positions, velocities and τ: the linear model of a step.",
@@ -403,7 +403,8 @@ macro_rules! functions {
 /// The enum and the signatures.
 macro_rules! signatures {
     ($(
-        $variant:ident = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident $(at $of_frame:ident)?:
+        $variant:ident [$what:ident $(. $axis:ident)*] =
+            $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident $(at $of_frame:ident)?:
             $summary:literal $(, $details:literal)?;
     )*) => {
         named! {
@@ -415,6 +416,7 @@ macro_rules! signatures {
 
         /// The signatures, in the order of the variants.
         pub(crate) static SIGNATURES: &[Signature] = &[$(Signature {
+            axes: Axes::of(What::$what)$(.$axis())*,
             summary: $summary,
             details: concat!("" $(, $details)?),
             arguments: &[$(Argument::$kind),*],
@@ -426,24 +428,14 @@ macro_rules! signatures {
 
 functions!(signatures);
 
-/// The entries, in the order of the variants: none is missing, and none lacks what C and listings say.
-pub(crate) static TABLE: [&Entry; Function::ALL.len()] = {
-    let (mut entries, mut found) = ([&FIXED_BASE[0]; Function::ALL.len()], [false; Function::ALL.len()]);
-    let mut index = 0;
-    let floating = FIXED_BASE.len() + FLOATING_BASE.len();
-    while index < floating + CLOSED_LOOPS.len() {
-        let entry = if index >= floating {
-            &CLOSED_LOOPS[index - floating]
-        } else if index >= FIXED_BASE.len() {
-            &FLOATING_BASE[index - FIXED_BASE.len()]
-        } else {
-            &FIXED_BASE[index]
-        };
-        assert!(!entry.output.is_empty() && !entry.listed.is_empty());
-        assert!(!found[entry.function as usize]);
-        (entries[entry.function as usize], found[entry.function as usize]) = (entry, true);
+/// The entries, in the order of the variants.
+pub(crate) static TABLE: [Entry; Function::ALL.len()] = {
+    let (mut entries, mut index) = ([FIXED_BASE[0]; Function::ALL.len()], 0);
+    while index < Function::ALL.len() {
+        let axes = SIGNATURES[index].axes;
+        let rows = if matches!(axes.base, Base::Floating) { FLOATING_BASE } else { FIXED_BASE };
+        entries[index] = Entry::find(axes.what, rows).for_robot(axes);
         index += 1;
     }
-    assert!(index == Function::ALL.len());
     entries
 };

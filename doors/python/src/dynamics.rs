@@ -179,7 +179,7 @@ macro_rules! details {
 
 macro_rules! methods {
     ($(
-        $variant:ident = $name:ident $arguments:tt -> $returned:ident $(at $of_frame:ident)?:
+        $variant:ident $axes:tt = $name:ident $arguments:tt -> $returned:ident $(at $of_frame:ident)?:
             $summary:literal $(, $details:literal)?;
     )*) => {
         $(method! { $($of_frame)? $variant $name $arguments $returned $summary $($details)? })*

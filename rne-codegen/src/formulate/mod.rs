@@ -44,101 +44,77 @@ use rne_model::{PER_LINK, Robot};
 use crate::coordinates::{Coordinates, scaled};
 use crate::formulate::ldlt::System;
 use crate::formulate::mass_matrix::OfBase;
-use crate::function::{Argument, Function};
+use crate::function::{Argument, Function, What};
 use crate::ir::{Axis, Builder, Cause, Component, Name, Quantity, Ref, Symbol, Vector, WithRespectTo};
 
 /// The results of a function of a robot, by name, in the order of its layout. Zeros of the function are put in before
 /// anything is folded.
 pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> Vec<(Name, Ref)> {
     let derivation = Derivation::new(builder, robot, function);
-    let outputs = match function {
-        Function::InverseDynamics
-        | Function::InverseDynamicsWithWrench
-        | Function::InverseDynamicsWithPayload
-        | Function::InverseDynamicsFromSinCos
-        | Function::GravityTorques
-        | Function::BiasTorques
-        | Function::InverseDynamicsOnMovingBase
-        | Function::GravityTorquesWithPayload
-        | Function::BiasTorquesWithPayload
-        | Function::InverseDynamicsWithWrenches
-        | Function::InverseDynamicsOfLoops
-        | Function::InverseDynamicsOfLoopsWithWrenches => derivation.torques(),
-        Function::MassMatrix | Function::MassMatrixWithPayload | Function::MassMatrixOfLoops => {
-            mass_matrix(derivation.coordinates(), &derivation.upper_half())
+    let is_floating = function.is_of_floating_base();
+    let outputs = match function.what() {
+        What::InverseDynamics | What::InverseDynamicsFromSinCos | What::GravityTorques | What::BiasTorques => {
+            derivation.forces()
         }
-        Function::CoriolisMatrix => derivation.coriolis_matrix(),
-        Function::ForwardDynamics
-        | Function::ForwardDynamicsWithPayload
-        | Function::ForwardDynamicsWithWrenches
-        | Function::ForwardDynamicsOfLoops => derivation.accelerations(),
-        Function::EulerStep => integrator::euler_step(builder, derivation.coordinates(), &derivation.accelerations()),
-        Function::ForwardKinematics => derivation.tip_pose(),
-        Function::LinkPoses => derivation.link_poses(),
-        Function::Jacobian => derivation.jacobian(),
-        Function::JacobianRateTimesVelocity => derivation.tip_acceleration(),
-        Function::JacobianRate => derivation.jacobian_rate(),
-        Function::JacobianDerivatives => derivation.jacobian_derivatives(),
-        Function::WrenchTorques => derivation.wrench_torques(),
-        Function::KineticEnergy | Function::FloatingKineticEnergy => derivation.kinetic_energy(),
-        Function::PotentialEnergy => derivation.potential_energy(),
-        Function::CentreOfMass => derivation.centre_of_mass(),
-        Function::CentreOfMassJacobian => derivation.centre_of_mass_jacobian(),
-        Function::Regressor => derivation.regressor(),
-        Function::InverseDynamicsDerivatives
-        | Function::InverseDynamicsDerivativesWithPayload
-        | Function::InverseDynamicsDerivativesWithWrenches => {
-            derivatives(builder, derivation.coordinates(), &derivation.tau())
-        }
-        Function::JointWrenches => derivation.joint_wrenches(),
-        Function::MomentumAndRate | Function::MomentumAndRateWithPayload => derivation.momentum_and_rate(),
-        Function::ActuatorTorques => derivation.actuator_torques(),
-        Function::InverseDynamicsOfFloatingBase | Function::FloatingBias | Function::InverseDynamicsOfFloatingLoops => {
-            derivation.floating_torques()
-        }
-        Function::FloatingMassMatrix | Function::FloatingMassMatrixOfLoops => {
+        What::MassMatrix if is_floating => {
             floating_mass_matrix(builder, &derivation.system(), &derivation.floating_half())
         }
-        Function::FloatingForwardDynamics | Function::FloatingForwardDynamicsOfLoops => {
-            derivation.floating_accelerations()
-        }
-        Function::FloatingEulerStep => integrator::floating_euler_step(
+        What::MassMatrix => mass_matrix(derivation.coordinates(), &derivation.upper_half()),
+        What::CoriolisMatrix => derivation.coriolis_matrix(),
+        What::ForwardDynamics => derivation.accelerations(),
+        What::EulerStep if is_floating => integrator::floating_euler_step(
             builder,
             derivation.coordinates(),
             derivation.arm.gravity,
-            &derivation.floating_accelerations(),
+            &derivation.accelerations(),
         ),
-        Function::FloatingEulerStepDerivatives => derivation.derivatives_of_floating_step(),
-        Function::CentroidalMomentumMatrix => {
+        What::EulerStep => integrator::euler_step(builder, derivation.coordinates(), &derivation.accelerations()),
+        What::EulerStepDerivatives if is_floating => derivation.derivatives_of_floating_step(),
+        What::ForwardDynamicsDerivatives | What::EulerStepDerivatives => {
+            derivation.derivatives_of_accelerations(function)
+        }
+        What::ForwardKinematics => derivation.tip_pose(),
+        What::LinkPoses => derivation.link_poses(),
+        What::Jacobian => derivation.jacobian(),
+        What::JacobianRateTimesVelocity => derivation.tip_acceleration(),
+        What::JacobianRate => derivation.jacobian_rate(),
+        What::JacobianDerivatives => derivation.jacobian_derivatives(),
+        What::WrenchTorques => derivation.wrench_torques(),
+        What::KineticEnergy => derivation.kinetic_energy(),
+        What::PotentialEnergy if is_floating => derivation.floating_potential_energy(),
+        What::PotentialEnergy => derivation.potential_energy(),
+        What::CentreOfMass => derivation.centre_of_mass(),
+        What::CentreOfMassJacobian => derivation.centre_of_mass_jacobian(),
+        What::Regressor if is_floating => derivation.floating_regressor(),
+        What::Regressor => derivation.regressor(),
+        What::InverseDynamicsDerivatives if is_floating => {
+            floating_derivatives(builder, derivation.coordinates(), derivation.forces())
+        }
+        What::InverseDynamicsDerivatives => derivatives(builder, derivation.coordinates(), &derivation.tau()),
+        What::JointWrenches => derivation.joint_wrenches(),
+        What::MomentumAndRate => derivation.momentum_and_rate(),
+        What::ActuatorTorques => derivation.actuator_torques(),
+        What::CentroidalMomentumMatrix => {
             centroid::momentum_matrix(builder, &derivation.system(), &derivation.of_base().0)
         }
-        Function::CentroidalBias => derivation.centroidal_bias(),
-        Function::FloatingPotentialEnergy => derivation.floating_potential_energy(),
-        Function::CentroidalMomentum => derivation.centroidal_momentum(),
-        Function::FloatingRegressor => derivation.floating_regressor(),
-        Function::TipJacobians => derivation.tip_jacobians(),
-        Function::TipAccelerations => derivation.tip_accelerations(),
-        Function::ForwardDynamicsInContact => contact::forward_dynamics(
+        What::CentroidalBias => derivation.centroidal_bias(),
+        What::CentroidalMomentum => derivation.centroidal_momentum(),
+        What::TipJacobians => derivation.tip_jacobians(),
+        What::TipAccelerations => derivation.tip_accelerations(),
+        What::ForwardDynamicsInContact => contact::forward_dynamics(
             builder,
             &derivation.system(),
             &derivation.floating_half(),
-            derivation.floating_torques(),
+            derivation.forces(),
             &Contacts::of(&derivation),
         ),
-        Function::FloatingInverseDynamicsDerivatives => {
-            floating_derivatives(builder, derivation.coordinates(), derivation.floating_torques())
-        }
-        Function::TorqueGradient => adjoint::gradient(builder, derivation.coordinates(), &derivation.tau()),
-        Function::TorqueHessian => adjoint::hessian(builder, derivation.coordinates(), &derivation.tau()),
-        Function::ForwardDynamicsDerivatives
-        | Function::ForwardDynamicsDerivativesWithWrenches
-        | Function::ForwardDynamicsDerivativesWithPayload
-        | Function::EulerStepDerivatives => derivation.derivatives_of_accelerations(function),
-        Function::ClosureStep => closure::step(builder, robot),
-        Function::LoopMap => closure::map(builder, derivation.coordinates()),
-        Function::LoopMapRateTimesVelocity => closure::bias(builder, derivation.coordinates()),
-        Function::InverseMassMatrix => inverse_mass_matrix(builder, &derivation.system(), &derivation.upper_half()),
-        Function::InverseMassMatrixTimesTorques => {
+        What::TorqueGradient => adjoint::gradient(builder, derivation.coordinates(), &derivation.tau()),
+        What::TorqueHessian => adjoint::hessian(builder, derivation.coordinates(), &derivation.tau()),
+        What::ClosureStep => closure::step(builder, robot),
+        What::LoopMap => closure::map(builder, derivation.coordinates()),
+        What::LoopMapRateTimesVelocity => closure::bias(builder, derivation.coordinates()),
+        What::InverseMassMatrix => inverse_mass_matrix(builder, &derivation.system(), &derivation.upper_half()),
+        What::InverseMassMatrixTimesTorques => {
             accelerations(builder, &derivation.system(), &derivation.upper_half(), |applied, _| applied)
         }
     };
@@ -161,6 +137,9 @@ struct Derivation<'s, 'r> {
 impl<'s, 'r> Derivation<'s, 'r> {
     /// The accelerations by the torques.
     fn accelerations(&self) -> Outputs<'s> {
+        if self.builder.function.is_of_floating_base() {
+            return floating_forward_dynamics(self.builder, &self.system(), &self.floating_half(), self.forces());
+        }
         forward_dynamics(self.builder, &self.system(), &self.upper_half(), &self.tau())
     }
 
@@ -183,11 +162,11 @@ impl<'s, 'r> Derivation<'s, 'r> {
     /// The derivatives of a step of a robot whose base nothing holds.
     fn derivatives_of_floating_step(&self) -> Outputs<'s> {
         let (builder, system) = (self.builder, self.system());
-        let bias = builder.unnamed(|| self.floating_torques());
+        let bias = builder.unnamed(|| self.forces());
         let step = FloatingStep::new(builder, &system, &self.floating_half(), bias, self.arm.gravity);
         builder.hold_accelerations();
         let solved = Self::new(builder, self.robot, Function::FloatingEulerStepDerivatives);
-        let forces: Vec<_> = solved.floating_torques().into_iter().map(|(_, force)| force).collect();
+        let forces: Vec<_> = solved.forces().into_iter().map(|(_, force)| force).collect();
         let variables = floating::variables(solved.coordinates()).concat();
         step.derivatives(&builder.derivatives(&forces, variables.into_iter()))
     }
@@ -296,18 +275,17 @@ impl<'s, 'r> Derivation<'s, 'r> {
         kinematics::frames(&self.arm, &self.states, start)
     }
 
-    fn torques(&self) -> Outputs<'s> {
+    /// The torques, behind the wrench on a floating base.
+    fn forces(&self) -> Outputs<'s> {
+        if self.builder.function.is_of_floating_base() {
+            return self.floating_torques();
+        }
         by_joint(self.coordinates(), Quantity::Torque, self.tau())
     }
 
     /// The coordinates and links of a mass matrix that is solved by.
     fn system(&self) -> System<'_> {
         System::new(self.builder.function, self.coordinates(), self.arm.links.iter().map(|link| link.parent))
-    }
-
-    /// The accelerations of a base that nothing holds and of the joints, by the torques.
-    fn floating_accelerations(&self) -> Outputs<'s> {
-        floating_forward_dynamics(self.builder, &self.system(), &self.floating_half(), self.floating_torques())
     }
 
     /// The upper half of M with the rows of a base that nothing holds.

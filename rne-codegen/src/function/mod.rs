@@ -3,8 +3,8 @@
 mod own;
 
 pub use rne_functions::{
-    Answer, AnswerTable, Argument, ArgumentPart, Capability, Entry, Function, Labels, Layout, Length, MatrixUnit,
-    Record, Returned, Shape, Sizes,
+    Answer, AnswerTable, Argument, ArgumentPart, Axes, Base, Capability, Entry, Function, Labels, Layout, Length, Load,
+    MatrixUnit, Record, Returned, Shape, Sizes, What,
 };
 use rne_model::{FrameId, Robot};
 

@@ -1,6 +1,6 @@
 //! Headings and meanings of the quantities that the listing of a function shows by themselves.
 
-use super::Function;
+use super::{Base, Function, Load, What};
 use crate::quantity::Quantity;
 
 /// A quantity in the listing of a function.
@@ -34,31 +34,14 @@ impl Own {
 /// Where the origins of frames are in the Jacobians of tips.
 const FROM_BASE: &str = "origin of that frame, from frame 0 in world axes";
 
-/// The mass of the payload in a listing.
-const PAYLOAD_MASS: Own = Own::names(Quantity::Mass, "mass of link i; of the payload for i = n + 1");
-
-/// Its centre of mass.
-const PAYLOAD_COM: Own = Own::names(
-    Quantity::Com,
-    "centre of mass from the link frame's origin; of the payload, from the tip frame's, for i = n + 1",
-);
-
-/// Its inertia.
-const PAYLOAD_INERTIA: Own =
-    Own::names(Quantity::Inertia, "inertia about the centre of mass; of the payload, in tip axes, for i = n + 1");
-
-/// The momenta of the joints in a listing.
-const MOMENTUM: Own = Own::of(Quantity::Momentum, |joint| format!("momentum of joint {joint}: row {joint} of M q̇"));
-
-/// Their rates.
-const MOMENTUM_RATE: Own = Own::of(Quantity::MomentumRate, |joint| {
-    format!("its rate at joint {joint} without external torques: τ + ∂T/∂q - ∂V/∂q")
-});
-
-/// The state after a step in a listing.
-const NEXT: &[Own] = &[
-    Own::of(Quantity::NextRate, |joint| format!("velocity of joint {joint} after the step")),
-    Own::of(Quantity::NextPosition, |joint| format!("position of joint {joint} after the step")),
+/// The payload in a listing.
+static PAYLOAD: [Own; 3] = [
+    Own::names(Quantity::Mass, "mass of link i; of the payload for i = n + 1"),
+    Own::names(
+        Quantity::Com,
+        "centre of mass from the link frame's origin; of the payload, from the tip frame's, for i = n + 1",
+    ),
+    Own::names(Quantity::Inertia, "inertia about the centre of mass; of the payload, in tip axes, for i = n + 1"),
 ];
 
 /// The force and the moment that must act on a floating base.
@@ -80,57 +63,70 @@ const ORIGIN_VELOCITY: Own = Own::meaning(
     |joint| format!("velocity of the origin of frame {joint}"),
 );
 
+/// The accelerations of a floating base.
+const OF_BASE: [Own; 2] = [
+    Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
+    Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
+];
+
 /// The heading and meaning that a quantity has in the listing of a function alone.
 #[must_use]
 pub fn own(function: Function, quantity: Quantity) -> Option<&'static Own> {
-    let (_, all) = OWN.iter().find(|(functions, _)| functions.contains(&function))?;
-    all.iter().find(|own| own.quantity == quantity)
+    let axes = function.axes();
+    let payload = PAYLOAD.iter().filter(|_| axes.load == Load::Payload);
+    let rows =
+        OWN.iter().filter(|(whats, base, _)| whats.contains(&axes.what) && base.is_none_or(|base| base == axes.base));
+    rows.flat_map(|(.., all)| *all).chain(payload).find(|own| own.quantity == quantity)
 }
 
-/// The quantities of each function that has some.
-static OWN: &[(&[Function], &[Own])] = &[
-    (&[Function::MomentumAndRate], &[MOMENTUM, MOMENTUM_RATE]),
+/// The quantities of what is computed, on one kind of base or on all.
+static OWN: &[(&[What], Option<Base>, &[Own])] = &[
     (
+        &[What::MomentumAndRate],
+        None,
         &[
-            Function::InverseDynamicsWithPayload,
-            Function::BiasTorquesWithPayload,
-            Function::MassMatrixWithPayload,
-            Function::ForwardDynamicsWithPayload,
-            Function::InverseDynamicsDerivativesWithPayload,
-            Function::ForwardDynamicsDerivativesWithPayload,
+            Own::of(Quantity::Momentum, |joint| format!("momentum of joint {joint}: row {joint} of M q̇")),
+            Own::of(Quantity::MomentumRate, |joint| {
+                format!("its rate at joint {joint} without external torques: τ + ∂T/∂q - ∂V/∂q")
+            }),
         ],
-        &[PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA],
     ),
     (
-        &[Function::CoriolisMatrix],
+        &[What::CoriolisMatrix],
+        None,
         &[Own::of(Quantity::CoriolisElement, |joint| {
             format!("row {joint} of the Coriolis matrix: ½ ∂(bias torques)/∂q̇")
         })],
     ),
     (
-        &[Function::Jacobian],
+        &[What::Jacobian],
+        None,
         &[
             Own::of(Quantity::JacobianLinear, |joint| format!("column {joint} of the Jacobian")),
             Own::of(Quantity::JacobianAngular, |joint| format!("column {joint} of the Jacobian")),
         ],
     ),
     (
-        &[Function::JacobianRateTimesVelocity],
+        &[What::JacobianRateTimesVelocity],
+        None,
         &[Own::of(Quantity::TipAcceleration, |_| "acceleration of the tip where q̈ = 0".to_owned())],
     ),
     (
-        &[Function::KineticEnergy],
+        &[What::KineticEnergy],
+        None,
         &[Own::of(Quantity::KineticEnergy, |_| "kinetic energy: ½ Σ (m ċ · ċ + ω · I ω)".to_owned())],
     ),
     (
-        &[Function::PotentialEnergy],
+        &[What::PotentialEnergy],
+        None,
         &[
             Own::of(Quantity::ComPosition, |joint| format!("centre of mass of link {joint}, in frame 0")),
             Own::of(Quantity::PotentialEnergy, |_| "potential energy: -Σ m g · c".to_owned()),
         ],
     ),
     (
-        &[Function::CentreOfMass],
+        &[What::CentreOfMass],
+        None,
         &[Own::meaning(
             Quantity::ComPosition,
             "centre of mass of link i, from the base in world axes; i = 0: of the arm, in the world",
@@ -141,7 +137,8 @@ static OWN: &[(&[Function], &[Own])] = &[
         )],
     ),
     (
-        &[Function::CentreOfMassJacobian],
+        &[What::CentreOfMassJacobian],
+        None,
         &[
             Own::meaning(Quantity::ComPosition, "centre of mass of link i, from the base in world axes", |joint| {
                 format!("centre of mass of link {joint}, from the base in world axes")
@@ -153,13 +150,15 @@ static OWN: &[(&[Function], &[Own])] = &[
             ),
         ],
     ),
-    (&[Function::Regressor], &[Own::of(Quantity::RegressorElement, |joint| format!("torque {joint} per parameter"))]),
+    (&[What::Regressor], None, &[Own::of(Quantity::RegressorElement, |joint| format!("torque {joint} per parameter"))]),
     (
-        &[Function::ActuatorTorques],
+        &[What::ActuatorTorques],
+        None,
         &[Own::of(Quantity::ActuatorTorque, |joint| format!("motor {joint}: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇)"))],
     ),
     (
-        &[Function::InverseMassMatrix],
+        &[What::InverseMassMatrix],
+        None,
         &[
             Own::meaning(Quantity::RateDot, "element (i, j) of M⁻¹", |joint| {
                 format!("row {joint} of the inverse: L⁻ᵀ D⁻¹ L⁻¹")
@@ -174,57 +173,54 @@ static OWN: &[(&[Function], &[Own])] = &[
             }),
         ],
     ),
-    (&[Function::GravityTorquesWithPayload], &[PAYLOAD_MASS, PAYLOAD_COM]),
-    (&[Function::MomentumAndRateWithPayload], &[MOMENTUM, MOMENTUM_RATE, PAYLOAD_MASS, PAYLOAD_COM, PAYLOAD_INERTIA]),
-    (&[Function::TorqueGradient], &[Own::of(Quantity::WeightedTorque, |_| "derivatives of λᵀτ".to_owned())]),
+    (&[What::TorqueGradient], None, &[Own::of(Quantity::WeightedTorque, |_| "derivatives of λᵀτ".to_owned())]),
     (
-        &[Function::JacobianRate],
+        &[What::JacobianRate],
+        None,
         &[
             Own::of(Quantity::JacobianLinearRate, |joint| format!("column {joint} of the rate of the Jacobian")),
             Own::of(Quantity::JacobianAngularRate, |joint| format!("column {joint} of the rate of the Jacobian")),
         ],
     ),
     (
-        &[Function::TorqueHessian],
+        &[What::TorqueHessian],
+        None,
         &[
             Own::of(Quantity::WeightedByPosition, |joint| format!("second derivatives of λᵀτ, by q{joint}")),
             Own::of(Quantity::WeightedByRate, |joint| format!("second derivatives of λᵀτ, by q̇{joint}")),
         ],
     ),
-    (&[Function::EulerStep, Function::EulerStepDerivatives], NEXT),
     (
+        &[What::EulerStep, What::EulerStepDerivatives],
+        None,
         &[
-            Function::InverseDynamicsOfFloatingBase,
-            Function::FloatingMassMatrix,
-            Function::FloatingBias,
-            Function::FloatingInverseDynamicsDerivatives,
-            Function::InverseDynamicsOfFloatingLoops,
-            Function::FloatingMassMatrixOfLoops,
+            Own::of(Quantity::NextRate, |joint| format!("velocity of joint {joint} after the step")),
+            Own::of(Quantity::NextPosition, |joint| format!("position of joint {joint} after the step")),
         ],
+    ),
+    (
+        &[What::InverseDynamics, What::MassMatrix, What::BiasTorques, What::InverseDynamicsDerivatives],
+        Some(Base::Floating),
         &ON_BASE,
     ),
     (
-        &[Function::FloatingForwardDynamics, Function::FloatingForwardDynamicsOfLoops],
-        &[
-            Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
-            Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
-        ],
+        &[What::ForwardDynamics, What::ForwardDynamicsInContact, What::EulerStep, What::EulerStepDerivatives],
+        Some(Base::Floating),
+        &OF_BASE,
     ),
-    (&[Function::CentroidalMomentumMatrix, Function::CentroidalBias], &CENTROIDAL),
+    (&[What::CentroidalMomentumMatrix, What::CentroidalBias], None, &CENTROIDAL),
     (
-        &[Function::FloatingRegressor],
+        &[What::Regressor],
+        Some(Base::Floating),
         &[
             Own::of(Quantity::BaseForce, |_| "force on the base per parameter".to_owned()),
             Own::of(Quantity::BaseMoment, |_| "moment on the base per parameter".to_owned()),
-            Own::of(Quantity::RegressorElement, |joint| format!("torque {joint} per parameter")),
         ],
     ),
+    (&[What::KineticEnergy], Some(Base::Floating), &[ORIGIN_VELOCITY]),
     (
-        &[Function::FloatingKineticEnergy],
-        &[Own::of(Quantity::KineticEnergy, |_| "kinetic energy: ½ Σ (m ċ · ċ + ω · I ω)".to_owned()), ORIGIN_VELOCITY],
-    ),
-    (
-        &[Function::FloatingPotentialEnergy],
+        &[What::PotentialEnergy],
+        Some(Base::Floating),
         &[
             Own::meaning(
                 Quantity::FrameRotation,
@@ -236,12 +232,11 @@ static OWN: &[(&[Function], &[Own])] = &[
                 "origin of that frame, in frame 0; of the base in the world for i = 0",
                 |joint| format!("frame {joint}, in frame 0"),
             ),
-            Own::of(Quantity::ComPosition, |joint| format!("centre of mass of link {joint}, in frame 0")),
-            Own::of(Quantity::PotentialEnergy, |_| "potential energy: -Σ m g · c".to_owned()),
         ],
     ),
     (
-        &[Function::CentroidalMomentum],
+        &[What::CentroidalMomentum],
+        None,
         &[
             ORIGIN_VELOCITY,
             Own::meaning(
@@ -260,7 +255,8 @@ static OWN: &[(&[Function], &[Own])] = &[
         ],
     ),
     (
-        &[Function::TipJacobians],
+        &[What::TipJacobians],
+        None,
         &[
             Own::meaning(Quantity::FrameOrigin, FROM_BASE, |joint| format!("origin of frame {joint}, from frame 0")),
             Own::meaning(Quantity::JacobianLinear, "velocity of a tip per velocity, world axes", |joint| {
@@ -272,7 +268,8 @@ static OWN: &[(&[Function], &[Own])] = &[
         ],
     ),
     (
-        &[Function::TipAccelerations],
+        &[What::TipAccelerations],
+        None,
         &[
             Own::meaning(
                 Quantity::JointPointAcceleration,
@@ -285,16 +282,16 @@ static OWN: &[(&[Function], &[Own])] = &[
         ],
     ),
     (
-        &[Function::ForwardDynamicsInContact],
+        &[What::ForwardDynamicsInContact],
+        None,
         &[
-            Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
-            Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
             Own::of(Quantity::ContactForce, |tip| format!("force of the contact at tip {tip}")),
             Own::of(Quantity::ContactMoment, |tip| format!("moment of the contact at tip {tip}")),
         ],
     ),
     (
-        &[Function::FloatingEulerStep],
+        &[What::EulerStep, What::EulerStepDerivatives],
+        Some(Base::Floating),
         &[
             Own::names(
                 Quantity::FrameRotation,
@@ -302,52 +299,46 @@ static OWN: &[(&[Function], &[Own])] = &[
             ),
             Own::names(Quantity::FrameOrigin, "origin of frame 0 in the world"),
             Own::names(Quantity::OriginVelocity, "velocity of the origin of frame 0, in its axes"),
-            Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
-            Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
             Own::of(Quantity::NextOmega, |_| "angular velocity of the base after the step".to_owned()),
-            Own::of(Quantity::NextOrigin, |_| "origin of frame 0 after the step".to_owned()),
-            Own::of(Quantity::NextRotation, |_| "rotation of the base after the step".to_owned()),
             Own::of(Quantity::NextVelocity, |_| "velocity of the origin of frame 0 after the step".to_owned()),
-            Own::of(Quantity::NextRate, |joint| format!("velocity of joint {joint} after the step")),
-            Own::of(Quantity::NextPosition, |joint| format!("position of joint {joint} after the step")),
         ],
     ),
     (
-        &[Function::FloatingEulerStepDerivatives],
+        &[What::EulerStep],
+        Some(Base::Floating),
         &[
-            Own::names(
-                Quantity::FrameRotation,
-                "rotation of the base: its columns are the axes of frame 0 in the world",
-            ),
-            Own::names(Quantity::FrameOrigin, "origin of frame 0 in the world"),
-            Own::names(Quantity::OriginVelocity, "velocity of the origin of frame 0, in its axes"),
-            Own::of(Quantity::OriginAcceleration, |_| "acceleration of the base, less gravity".to_owned()),
-            Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
-            Own::of(Quantity::NextOmega, |_| "angular velocity of the base after the step".to_owned()),
+            Own::of(Quantity::NextOrigin, |_| "origin of frame 0 after the step".to_owned()),
+            Own::of(Quantity::NextRotation, |_| "rotation of the base after the step".to_owned()),
+        ],
+    ),
+    (
+        &[What::EulerStepDerivatives],
+        Some(Base::Floating),
+        &[
             Own::meaning(
                 Quantity::NextOrigin,
                 "shift of the base after the step, along the axes that frame 0 has then",
                 |_| "shift of the base after the step".to_owned(),
             ),
             Own::of(Quantity::NextTurn, |_| "turn of the base after the step".to_owned()),
-            Own::of(Quantity::NextVelocity, |_| "velocity of the origin of frame 0 after the step".to_owned()),
-            Own::of(Quantity::NextRate, |joint| format!("velocity of joint {joint} after the step")),
-            Own::of(Quantity::NextPosition, |joint| format!("position of joint {joint} after the step")),
         ],
     ),
     (
-        &[Function::ClosureStep],
+        &[What::ClosureStep],
+        None,
         &[
             Own::of(Quantity::ClosedPosition, |joint| format!("position of joint {joint} after the step")),
             Own::of(Quantity::Residual, |_| "what is left of the equations of the loops".to_owned()),
         ],
     ),
     (
-        &[Function::LoopMap],
+        &[What::LoopMap],
+        None,
         &[Own::of(Quantity::LoopMap, |joint| format!("velocity of joint {joint} per velocity of the others"))],
     ),
     (
-        &[Function::LoopMapRateTimesVelocity],
+        &[What::LoopMapRateTimesVelocity],
+        None,
         &[Own::of(Quantity::LoopBias, |joint| format!("acceleration of joint {joint} where q̈ is 0"))],
     ),
 ];

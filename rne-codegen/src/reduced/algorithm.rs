@@ -8,7 +8,7 @@ use crate::formulate::mass_matrix::OfBase;
 use crate::formulate::{
     self, Closure, Contacts, FloatingStep, Outputs, adjoint, centroid, contact, integrator, square, torque_by,
 };
-use crate::function::{Argument, Function};
+use crate::function::{Argument, Axes, Base, Function, Load, What};
 use crate::ir::{Name, Number, Quantity, Symbol, WithRespectTo};
 use crate::reduced::backward::{torques, torques_of_floating_base};
 use crate::reduced::crba::ExpressedIn;
@@ -61,87 +61,66 @@ impl Algorithm {
     pub const fn of(function: Function) -> &'static [Self] {
         const BY_GROUPS: Algorithm = Algorithm::Crba(ExpressedIn::GroupFrame);
         const BY_JOINTS: Algorithm = Algorithm::Crba(ExpressedIn::JointFrame);
-        match function {
-            Function::InverseDynamics
-            | Function::InverseDynamicsWithWrench
-            | Function::InverseDynamicsFromSinCos
-            | Function::BiasTorques
-            | Function::InverseDynamicsWithWrenches
-            | Function::InverseDynamicsOfFloatingBase
-            | Function::FloatingBias
-            | Function::InverseDynamicsOfFloatingLoops
-            | Function::InverseDynamicsOfLoops
-            | Function::InverseDynamicsOfLoopsWithWrenches
-            | Function::TorqueGradient => &[Algorithm::Rnea],
-            Function::InverseDynamicsWithPayload | Function::BiasTorquesWithPayload => {
-                &[Algorithm::Rnea, Algorithm::UnturnedPayload]
+        const ABA: [Algorithm; 2] = [Algorithm::Aba(ExpressedIn::GroupFrame), Algorithm::Aba(ExpressedIn::JointFrame)];
+        const COMPOSITE_BODIES: &[Algorithm] = &[BY_GROUPS, BY_JOINTS];
+        let Axes { what, base, load, loops } = function.axes();
+        let is_plain = matches!((base, load, loops), (Base::Held, Load::Free, false));
+        let carries = matches!(load, Load::Payload);
+        match what {
+            What::InverseDynamics if matches!(base, Base::Moving) => &[],
+            What::InverseDynamics | What::BiasTorques if carries => &[Algorithm::Rnea, Algorithm::UnturnedPayload],
+            What::InverseDynamics | What::InverseDynamicsFromSinCos | What::BiasTorques | What::TorqueGradient => {
+                &[Algorithm::Rnea]
             }
-            Function::CoriolisMatrix | Function::InverseDynamicsDerivatives | Function::TorqueHessian => {
+            What::GravityTorques if carries => &[Algorithm::Rnea, Algorithm::UnturnedPayload, BY_GROUPS, BY_JOINTS],
+            What::GravityTorques => &[Algorithm::Rnea, BY_GROUPS, BY_JOINTS],
+            What::CoriolisMatrix | What::InverseDynamicsDerivatives | What::TorqueHessian if is_plain => {
                 &[BY_GROUPS, BY_JOINTS, Algorithm::Rnea]
             }
-            Function::GravityTorques => &[Algorithm::Rnea, BY_GROUPS, BY_JOINTS],
-            Function::GravityTorquesWithPayload => &[Algorithm::Rnea, Algorithm::UnturnedPayload, BY_GROUPS, BY_JOINTS],
-            Function::MassMatrix | Function::InverseMassMatrix => &[BY_GROUPS, BY_JOINTS, Algorithm::UnitColumns],
-            // the momentum, where the first moments behind the joints are gathered
-            Function::MomentumAndRate
-            | Function::MomentumAndRateWithPayload
-            | Function::MassMatrixWithPayload
-            | Function::InverseDynamicsDerivativesWithPayload
-            | Function::ForwardDynamicsWithWrenches
-            | Function::FloatingMassMatrix
-            | Function::CentroidalMomentumMatrix
-            | Function::CentroidalBias
-            | Function::CentroidalMomentum
-            | Function::ForwardDynamicsInContact
-            | Function::FloatingInverseDynamicsDerivatives
-            | Function::MassMatrixOfLoops
-            | Function::ForwardDynamicsOfLoops
-            | Function::FloatingMassMatrixOfLoops
-            | Function::FloatingForwardDynamicsOfLoops
-            | Function::ForwardDynamicsDerivatives
-            | Function::InverseDynamicsDerivativesWithWrenches
-            | Function::ForwardDynamicsDerivativesWithWrenches
-            | Function::ForwardDynamicsDerivativesWithPayload
-            | Function::EulerStepDerivatives
-            | Function::FloatingEulerStepDerivatives => &[BY_GROUPS, BY_JOINTS],
-            Function::ForwardDynamicsWithPayload | Function::FloatingForwardDynamics | Function::FloatingEulerStep => {
-                &[
-                    BY_GROUPS,
-                    BY_JOINTS,
-                    Algorithm::Aba(ExpressedIn::GroupFrame),
-                    Algorithm::Aba(ExpressedIn::JointFrame),
-                ]
+            What::MassMatrix | What::InverseMassMatrix if is_plain => &[BY_GROUPS, BY_JOINTS, Algorithm::UnitColumns],
+            What::ForwardDynamics | What::InverseMassMatrixTimesTorques | What::EulerStep if is_plain => {
+                &[BY_GROUPS, BY_JOINTS, Algorithm::UnitColumns, ABA[0], ABA[1]]
             }
-            Function::ForwardDynamics | Function::InverseMassMatrixTimesTorques | Function::EulerStep => &[
-                BY_GROUPS,
-                BY_JOINTS,
-                Algorithm::UnitColumns,
-                Algorithm::Aba(ExpressedIn::GroupFrame),
-                Algorithm::Aba(ExpressedIn::JointFrame),
-            ],
-            Function::ForwardKinematics
-            | Function::LinkPoses
-            | Function::Jacobian
-            | Function::JacobianRateTimesVelocity
-            | Function::WrenchTorques
-            | Function::KineticEnergy
-            | Function::PotentialEnergy
-            | Function::CentreOfMass
-            | Function::CentreOfMassJacobian
-            | Function::Regressor
-            | Function::JointWrenches
-            | Function::InverseDynamicsOnMovingBase
-            | Function::ActuatorTorques
-            | Function::FloatingRegressor
-            | Function::FloatingKineticEnergy
-            | Function::FloatingPotentialEnergy
-            | Function::TipJacobians
-            | Function::TipAccelerations
-            | Function::ClosureStep
-            | Function::LoopMap
-            | Function::LoopMapRateTimesVelocity
-            | Function::JacobianRate
-            | Function::JacobianDerivatives => &[],
+            What::ForwardDynamics | What::InverseMassMatrixTimesTorques | What::EulerStep
+                if !loops && (carries || matches!(base, Base::Floating)) =>
+            {
+                &[BY_GROUPS, BY_JOINTS, ABA[0], ABA[1]]
+            }
+            // in the momentum, the first moments behind the joints are gathered
+            What::MomentumAndRate
+            | What::CoriolisMatrix
+            | What::InverseDynamicsDerivatives
+            | What::TorqueHessian
+            | What::MassMatrix
+            | What::InverseMassMatrix
+            | What::ForwardDynamics
+            | What::ForwardDynamicsInContact
+            | What::ForwardDynamicsDerivatives
+            | What::InverseMassMatrixTimesTorques
+            | What::EulerStep
+            | What::EulerStepDerivatives
+            | What::CentroidalMomentumMatrix
+            | What::CentroidalBias
+            | What::CentroidalMomentum => COMPOSITE_BODIES,
+            What::ForwardKinematics
+            | What::LinkPoses
+            | What::Jacobian
+            | What::JacobianRate
+            | What::JacobianRateTimesVelocity
+            | What::JacobianDerivatives
+            | What::TipJacobians
+            | What::TipAccelerations
+            | What::WrenchTorques
+            | What::KineticEnergy
+            | What::PotentialEnergy
+            | What::CentreOfMass
+            | What::CentreOfMassJacobian
+            | What::Regressor
+            | What::JointWrenches
+            | What::ActuatorTorques
+            | What::ClosureStep
+            | What::LoopMap
+            | What::LoopMapRateTimesVelocity => &[],
         }
     }
 
@@ -153,10 +132,10 @@ impl Algorithm {
         const FEW: usize = 5;
         let is_worth = |algorithm: Self| match algorithm {
             Self::UnitColumns => robot.joints.len() < MANY,
-            Self::Rnea if matches!(function, Function::CoriolisMatrix | Function::InverseDynamicsDerivatives) => {
+            Self::Rnea if matches!(function.what(), What::CoriolisMatrix | What::InverseDynamicsDerivatives) => {
                 robot.joints.len() < MANY
             }
-            Self::Rnea if function == Function::TorqueHessian => robot.joints.len() < FEW,
+            Self::Rnea if function.what() == What::TorqueHessian => robot.joints.len() < FEW,
             Self::Rnea | Self::UnturnedPayload | Self::Crba(_) => true,
             Self::Aba(_) => {
                 !robot.has_rotors() && !robot.has_couplings() && robot.closed.is_empty() && !robot.has_spinning_rotors()
@@ -211,75 +190,46 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
         Some(of_base?.gathered(coordinates).above(builder, coordinates.upper_half(builder, joints)))
     };
     let of_base = || Some(crba::mass_matrix(arm).1?.gathered(coordinates));
-    let floating_accelerations = || {
-        let Algorithm::Aba(_) = algorithm else {
+    let is_floating = builder.function.is_of_floating_base();
+    let accelerations = || {
+        if let Algorithm::Aba(_) = algorithm {
+            let (of_base, of_joints) = aba::forward_dynamics(arm);
+            let of_base = of_base.into_iter().flat_map(|[linear, angular]| linear.0.into_iter().chain(angular.0));
+            let of_base = of_base.enumerate().map(|(row, x)| (system().name(Quantity::RateDot, row), x));
+            return Some(of_base.chain(by_joint(Quantity::RateDot, of_joints)).collect());
+        }
+        if is_floating {
             let (half, bias) = (floating_half()?, of_floating_base());
             return Some(formulate::floating_forward_dynamics(builder, &system(), &half, bias));
-        };
-        let (of_base, of_joints) = aba::forward_dynamics(arm);
-        let [linear, angular] = of_base?;
-        let of_base = linear.0.into_iter().chain(angular.0).enumerate();
-        let named = of_base.map(|(row, x)| (system().name(Quantity::RateDot, row), x)).collect();
-        Some([named, by_joint(Quantity::RateDot, of_joints)].concat())
+        }
+        let (upper, bias) = (upper_half(), coordinates.torques(&recursion(arm, algorithm)));
+        Some(formulate::forward_dynamics(builder, &system(), &upper, &bias))
     };
     let named = |name: Name, symbol: Symbol<'s>| (name, builder.name(name, symbol));
-    Some(match (builder.function, algorithm) {
-        (Function::GravityTorques | Function::GravityTorquesWithPayload, Algorithm::Crba(_)) => {
-            by_joint(Quantity::Torque, crba::gravity_torques(arm))
-        }
-        (Function::MomentumAndRate | Function::MomentumAndRateWithPayload, _) => {
+    Some(match (builder.function.what(), algorithm) {
+        (What::GravityTorques, Algorithm::Crba(_)) => by_joint(Quantity::Torque, crba::gravity_torques(arm)),
+        (What::MomentumAndRate, _) => {
             let [momenta, rates] = momentum::momentum_and_rate(arm);
             [by_joint(Quantity::Momentum, momenta), by_joint(Quantity::MomentumRate, rates)].concat()
         }
-        (Function::MassMatrix | Function::MassMatrixWithPayload | Function::MassMatrixOfLoops, _) => {
-            formulate::mass_matrix(coordinates, &upper_half())
-        }
-        (Function::InverseMassMatrix, _) => formulate::inverse_mass_matrix(builder, &system(), &upper_half()),
-        (Function::InverseMassMatrixTimesTorques, Algorithm::Aba(_)) => {
+        (What::MassMatrix, _) if is_floating => formulate::floating_mass_matrix(builder, &system(), &floating_half()?),
+        (What::MassMatrix, _) => formulate::mass_matrix(coordinates, &upper_half()),
+        (What::InverseMassMatrix, _) => formulate::inverse_mass_matrix(builder, &system(), &upper_half()),
+        (What::InverseMassMatrixTimesTorques, Algorithm::Aba(_)) => {
             let joint_frames = arm.joint_frames.without_gravity();
             let weightless = Arm { joint_frames: &joint_frames, ..*arm };
             by_joint(Quantity::RateDot, aba::forward_dynamics(&weightless).1)
         }
-        (Function::InverseMassMatrixTimesTorques, _) => {
+        (What::InverseMassMatrixTimesTorques, _) => {
             formulate::accelerations(builder, &system(), &upper_half(), |applied, _| applied)
         }
-        (Function::ForwardDynamics | Function::ForwardDynamicsWithPayload, Algorithm::Aba(_)) => {
-            by_joint(Quantity::RateDot, aba::forward_dynamics(arm).1)
+        (What::ForwardDynamics, _) => accelerations()?,
+        (What::EulerStep, _) if is_floating => {
+            let gravity = builder.unnamed(|| gravity(builder, robot));
+            integrator::floating_euler_step(builder, coordinates, gravity, &accelerations()?)
         }
-        (Function::EulerStep, Algorithm::Aba(_)) => {
-            integrator::euler_step(builder, coordinates, &by_joint(Quantity::RateDot, aba::forward_dynamics(arm).1))
-        }
-        (Function::EulerStep, _) => {
-            let (upper, bias) = (upper_half(), coordinates.torques(&recursion(arm, algorithm)));
-            let accelerations = formulate::forward_dynamics(builder, &system(), &upper, &bias);
-            integrator::euler_step(builder, coordinates, &accelerations)
-        }
-        (
-            Function::ForwardDynamics
-            | Function::ForwardDynamicsWithPayload
-            | Function::ForwardDynamicsWithWrenches
-            | Function::ForwardDynamicsOfLoops,
-            _,
-        ) => {
-            let (upper, bias) = (upper_half(), coordinates.torques(&recursion(arm, algorithm)));
-            formulate::forward_dynamics(builder, &system(), &upper, &bias)
-        }
-        (
-            Function::InverseDynamicsDerivatives
-            | Function::InverseDynamicsDerivativesWithPayload
-            | Function::InverseDynamicsDerivativesWithWrenches,
-            Algorithm::Crba(_),
-        ) => {
-            let found = sensitivity(arm, Number::integer(2));
-            let by = |kind: fn(usize) -> WithRespectTo, of_joints: &[Vec<Symbol<'s>>]| {
-                let matrix = coordinates.matrix(of_joints);
-                square(joints.len(), |row, column| {
-                    named(torque_by(joints[row], kind(joints[column] + 1)), matrix[row][column])
-                })
-            };
-            [by(WithRespectTo::Position, &found.by_position), by(WithRespectTo::Rate, &found.by_rate)].concat()
-        }
-        (Function::FloatingInverseDynamicsDerivatives, _) => {
+        (What::EulerStep, _) => integrator::euler_step(builder, coordinates, &accelerations()?),
+        (What::InverseDynamicsDerivatives, _) if is_floating => {
             let names: Vec<_> = formulate::on_base([builder.no_vector(); 2])
                 .into_iter()
                 .map(|(name, _)| name)
@@ -291,23 +241,34 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
                 .map(|(name, symbol)| named(name, symbol))
                 .collect()
         }
-        (Function::CoriolisMatrix, Algorithm::Crba(_)) => {
+        (What::InverseDynamicsDerivatives, Algorithm::Crba(_)) => {
+            let found = sensitivity(arm, Number::integer(2));
+            let by = |kind: fn(usize) -> WithRespectTo, of_joints: &[Vec<Symbol<'s>>]| {
+                let matrix = coordinates.matrix(of_joints);
+                square(joints.len(), |row, column| {
+                    named(torque_by(joints[row], kind(joints[column] + 1)), matrix[row][column])
+                })
+            };
+            [by(WithRespectTo::Position, &found.by_position), by(WithRespectTo::Rate, &found.by_rate)].concat()
+        }
+        (What::CoriolisMatrix, Algorithm::Crba(_)) => {
             let found = coordinates.matrix(&sensitivity(arm, Number::ONE).by_rate);
             square(joints.len(), |row, column| {
                 let name = Name::indexed(Quantity::CoriolisElement, joints[row] + 1, joints[column] + 1);
                 named(name, found[row][column])
             })
         }
-        (Function::InverseDynamicsDerivatives, _) => {
+        (What::InverseDynamicsDerivatives, _) => {
             formulate::derivatives(builder, coordinates, &coordinates.torques(&recursion(arm, algorithm)))
         }
-        (
-            Function::ForwardDynamicsDerivatives
-            | Function::ForwardDynamicsDerivativesWithWrenches
-            | Function::ForwardDynamicsDerivativesWithPayload
-            | Function::EulerStepDerivatives,
-            _,
-        ) => {
+        (What::EulerStepDerivatives, _) if is_floating => {
+            let gravity = builder.unnamed(|| gravity(builder, robot));
+            let bias = builder.unnamed(of_floating_base);
+            let (half, system) = (floating_half()?, system());
+            let step = FloatingStep::new(builder, &system, &half, bias, gravity);
+            step.derivatives(&sensitivity(arm, Number::integer(2)).with_base(coordinates)?)
+        }
+        (What::ForwardDynamicsDerivatives | What::EulerStepDerivatives, _) => {
             // the same quantities come again, at the accelerations that are solved for
             let bias = builder.unnamed(|| coordinates.torques(&recursion(arm, algorithm)));
             let (upper, system) = (upper_half(), system());
@@ -316,10 +277,10 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
             let found = sensitivity(arm, Number::integer(2));
             inverse.derivatives(&[&found.by_position, &found.by_rate].map(|rows| coordinates.matrix(rows)))
         }
-        (Function::TorqueGradient, _) => {
+        (What::TorqueGradient, _) => {
             adjoint::gradient(builder, coordinates, &coordinates.torques(&recursion(arm, algorithm)))
         }
-        (Function::TorqueHessian, Algorithm::Crba(_)) => {
+        (What::TorqueHessian, Algorithm::Crba(_)) => {
             let adjoint::Hessian { dq_dq, dq_dqd, dqd_dqd, dq_dqdd } = torque_hessian::hessian(arm);
             let upper = |rows: Vec<Vec<Symbol<'s>>>| {
                 let rows = rows.into_iter().enumerate().map(|(at, row)| row[at..].to_vec());
@@ -333,64 +294,61 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
             };
             found.outputs(coordinates)
         }
-        (Function::TorqueHessian, _) => {
+        (What::TorqueHessian, _) => {
             adjoint::hessian(builder, coordinates, &coordinates.torques(&recursion(arm, algorithm)))
         }
-        (Function::CoriolisMatrix, _) => {
+        (What::CoriolisMatrix, _) => {
             let torques = coordinates.torques(&recursion(arm, algorithm));
             let half = builder.number(Number::integer(2).inverse().unwrap_or_default());
             formulate::coriolis_matrix(builder, coordinates, &torques, half)
         }
         (
-            Function::InverseDynamics
-            | Function::InverseDynamicsWithWrench
-            | Function::InverseDynamicsWithPayload
-            | Function::InverseDynamicsFromSinCos
-            | Function::GravityTorques
-            | Function::BiasTorques
-            | Function::GravityTorquesWithPayload
-            | Function::BiasTorquesWithPayload
-            | Function::InverseDynamicsWithWrenches
-            | Function::InverseDynamicsOfLoops
-            | Function::InverseDynamicsOfLoopsWithWrenches,
+            What::InverseDynamics | What::InverseDynamicsFromSinCos | What::GravityTorques | What::BiasTorques,
             algorithm,
-        ) => by_joint(Quantity::Torque, recursion(arm, algorithm)),
-        (
-            Function::InverseDynamicsOfFloatingBase | Function::FloatingBias | Function::InverseDynamicsOfFloatingLoops,
-            _,
-        ) => of_floating_base(),
-        (Function::FloatingMassMatrix | Function::FloatingMassMatrixOfLoops, _) => {
-            formulate::floating_mass_matrix(builder, &system(), &floating_half()?)
+        ) => {
+            if is_floating {
+                of_floating_base()
+            } else {
+                by_joint(Quantity::Torque, recursion(arm, algorithm))
+            }
         }
-        (Function::FloatingForwardDynamics | Function::FloatingForwardDynamicsOfLoops, _) => floating_accelerations()?,
-        (Function::FloatingEulerStep, _) => {
-            let gravity = builder.unnamed(|| gravity(builder, robot));
-            integrator::floating_euler_step(builder, coordinates, gravity, &floating_accelerations()?)
-        }
-        (Function::FloatingEulerStepDerivatives, _) => {
-            let gravity = builder.unnamed(|| gravity(builder, robot));
-            let bias = builder.unnamed(of_floating_base);
-            let (half, system) = (floating_half()?, system());
-            let step = FloatingStep::new(builder, &system, &half, bias, gravity);
-            step.derivatives(&sensitivity(arm, Number::integer(2)).with_base(coordinates)?)
-        }
-        (Function::ForwardDynamicsInContact, _) => {
+        (What::ForwardDynamicsInContact, _) => {
             let contacts = Contacts::new(builder, robot);
             contact::forward_dynamics(builder, &system(), &floating_half()?, of_floating_base(), &contacts)
         }
-        (Function::CentroidalMomentumMatrix, _) => centroid::momentum_matrix(builder, &system(), &of_base()?),
-        (Function::CentroidalBias, _) => {
+        (What::CentroidalMomentumMatrix, _) => centroid::momentum_matrix(builder, &system(), &of_base()?),
+        (What::CentroidalBias, _) => {
             let (Wrench { force, moment }, _) = torques_of_floating_base(arm);
             let OfBase { mass, h, .. } = of_base()?;
             centroid::about_centre(builder, (mass, h), Quantity::BaseForce, [force, moment])
         }
-        (Function::CentroidalMomentum, _) => {
+        (What::CentroidalMomentum, _) => {
             let Wrench { force, moment } = momentum::of_floating_base(arm);
             let OfBase { mass, h, .. } = of_base()?;
             centroid::about_centre(builder, (mass, h), Quantity::LinearMomentum, [force, moment])
         }
-        // `Algorithm::of` matches them all
-        _ => return None,
+        (
+            What::ForwardKinematics
+            | What::LinkPoses
+            | What::Jacobian
+            | What::JacobianRate
+            | What::JacobianRateTimesVelocity
+            | What::JacobianDerivatives
+            | What::TipJacobians
+            | What::TipAccelerations
+            | What::WrenchTorques
+            | What::KineticEnergy
+            | What::PotentialEnergy
+            | What::CentreOfMass
+            | What::CentreOfMassJacobian
+            | What::Regressor
+            | What::JointWrenches
+            | What::ActuatorTorques
+            | What::ClosureStep
+            | What::LoopMap
+            | What::LoopMapRateTimesVelocity,
+            _,
+        ) => return None,
     })
 }
 
