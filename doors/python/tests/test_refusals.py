@@ -20,7 +20,7 @@ WRONG = {
     "pose": (POSES, "must have the length 1, be at right angles|unit vectors at right angles"),
     "base_rotation": ([pose[:3, :3] for pose in POSES], "must have the length 1, be at right angles"),
     "payload": ([[-1.0] + [0.0] * 9, [1.0, 0, 0, 0, 0.1, 0.1, -0.1, 0, 0, 0], [1.0, 0, 0, 0, 0.1, 0.1, 0.1, 0.2, 0, 0]],
-                "the payload's mass is -1 kg|a principal moment of -1.000e-01 kg m²"),
+                "the payload's mass is -1 kg|a principal moment of -1.000e-1 kg m²"),
 }
 
 
