@@ -113,7 +113,8 @@ macro_rules! with {
 
 macro_rules! methods {
     ($(
-        $variant:ident $axes:tt = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident $(at $of_frame:ident)?:
+        $variant:ident $axes:tt =
+            $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident $(at $of_frame:ident)?:
             $summary:literal $(, $details:literal)?;
     )*) => {
         impl CompiledArm {$(

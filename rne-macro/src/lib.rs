@@ -254,9 +254,9 @@ pub fn derive_tip_wrenches(input: TokenStream) -> TokenStream {
 /// Implements the trait `FloatingBase` for a struct: the torques of a robot whose base nothing holds, and the wrench
 /// that must act on the base.
 ///
-/// The base is the link `floating_base` of the robot file; a file without that key is an error, unless the attribute has
-/// `allow_lints`: then the base has no mass. The tips are those of [`TipWrenches`](macro@TipWrenches), whose derive also
-/// makes the enum of the tips.
+/// The base is the link `floating_base` of the robot file; a file without that key is an error, unless the attribute
+/// has `allow_lints`: then the base has no mass. The tips are those of [`TipWrenches`](macro@TipWrenches), whose derive
+/// also makes the enum of the tips.
 ///
 /// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
 /// gets a constant with the operations, `INVERSE_DYNAMICS_OF_FLOATING_BASE_OPERATIONS`; `DOF`, names and limits come
@@ -269,8 +269,8 @@ pub fn derive_floating_base(input: TokenStream) -> TokenStream {
 /// Implements the trait `CentroidalMomentum` for a struct: the momentum of a robot whose base nothing holds, about its
 /// centre of mass, and its rate.
 ///
-/// The base is the link `floating_base` of the robot file; a file without that key is an error, unless the attribute has
-/// `allow_lints`: then the base has no mass.
+/// The base is the link `floating_base` of the robot file; a file without that key is an error, unless the attribute
+/// has `allow_lints`: then the base has no mass.
 ///
 /// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
 /// gets constants with the operations, `CENTROIDAL_MOMENTUM_MATRIX_OPERATIONS`, `CENTROIDAL_BIAS_OPERATIONS` and
@@ -282,8 +282,8 @@ pub fn derive_centroidal_momentum(input: TokenStream) -> TokenStream {
 
 /// Implements the trait `FloatingEnergy` for a struct: kinetic and potential energy where nothing holds the base.
 ///
-/// The base is the link `floating_base` of the robot file; a file without that key is an error, unless the attribute has
-/// `allow_lints`: then the base has no mass.
+/// The base is the link `floating_base` of the robot file; a file without that key is an error, unless the attribute
+/// has `allow_lints`: then the base has no mass.
 ///
 /// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
 /// gets constants with the operations, `FLOATING_KINETIC_ENERGY_OPERATIONS` and `FLOATING_POTENTIAL_ENERGY_OPERATIONS`;
@@ -399,8 +399,8 @@ pub fn derive_euler_step_derivatives(input: TokenStream) -> TokenStream {
 /// Implements the trait `FloatingEulerStep` for a struct: a step of the semi-implicit Euler method where nothing holds
 /// the base.
 ///
-/// The base is the link `floating_base` of the robot file; a file without that key is an error, unless the attribute has
-/// `allow_lints`: then the base has no mass. The tips are those of `FloatingBase`.
+/// The base is the link `floating_base` of the robot file; a file without that key is an error, unless the attribute
+/// has `allow_lints`: then the base has no mass. The tips are those of `FloatingBase`.
 ///
 /// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
 /// gets a constant with the operations, `FLOATING_EULER_STEP_OPERATIONS`; `DOF`, names and limits come with

@@ -58,8 +58,8 @@ pub const SCRIPTS: [(&str, &str); 24] = [
 
 /// The page of an arm. Units are SI: m, rad, N, N m.
 ///
-/// `reduced` is the program of [`rne_codegen::function_of_plan`] in the reduced form, by whatever plan there is for the arm;
-/// without it the one is taken that the compiler makes without a plan. This function is the inverse dynamics: of a
+/// `reduced` is the program of [`rne_codegen::function_of_plan`] in the reduced form, by whatever plan there is for the
+/// arm; without it the one is taken that the compiler makes without a plan. This function is the inverse dynamics: of a
 /// robot with a floating base, the one whose arguments are the motion of the base and wrenches at the tips.
 ///
 /// # Errors

@@ -126,7 +126,8 @@ pub(crate) fn stubs() -> String {
     };
     macro_rules! methods {
         ($(
-            $variant:ident $axes:tt = $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident $(at $of_frame:ident)?:
+            $variant:ident $axes:tt =
+                $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident $(at $of_frame:ident)?:
                 $summary:literal $(, $details:literal)?;
         )*) => {
             $(stub(

@@ -186,8 +186,11 @@ impl Place {
     /// it is compiled once.
     pub(crate) fn command_line(&self) -> Result<PathBuf> {
         let shell = &self.shell;
-        let build =
-            cmd!(shell, "cargo build --quiet --profile test --locked --workspace --features rne-cli/full --bin rne");
+        let build = cmd!(
+            shell,
+            "cargo build --quiet --profile test --locked --workspace
+                --features rne-cli/full --bin rne"
+        );
         machine::without_flags(build).quiet().run()?;
         Ok(machine::target_folder("target")?.join("debug").join(format!("rne{}", std::env::consts::EXE_SUFFIX)))
     }

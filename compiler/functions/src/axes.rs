@@ -1,9 +1,9 @@
-//! The parts of a function's name: what it computes, on which base, for which load, with or without closed loops.
+//! The parts of a function's name: its result, the base, the load, and whether there are closed loops.
 
 use crate::{Argument, named};
 
 named! {
-    /// What a function computes, whatever the base, the load and the loops of the robot.
+    /// The result of a function, whatever the base, the load and the loops of the robot.
     What {
         /// Torques from motion.
         InverseDynamics = "inverse_dynamics",
@@ -100,7 +100,7 @@ pub enum Base {
 /// The load of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Load {
-    /// There is none.
+    /// Nothing.
     Free,
     /// The last link exerts a wrench at the tip.
     Wrench,
@@ -113,7 +113,7 @@ pub enum Load {
 /// The parts of a function's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Axes {
-    /// What it computes.
+    /// Its result.
     pub what: What,
     /// The base.
     pub base: Base,
@@ -124,7 +124,7 @@ pub struct Axes {
 }
 
 impl Axes {
-    /// Of a robot whose base stands still, without a load and without closed loops.
+    /// The parts for a robot whose base stands still, without a load and without closed loops.
     #[must_use]
     pub const fn of(what: What) -> Self {
         Self { what, base: Base::Held, load: Load::Free, loops: false }
@@ -160,7 +160,7 @@ impl Axes {
         Self { load: Load::Payload, ..self }
     }
 
-    /// Of a robot with closed loops.
+    /// For a robot with closed loops.
     #[must_use]
     pub const fn of_loops(self) -> Self {
         Self { loops: true, ..self }

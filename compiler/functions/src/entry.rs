@@ -24,7 +24,7 @@ pub(crate) struct Signature {
 #[derive(Clone, Copy, Debug)]
 #[allow(clippy::struct_excessive_bools)] // each is a property by itself
 pub struct Entry {
-    /// What they compute.
+    /// Their result.
     pub(crate) what: What,
     /// The trait.
     pub capability: Capability,

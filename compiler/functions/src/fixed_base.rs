@@ -1,4 +1,4 @@
-//! What is computed of a robot on a base that stands still or that something else moves.
+//! The results for a robot on a base that stands still or that something else moves.
 
 use crate::answer::{AXES, Answer, AnswerTable, Labels, MatrixUnit};
 use crate::axes::What;

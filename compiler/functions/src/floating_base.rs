@@ -1,4 +1,4 @@
-//! What is computed of a robot with a floating base.
+//! The results for a robot with a floating base.
 
 use crate::answer::{AXES, Answer, AnswerTable, Labels};
 use crate::axes::What;

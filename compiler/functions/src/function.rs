@@ -101,7 +101,7 @@ impl Function {
         SIGNATURES[self as usize].axes
     }
 
-    /// What it computes.
+    /// Its result, whatever the robot.
     #[must_use]
     pub const fn what(self) -> What {
         self.axes().what

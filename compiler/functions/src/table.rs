@@ -12,9 +12,9 @@ use crate::named;
 use crate::{Argument, Returned};
 
 /// Every function in the order of [`Function`]: its variant, its [`Axes`], its method with the arguments by their names
-/// and kinds, what it returns, and what it computes. `at NAME` follows what is returned where the function of the tip can be taken
-/// at any frame of a link instead; its name there begins with NAME. `$callback!` is given the list, so that each door
-/// makes its methods of it.
+/// and kinds, its result, and the sentences about it. `at NAME` follows the result where the function of the tip can be
+/// taken at any frame of a link instead; its name there begins with NAME. `$callback!` is given the list, so that each
+/// door makes its methods of it.
 #[macro_export]
 #[rustfmt::skip]
 macro_rules! functions {

@@ -39,9 +39,7 @@ pub(crate) fn payload<'py>(
     if [(xy, yx), (xz, zx), (yz, zy)].into_iter().any(is_other) {
         return Err(PyValueError::new_err("`inertia` is a symmetric tensor of shape (3, 3)"));
     }
-    Inertia { xx, yy, zz, xy, xz, yz }
-        .check_of_payload()
-        .map_err(|error| PyValueError::new_err(error.to_string()))?;
+    Inertia { xx, yy, zz, xy, xz, yz }.check_of_payload().map_err(|error| PyValueError::new_err(error.to_string()))?;
     array_of(py, &[], &[10], vec![mass, x, y, z, xx, yy, zz, xy, xz, yz])
 }
 

@@ -47,7 +47,7 @@ pub(crate) struct Degrees {
 }
 
 impl Degrees {
-    /// Of the positions of each state.
+    /// Looks at the positions of each state.
     pub(crate) fn of<'a>(robot: &Robot, states: impl IntoIterator<Item = &'a [f64]>) -> Self {
         let mut degrees = Self::default();
         states.into_iter().for_each(|q| degrees.see(robot, q));
