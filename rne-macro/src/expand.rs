@@ -299,8 +299,8 @@ fn default_plans(robot: &Robot) -> PlanSet {
     plans
 }
 
-/// The error for a robot without the floating base or the contacts that a derive is about: its numbers would be those of
-/// a base without mass.
+/// The error for a robot without the floating base or the contacts that a derive is about: its numbers would be those
+/// of a base without mass.
 fn without_base(robot: &Robot, capability: Capability) -> Option<String> {
     let refused = capability.functions().find_map(|function| function.check_base(robot).err());
     refused.map(|error| format!("{error}; or add `allow_lints` to the attribute, for a base that has no mass"))

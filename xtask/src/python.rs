@@ -182,8 +182,8 @@ impl Place {
         only_file(&wheels)
     }
 
-    /// The command line, built, with whose numbers those of logs are compared: as tests of all formats build it, so that
-    /// it is compiled once.
+    /// The command line, built, with whose numbers those of logs are compared: as tests of all formats build it, so
+    /// that it is compiled once.
     pub(crate) fn command_line(&self) -> Result<PathBuf> {
         let shell = &self.shell;
         let build = cmd!(
