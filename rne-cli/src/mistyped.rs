@@ -239,7 +239,10 @@ fn needed_by_another(command: &Command, error: &clap::Error, words: &[String]) -
         let count = 1 + usize::from(takes_value(arg) && value.is_none() && index + 1 < words.len());
         is_needless(index, count).then(|| format!("--{}", arg.get_long().unwrap_or_default()))
     })?;
-    Some(format!("{TYPED}{needing}{TYPED:#} needs {}; give both, or neither", joined(&names)))
+    // what else the command cannot do without
+    let is_required = command.get_arguments().any(|arg| arg.is_required_set() && Some(&needing[2..]) == arg.get_long());
+    let advice = if is_required || names.len() > 1 { "give all of them" } else { "give both, or neither" };
+    Some(format!("{TYPED}{needing}{TYPED:#} needs {}; {advice}", joined(&names)))
 }
 
 /// Arguments that are missing, and words that no argument takes, where the parser proposes nothing: with an example.

@@ -26,6 +26,8 @@ fn states(arm: &CompiledArm, function: Function, states: usize) -> Vec<(&'static
     let mut random = fastrand::Rng::with_seed(11);
     let mut number = |array: &str, element: usize| match (array, element) {
         ("payload", 0) => 1.0 + random.f32(),
+        // moments of inertia that a body can have beside these products
+        ("payload", 4..=6) => 3.0 + random.f32(),
         ("q", _) => 6.0 * random.f32() - 3.0,
         _ => 2.0 * random.f32() - 1.0,
     };
@@ -191,13 +193,17 @@ fn compare_rollout<T: Number + Real>(arm: &CompiledArm, function: Function, prec
     let (dof, steps, step) = (arm.dof(), 5, 0.004_f32);
     for count in [1, 31, 67] {
         let mut random = fastrand::Rng::with_seed(5);
-        // a mass, its centre and a symmetric tensor are given as a payload
+        // a mass, its centre and the symmetric tensor of a body are given as a payload
         let arrays = arm.function(function).expect("a function of the arm").arguments().to_vec();
         let inputs: Vec<(&str, Vec<T>)> = arrays
             .iter()
             .map(|&(array, elements)| {
                 let elements = if array == "tau" { elements * steps } else { elements };
-                let number = |_| of(if array == "payload" { random.f32() } else { 2.0 * random.f32() - 1.0 });
+                let number = |at: usize| match (array, at % elements) {
+                    ("payload", 4..=6) => of(3.0 + random.f32()),
+                    ("payload", _) => of(random.f32()),
+                    _ => of(2.0 * random.f32() - 1.0),
+                };
                 (array, (0..count * elements).map(number).collect())
             })
             .collect();

@@ -44,8 +44,9 @@ impl States {
         let mut state = || {
             let joints = [3.2, 2.0, 5.0, 50.0].map(|range| (0..dof).map(|_| between(range)).collect());
             let mut vectors = [(); 10].map(|()| [(); 3].map(|()| between(10.0)));
-            // a payload of negative mass is refused
+            // a payload of negative mass is refused, and so are moments of inertia below zero about any axis
             vectors[6][2] = vectors[6][2].abs();
+            vectors[8] = vectors[8].map(|moment| 20.0 + moment.abs());
             State { joints, vectors, rotation: states::rotation([(); 4].map(|()| between(1.0))) }
         };
         let each: Vec<State> = (0..count).map(|_| state()).collect();

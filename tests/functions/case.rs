@@ -71,11 +71,11 @@ fn case(seed: u64, maker: Maker) -> Case {
     Case { arm: Arm::new(&robot, maker), robot, q, qd, qdd, applied, wrench, payload, base }
 }
 
-/// Any payload of a robot: up to 5 kg, half a metre from the tip. Nothing asks whether a body can have this inertia.
+/// Any payload of a robot: up to 5 kg, half a metre from the tip, with moments of inertia above zero about any axis.
 pub(crate) fn payload(rng: &mut Rng) -> Payload<f64> {
     let mut any = |range: f64| (2.0 * rng.f64() - 1.0) * range;
     let (mass, com) = (2.5 + any(2.5), [any(0.5), any(0.5), any(0.5)]);
-    let [xx, yy, zz] = [0.2 + any(0.1), 0.2 + any(0.1), 0.2 + any(0.1)];
+    let [xx, yy, zz] = [0.3 + any(0.1), 0.3 + any(0.1), 0.3 + any(0.1)];
     Payload { mass, com, inertia: Inertia { xx, yy, zz, xy: any(0.1), xz: any(0.1), yz: any(0.1) } }
 }
 

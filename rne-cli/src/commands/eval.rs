@@ -157,7 +157,8 @@ pub(crate) const DIGITS_BY_HAND: u8 = 4;
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let (robot, lints) = arguments.robot()?;
     let q = arguments.q.as_ref().map_or(&[][..], |List(q)| q);
-    let remark = limits::Degrees::of(&robot, [q]).remark() + &impossible_payload(arguments) + &lints;
+    let degrees = limits::Degrees::of(&robot, [q]).remark(|q| format!("write {q}deg"));
+    let remark = degrees + &turned_base(arguments) + &far_payload(arguments) + &impossible_payload(arguments) + &lints;
     let outcome = computed(arguments, robot)?;
     let outcome = Outcome { remark: outcome.remark + &remark, ..outcome };
     let letters = arguments.letters;
@@ -168,6 +169,37 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         text => letters.page(text, PAGE),
     };
     Ok(Outcome { text, remark: letters.page(&outcome.remark, PAGE), ..outcome })
+}
+
+/// A remark on an angle of the base that is probably in degrees.
+fn turned_base(arguments: &Arguments) -> String {
+    let angles = arguments.base_pose.as_ref().map(|List(pose)| pose).filter(|pose| pose.len() == 6);
+    let angles = angles.into_iter().flat_map(|pose| ["roll", "pitch", "yaw"].into_iter().zip(&pose[3..]));
+    let is_degrees = |(_, angle): &(&str, &f64)| angle.abs() > std::f64::consts::TAU && (10.0 * **angle).fract() == 0.0;
+    angles
+        .filter(is_degrees)
+        .map(|(name, angle)| {
+            format!("note: if the {name} of --base-pose, {angle} rad, is in degrees, write {angle}deg\n")
+        })
+        .collect()
+}
+
+/// The centre of mass of a payload that is farther away, m, is probably in millimetres, as in a robot file.
+const FARTHEST: f64 = 5.0;
+
+/// A remark on a payload that is probably in millimetres.
+fn far_payload(arguments: &Arguments) -> String {
+    let payload = arguments.arm.carried.payload.as_ref().and_then(|list| payload(list).ok());
+    let com = payload.map(|payload| payload.com);
+    let distance = |com: &[f64; 3]| com.iter().map(|x| x * x).sum::<f64>().sqrt();
+    com.filter(|com| distance(com) > FARTHEST).map_or_else(String::new, |com| {
+        let largest = com.into_iter().fold(0.0_f64, |largest, x| if x.abs() > largest.abs() { x } else { largest });
+        format!(
+            "note: the centre of mass of --payload is {:.0} m from its frame; if this is in millimetres, write \
+             mm({largest}) and so on\n",
+            distance(&com)
+        )
+    })
 }
 
 /// A remark on a payload whose inertia no distribution of mass has. In a robot file, such a link is a warning.

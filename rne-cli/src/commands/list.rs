@@ -9,7 +9,7 @@ use crate::render::heading::about;
 use crate::render::layout::{left, shortened, width};
 use crate::terminal;
 
-/// List the shipped robots; every command accepts their names
+/// List the shipped robots, whose names stand for their files
 #[derive(Args)]
 #[command(after_help = "\
 Examples:

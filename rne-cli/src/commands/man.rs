@@ -25,6 +25,9 @@ pub(crate) struct Arguments {
     /// Write the pages of rne and of all its commands to this folder, which is made if it is not there
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    /// Overwrite files of the folder that are not the same pages
+    #[arg(long, requires = "output")]
+    force: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
@@ -53,6 +56,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }
     }
     let files: Vec<_> = pages.iter().map(|(name, page)| (folder.join(format!("{name}.1")), page)).collect();
+    for (file, page) in &files {
+        output_file::check_new(file, Some(page), &[], arguments.force)?;
+    }
     output_file::write_all(&files).map(Outcome::remark)
 }
 

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant, SystemTime};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use rne_codegen::Function;
+use rne_codegen::{CheckFor as _, Function};
 use rne_codegen::plan::{Accuracy, Cost};
 use rne_model::{Robot, plan_of};
 use rne_search::{PlanFile, Progress, SearchError, SearchOptions};
@@ -185,6 +185,10 @@ fn rewritten(arguments: &Arguments, robot: &Robot) -> Result<Vec<Function>, Fail
         return Err(Failure::usage(format_args!(
             "`{function}` has only the form seven_steps, so there is nothing to rewrite"
         )));
+    }
+    // a plan with a function that the robot does not have is refused by all that read it
+    if let Some(error) = functions.iter().find_map(|function| function.check_for(robot).err()) {
+        return Err(Failure::usage(error));
     }
     if asked.contains(&FunctionOrAll::All) {
         return Ok(choice::functions_of(robot).filter(|function| function.can_be_rewritten()).collect());

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
+use rne::DynArm;
 use rne_codegen::{Answer, Function, Layout};
 use rne_logs::Heading;
 use rne_machine::{Arguments, Array, CompiledArm, CompiledFunction, Destination, OutOfRange};
@@ -53,7 +54,8 @@ fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
             "base_rotation" => {
                 axes.into_iter().flat_map(|row| axes.map(|column| format!("{name}_{row}{column}"))).collect()
             }
-            // as the option of `rne eval`
+            // as the options of `rne eval`
+            "omega" => axes.map(|axis| format!("base_omega_{axis}")).into(),
             "step" => vec!["duration".to_owned()],
             "q" | "passive" | "qd" | "qdd" | "tau" | "multipliers" | "sin" | "cos" => {
                 (1..=elements).map(|joint| format!("{name}{joint}")).collect()
@@ -65,13 +67,14 @@ fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
 }
 
 /// Other names of the same columns: elements of joints as `rne log` names them in a table, by the names of the robot's
-/// joints, and the duration of a step by its name in generated code.
+/// joints, and the duration of a step and the velocity of a base by their names in generated code.
 fn named_columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<Option<String>> {
     let joints: Vec<String> = arm.robot().independent_joints().map(|joint| joint.name.clone()).collect();
     let headings = |&(name, elements): &(&str, usize)| -> Vec<Option<String>> {
         match Heading::quantity(name).filter(|_| elements == joints.len()) {
             Some(quantity) => Heading::of(&joints).columns(quantity).into_iter().map(Some).collect(),
             None if name == "step" => vec![Some(name.to_owned())],
+            None if name == "omega" => ["x", "y", "z"].map(|axis| Some(format!("{name}_{axis}"))).into(),
             None => vec![None; if name == "parameters" { arm.robot().run_time.names.len() } else { elements }],
         }
     };
@@ -124,9 +127,12 @@ impl Job<'_> {
         let mut results = Results::open(self.out.filter(|out| !is_standard_output(out)), &read, self.force, &outputs)?;
         let progress = progress(self.states, table.states, results.is_terminal());
         let start = Instant::now();
-        let (mut states, mut not_finite, mut degrees) = (0_usize, NotFinite::default(), Degrees::default());
-        // positions come first
-        let turning = compiled.arguments().first().map_or(0, |&(name, dof)| if name == "q" { dof } else { 0 });
+        let (mut states, mut remarks) = (0_usize, Remarks::default());
+        // positions come first, and those of dependent joints behind them
+        let of = |place: usize, of: &str| {
+            compiled.arguments().get(place).map_or(0, |&(name, elements)| if name == of { elements } else { 0 })
+        };
+        let positions = (of(0, "q"), of(1, "passive"));
         let (mut rows, mut numbers) = (Vec::with_capacity(PART * columns.len()), vec![0.0; PART * outputs.len()]);
         loop {
             rows.clear();
@@ -134,7 +140,7 @@ impl Job<'_> {
             if count == 0 {
                 break;
             }
-            rows.chunks(columns.len()).for_each(|row| degrees.see(self.arm.robot(), &row[..turning]));
+            remarks.see(self.arm, states, columns.len(), &rows, positions);
             let mut at = 0;
             let mut arguments = Arguments::new();
             for &(name, elements) in compiled.arguments() {
@@ -144,7 +150,7 @@ impl Job<'_> {
             }
             let room = &mut numbers[..count * outputs.len()];
             self.arm.run(self.function, count, &arguments, Destination::Rows(room)).map_err(Failure::input)?;
-            not_finite.see(states, room.chunks(outputs.len().max(1)));
+            remarks.results.see(states, room.chunks(outputs.len().max(1)), is_not_finite);
             match results.write(room) {
                 // the reader has read enough
                 Err(error) if error.kind() == ErrorKind::BrokenPipe => return Ok(Outcome::default()),
@@ -169,40 +175,79 @@ impl Job<'_> {
             .out
             .filter(|out| !is_standard_output(out))
             .map_or(String::new(), |out| format!("{GOOD}wrote{GOOD:#} {}: ", out.display()));
-        let [degrees, not_finite] = [degrees.remark(), not_finite.remark()];
-        let remark = format!("{place}{} of {states} {noun}{rate}\n{degrees}{not_finite}", self.function);
+        let remark = format!("{place}{} of {states} {noun}{rate}\n{}", self.function, remarks.text());
         Ok(Outcome::remark(remark))
     }
 }
 
-/// The states whose results are no finite numbers: what is given may be none, or overflow.
+/// The states of which something is true that a user should know.
 #[derive(Default)]
-struct NotFinite {
+struct Seen {
     count: usize,
     /// From 1.
     first: usize,
 }
 
-impl NotFinite {
-    /// Results of the states that follow `before` others.
-    fn see<'a>(&mut self, before: usize, results: impl Iterator<Item = &'a [f64]>) {
-        for (index, numbers) in results.enumerate() {
-            if numbers.iter().all(|number| number.is_finite()) {
-                continue;
+impl Seen {
+    /// Looks at the states that follow `before` others.
+    fn see<'a>(&mut self, before: usize, states: impl Iterator<Item = &'a [f64]>, is_so: impl Fn(&[f64]) -> bool) {
+        for (index, numbers) in states.enumerate() {
+            if is_so(numbers) {
+                self.count += 1;
+                self.first = if self.first == 0 { before + index + 1 } else { self.first };
             }
-            if self.count == 0 {
-                self.first = before + index + 1;
-            }
-            self.count += 1;
         }
     }
 
-    fn remark(&self) -> String {
-        match self.count {
-            0 => String::new(),
-            1 => format!("note: the result of state {} is not finite\n", self.first),
-            count => format!("note: the results of {count} states are not finite; the first is state {}\n", self.first),
+    /// A note, with what is true of one state, and of several: the words before the state and after it.
+    fn remark(&self, [of, is]: [&str; 2], [of_many, are]: [&str; 2]) -> String {
+        match self {
+            Self { count: 0, .. } => String::new(),
+            Self { count: 1, first } => format!("note: {of} state {first} {is}\n"),
+            Self { count, first } => format!("note: {of_many} {count} states {are}; the first is state {first}\n"),
         }
+    }
+}
+
+fn is_not_finite(numbers: &[f64]) -> bool {
+    !numbers.iter().all(|number| number.is_finite())
+}
+
+/// The largest residual of the equations of closed loops whose joints a table has with six digits, m.
+const CLOSED: f64 = 1e-5;
+
+/// Remarks on the states of a table.
+#[derive(Default)]
+struct Remarks {
+    given: Seen,
+    open: Seen,
+    results: Seen,
+    degrees: Degrees,
+}
+
+impl Remarks {
+    /// Looks at rows of arguments, whose first columns are positions, then those of dependent joints.
+    fn see(&mut self, arm: &CompiledArm, before: usize, width: usize, rows: &[f64], (dof, passive): (usize, usize)) {
+        self.given.see(before, rows.chunks(width), is_not_finite);
+        rows.chunks(width).for_each(|row| self.degrees.see(arm.robot(), &row[..dof]));
+        if passive > 0 {
+            let definition = DynArm::from_robot(arm.robot());
+            self.open.see(before, rows.chunks(width), |row| {
+                let step = definition.closure_step(&row[..dof], &row[dof..dof + passive]);
+                step.is_ok_and(|(_, residual)| residual.iter().any(|left| left.abs() > CLOSED))
+            });
+        }
+    }
+
+    fn text(&self) -> String {
+        let open = ["the loops of", "are not closed, so the numbers mean nothing"];
+        [
+            self.degrees.remark(|_| "convert the column to radians".to_owned()),
+            self.given.remark(["an argument of", "is not finite"], ["arguments of", "are not finite"]),
+            self.open.remark(open, open),
+            self.results.remark(["the result of", "is not finite"], ["the results of", "are not finite"]),
+        ]
+        .concat()
     }
 }
 

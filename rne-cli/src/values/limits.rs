@@ -9,7 +9,6 @@ use rne_model::{Joint, JointKind, Robot, six_digits};
 /// dependent joints of closed loops. The numbers are right all the same: limits are no part of the dynamics.
 pub(crate) fn remark(robot: &Robot, q: &[f64], passive: &[f64]) -> String {
     let mut text = String::new();
-    let are_degrees = look_like_degrees(robot, q);
     let joints = robot.independent_joints().zip(robot.coordinate_limits()).zip(q);
     let joints = joints.enumerate().map(|(index, (joint, q))| (format!("q{}", index + 1), joint, q));
     let dependent = robot.closed.passive.iter().map(|&joint| &robot.joints[joint]).zip(passive);
@@ -22,15 +21,10 @@ pub(crate) fn remark(robot: &Robot, q: &[f64], passive: &[f64]) -> String {
             continue;
         }
         let unit = joint.row.kind.position_unit();
-        let degrees = if are_degrees && joint.row.kind == JointKind::Revolute && q.abs() > TAU {
-            format!("; degrees? write deg({q})")
-        } else {
-            String::new()
-        };
         let [q, lower, upper] = [q, lower, upper].map(six_digits);
         let _ = writeln!(
             text,
-            "note: {name} = {q} {unit} is outside of the limits of {}: {lower} to {upper} {unit}{degrees}",
+            "note: {name} = {q} {unit} is outside of the limits of {}: {lower} to {upper} {unit}",
             joint.name
         );
     }
@@ -65,19 +59,13 @@ impl Degrees {
         }
     }
 
-    pub(crate) fn remark(&self) -> String {
+    /// The remark; `remedy` says how the position is written instead.
+    pub(crate) fn remark(&self, remedy: impl Fn(f64) -> String) -> String {
         self.first.as_ref().filter(|_| !self.have_digits).map_or_else(String::new, |(joint, q)| {
-            format!("{joint} is at {q} rad, more than a full turn; if this is in degrees, write {q}deg\n")
+            let remedy = remedy(*q);
+            format!("note: {joint} is at {q} rad, more than a full turn; if this is in degrees, {remedy}\n")
         })
     }
-}
-
-/// Whether positions, which are in rad, were probably meant in degrees: some joint would be turned by more than a turn,
-/// and the positions of all joints that turn are whole numbers.
-fn look_like_degrees(robot: &Robot, q: &[f64]) -> bool {
-    let joints = robot.independent_joints().zip(q);
-    let mut turns = joints.filter(|(joint, _)| joint.row.kind == JointKind::Revolute).map(|(_, &q)| q);
-    q.iter().any(|q| q.abs() > TAU) && turns.all(|q| q.fract() == 0.0)
 }
 
 #[cfg(test)]
@@ -100,13 +88,6 @@ mod tests {
         assert_eq!(remark(&robot, &[std::f64::consts::FRAC_PI_2, 0.0, 0.5], &[]), "");
         assert_eq!(remark(&robot, &[-2.792_526_803_190_927, 0.0, 0.0], &[]), "");
         assert_eq!(remark(&robot, &[], &[]), "");
-        // degrees are whole numbers, and one of them is more than a turn
-        let outside = "outside of the limits of turn: -2.79253 to 1.5708 rad";
-        for (q, end) in [(10.0, "; degrees? write deg(10)"), (6.0, ""), (10.5, "")] {
-            let expected = format!("note: q1 = {q} rad is {outside}{end}\n");
-            assert_eq!(remark(&robot, &[q, -4.0, 0.0], &[]), expected);
-        }
-        assert!(!remark(&robot, &[10.0, 0.3, 0.0], &[]).contains("degrees"));
         assert_eq!(
             remark(&robot, &[-3.0, 0.0, 0.6], &[]),
             "note: q1 = -3 rad is outside of the limits of turn: -2.79253 to 1.5708 rad\n\

@@ -579,6 +579,17 @@ fn degrees_of_positions() {
     let said = at("30,45");
     let told = "j1 is at 30 rad, more than a full turn; if this is in degrees, write 30deg";
     assert!(said.status == 0 && said.err.contains(told), "{said:?}");
+    // once, where a joint has limits, too
+    let limited = rne(&["eval", "puma560", "--q", "90,0,0,0,0,0"]);
+    assert_eq!(limited.err.matches("degrees").count(), 1, "{limited:?}");
+    let pose = "--base-pose";
+    let turned = |pose_of: &str| {
+        rne(&["eval", "docs/satellite.yaml", "--q", "0,0", "--function", "floating_potential_energy", pose, pose_of])
+    };
+    assert!(turned("0,0,0.5,90,0,0").err.contains("if the roll of --base-pose, 90 rad, is in degrees, write 90deg"));
+    assert_eq!(turned("0,0,0.5,90deg,0,0").err, "");
+    let far = rne(&["eval", "planar2", "--q", "0,0", "--payload", "1,100,50,0"]);
+    assert!(far.err.contains("is 112 m from its frame; if this is in millimetres, write mm(100)"), "{far:?}");
     for right in ["0.3,6.2", "30deg,400deg"] {
         assert_eq!(at(right).err, "", "{right}");
     }

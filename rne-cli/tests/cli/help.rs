@@ -155,6 +155,11 @@ fn every_command_has_a_page_of_the_manual() {
     }
     assert!(fs::read_to_string(folder.join("rne.1")).expect("a page").contains("rne\\-search(1)"));
     fails(2, &["man", "nothing"], &["rne-nothing has no page", "check, show, emit"]);
+    // what is no page of these stays, unless told otherwise
+    fs::write(folder.join("rne.1"), "precious").expect("a file");
+    fails(2, &["man", "-o", path], &["rne.1 exists and is not changed", "--force"]);
+    assert_eq!(fs::read_to_string(folder.join("rne.1")).expect("a file"), "precious");
+    assert_eq!(crate::call::rne(&["man", "-o", path, "--force"]).status, 0);
     // a folder that is not there yet is made, and not where a file is in its way
     let new = folder.join("share/man1");
     assert_eq!(crate::call::rne(&["man", "-o", new.to_str().expect("UTF-8")]).status, 0);

@@ -201,3 +201,21 @@ fn arguments_of_a_search() {
     fails(1, &["search", "nowhere.yaml"], &["no robot file nowhere.yaml"]);
     assert!(!fs::exists(&plan).expect("a folder"), "nothing was written");
 }
+
+/// A plan with a function that the robot does not have is refused by all that read it, so no search writes one.
+#[test]
+fn functions_that_the_robot_does_not_have_are_refused() {
+    let folder = folder("search_refused");
+    let path = folder.join("arm.yaml");
+    let robot = path.to_str().expect("UTF-8");
+    for (file, function, says) in [
+        ("docs/gripper.yaml", "regressor", "the joint `finger_b` follows other joints"),
+        ("robots/planar2.yaml", "floating_forward_dynamics", "has no `floating_base`"),
+        ("docs/satellite.yaml", "forward_dynamics_in_contact", "has no `contacts`"),
+        ("robots/planar2.yaml", "inverse_dynamics_of_loops", "robots with closed loops"),
+    ] {
+        fs::copy(format!("{ROOT}/{file}"), &path).expect("a copy");
+        fails(2, &["search", robot, "--seconds", "0", "--rewrite", "--function", function], &[says]);
+        assert!(!folder.join("arm.plan.yaml").exists(), "{function}");
+    }
+}

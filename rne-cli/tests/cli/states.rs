@@ -302,6 +302,18 @@ fn csv_has_many_faces() {
     assert!(gravity("q1,q2\n1,2\n").err.starts_with("gravity_torques of 1 state ("));
 }
 
+/// Positions of dependent joints in a table are no guess, so those that leave a loop open are told.
+#[test]
+fn open_loops_are_told() {
+    let header = "q1,qd1,qdd1,passive1,passive2\n";
+    let arguments = ["eval", "docs/four_bar.yaml", "--states", "-"];
+    let open = rne_reading(&arguments, &format!("{header}0.3,0,0,0.5,1\n"));
+    assert!(open.err.ends_with("note: the loops of state 1 are not closed, so the numbers mean nothing\n"), "{open:?}");
+    // as `rne eval --passive 0.5,1` finds them, to six digits
+    let closed = rne_reading(&arguments, &format!("{header}0.3,0,0,0.238383,1.309811\n"));
+    assert!(closed.status == 0 && !closed.err.contains("not closed"), "{closed:?}");
+}
+
 /// States without a finite result have none, and are counted.
 #[test]
 fn what_is_not_finite_is_told() {
@@ -310,7 +322,8 @@ fn what_is_not_finite_is_told() {
     assert!(found.err.ends_with("note: the results of 2 states are not finite; the first is state 2\n"), "{found:?}");
     let lines: Vec<&str> = found.out.lines().collect();
     assert_eq!((lines[1], lines[2], lines[3]), (lines[4], "NaN,NaN", "NaN,NaN"));
-    let told = "j1 is at 90 rad, more than a full turn; if this is in degrees, write 90deg\n";
+    assert!(found.err.contains("note: arguments of 2 states are not finite; the first is state 2\n"), "{found:?}");
+    let told = "j1 is at 90 rad, more than a full turn; if this is in degrees, convert the column to radians\n";
     assert!(gravity("q1,q2\n0,1\n90,0.5\n").err.ends_with(told));
     assert!(!gravity("q1,q2\n0,1\n90,0.51\n").err.contains("degrees"));
     assert!(gravity("q1,q2\ninf,0\n").err.ends_with("note: the result of state 1 is not finite\n"));
