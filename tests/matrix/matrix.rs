@@ -119,11 +119,11 @@ const DOCUMENT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/matrix.m
 const TEXT: &str = "\
 # Which function for which robot
 
-A test walks through every function and every kind of robot, and writes this page: `RNE_WRITE_DOCUMENTS=1 cargo test -p \
-matrix`. `●` means that each of these doors has the function: `rne::DynArm`, compiled functions (`rne::compiled`, \
-Python, the C library, SQL) of one state and of many, both forms of generated code, C and PTX in both precisions, CUDA, \
-Rust, and the listings of `rne show` and `rne report`. The numbers of the compiled functions are those of `rne::DynArm`. \
-A letter means that every door refuses the function, for this reason:
+A test walks through every function and every kind of robot, and writes this page: \
+`RNE_WRITE_DOCUMENTS=1 cargo test -p matrix`. `●` means that each of these doors has the function: `rne::DynArm`, \
+compiled functions (`rne::compiled`, Python, the C library, SQL) of one state and of many, both forms of generated \
+code, C and PTX in both precisions, CUDA, Rust, and the listings of `rne show` and `rne report`. The numbers of the \
+compiled functions are those of `rne::DynArm`. A letter means that every door refuses the function, for this reason:
 
 ";
 

@@ -30,8 +30,8 @@ struct Source {
 }
 
 /// The figures of `inverse_dynamics` of every robot in both forms; fails if a result of a function differs from Rust's
-/// in a bit: of these and of every function of the PUMA 560. A sample has every third robot and the PUMA 560, and of this
-/// one the other functions in the reduced form alone: GCC takes minutes for their seven steps.
+/// in a bit: of these and of every function of the PUMA 560. A sample has every third robot and the PUMA 560, and of
+/// this one the other functions in the reduced form alone: GCC takes minutes for their seven steps.
 pub(crate) fn examine(workspace: &Path, sample: bool, expected: &Log) -> Result<Vec<Row>> {
     let folder = tools::target_folder(workspace).join("c");
     fs::create_dir_all(&folder)?;

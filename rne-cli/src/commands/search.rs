@@ -8,8 +8,8 @@ use std::time::{Duration, Instant, SystemTime};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use rne_codegen::{CheckFor as _, Function};
 use rne_codegen::plan::{Accuracy, Cost};
+use rne_codegen::{CheckFor as _, Function};
 use rne_model::{Robot, plan_of};
 use rne_search::{PlanFile, Progress, SearchError, SearchOptions};
 
