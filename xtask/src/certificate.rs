@@ -1,8 +1,8 @@
 //! The certificate of the generated code on microcontrollers: `firmware/`, docs/embedded.md.
 
-use anyhow::Result;
+use anyhow::{Context as _, Result, ensure};
 use clap::Args;
-use xshell::cmd;
+use xshell::{Shell, cmd};
 
 use crate::Verdict;
 use crate::machine::{self, Missing};
@@ -21,7 +21,10 @@ Examples:
   cargo xtask certificate             judge
   cargo xtask certificate --update    judge, and write docs/embedded.md anew
   cargo xtask certificate --sample    judge the Cortex-M4F alone, in Rust, and every third robot in C
-  cargo xtask certificate --install   get what is missing by apt-get (Debian) first")]
+  cargo xtask certificate --install   get what is missing by apt-get (Debian) first
+  cargo xtask certificate --sample --changed
+                                      nothing, unless something has changed since --record")]
+#[allow(clippy::struct_excessive_bools)] // each is an option
 pub(crate) struct Certificate {
     /// Write docs/embedded.md anew
     #[arg(long)]
@@ -30,6 +33,12 @@ pub(crate) struct Certificate {
     /// WebAssembly
     #[arg(long, conflicts_with = "update")]
     sample: bool,
+    /// Do nothing where nothing that is certified has changed since firmware/certified.txt was written
+    #[arg(long, conflicts_with_all = ["update", "record"])]
+    changed: bool,
+    /// After success, write to firmware/certified.txt what was certified: the state of the last commit
+    #[arg(long)]
+    record: bool,
     /// First get what is missing by apt-get; where that fails, say so in one line and exit with 0
     #[arg(long)]
     pub(crate) install: bool,
@@ -54,6 +63,22 @@ pub(crate) const OF_COMMAND_LINE: [&str; 5] =
 
 impl Certificate {
     pub(crate) fn run(&self) -> Result<Verdict> {
+        let certified = certified(&machine::shell()?)?;
+        let recorded = machine::read(RECORD).ok();
+        if self.changed && certified.is_some() && recorded.as_deref().map(str::trim) == certified.as_deref() {
+            println!("certificate: the code is that of {RECORD}, which is certified");
+            return Ok(Verdict::Holds);
+        }
+        let holds = self.judged()?;
+        if self.record && holds {
+            let certified = certified.context("what is certified is not committed, so it cannot be recorded")?;
+            machine::write(RECORD, &format!("{certified}\n"))?;
+            println!("certificate: recorded in {RECORD}");
+        }
+        Ok(Verdict::from(holds))
+    }
+
+    fn judged(&self) -> Result<bool> {
         machine::packages(&PACKAGES, self.install)?;
         let shell = machine::shell()?;
         // Debian's compiler builds the tool as well: what the macro is made of is built once.
@@ -91,6 +116,38 @@ impl Certificate {
         if self.sample {
             judges = judges.arg("--sample");
         }
-        Ok(Verdict::from(tests.run().is_ok() && judges.run().is_ok()))
+        Ok(tests.run().is_ok() && judges.run().is_ok())
     }
+}
+
+/// The hash of what was certified.
+const RECORD: &str = "firmware/certified.txt";
+
+/// The files that decide what is certified: the emitted code by its list, the runtime, and all that builds, runs and
+/// judges them.
+const CERTIFIED: [&str; 14] = [
+    "docs/embedded.md",
+    "firmware/board",
+    "firmware/certificate",
+    "firmware/robots",
+    "firmware/wasm",
+    "firmware/Cargo.lock",
+    "rne-certify/board",
+    "rne-emit/src/c",
+    "rne-macro/src",
+    "rne-runtime/src",
+    "robots",
+    "src",
+    "tests/frozen.txt",
+    "tests/shipped/src",
+];
+
+/// The hash of these files in the last commit; nothing where some are not committed.
+fn certified(shell: &Shell) -> Result<Option<String>> {
+    if !cmd!(shell, "git status --porcelain -- {CERTIFIED...}").quiet().read()?.is_empty() {
+        return Ok(None);
+    }
+    let files = cmd!(shell, "git ls-tree -r HEAD -- {CERTIFIED...}").quiet().read()?;
+    ensure!(!files.is_empty(), "there are no files of the code that is certified");
+    Ok(Some(cmd!(shell, "git hash-object --stdin").stdin(files).quiet().read()?))
 }

@@ -60,6 +60,8 @@ enum Needs {
     Program(&'static str),
     /// Time: it is run where `CI_FULL` is set.
     Time,
+    /// Time, and something else.
+    TimeAnd(&'static Needs),
     /// A tag of this repository, to compare with.
     Tag,
 }
@@ -283,7 +285,7 @@ const STEPS: &[Step] = &[
         about: "optimal control of the example, whose solver CMake builds",
         variables: &[],
         command: &["cargo", "test", "--manifest-path", "examples/mpc/Cargo.toml", "--locked"],
-        needs: Needs::Packages(&["cmake", "g++"]),
+        needs: Needs::TimeAnd(&Needs::Packages(&["cmake", "g++"])),
     },
     Step {
         name: "deny",
@@ -311,7 +313,7 @@ const STEPS: &[Step] = &[
         about: "the oldest compiler that Cargo.toml allows builds what users build",
         variables: &[("CARGO_TARGET_DIR", "target/msrv")],
         command: &["cargo", "+OLDEST", "check", "--locked"],
-        needs: Needs::OldestCompiler,
+        needs: Needs::TimeAnd(&Needs::OldestCompiler),
     },
 ];
 
@@ -400,6 +402,7 @@ impl Needs {
                 let task = name.trim_start_matches("cargo-");
                 (!here).then(|| format!("there is no {name} (cargo xtask tool {task} --install)"))
             }
+            Self::TimeAnd(other) => Self::Time.lack(oldest, install).or_else(|| other.lack(oldest, install)),
             Self::Time => std::env::var_os("CI_FULL").is_none().then(|| "it takes long (CI_FULL=1)".to_owned()),
             Self::Tag => {
                 let tag = machine::shell()

@@ -173,15 +173,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 
 /// A remark on an angle of the base that is probably in degrees.
 fn turned_base(arguments: &Arguments) -> String {
-    let angles = arguments.base_pose.as_ref().map(|List(pose)| pose).filter(|pose| pose.len() == 6);
-    let angles = angles.into_iter().flat_map(|pose| ["roll", "pitch", "yaw"].into_iter().zip(&pose[3..]));
-    let is_degrees = |(_, angle): &(&str, &f64)| angle.abs() > std::f64::consts::TAU && (10.0 * **angle).fract() == 0.0;
-    angles
-        .filter(is_degrees)
-        .map(|(name, angle)| {
-            format!("note: if the {name} of --base-pose, {angle} rad, is in degrees, write {angle}deg\n")
-        })
-        .collect()
+    let pose = arguments.base_pose.as_ref().map(|List(pose)| pose).filter(|pose| pose.len() == 6);
+    let mut remark = String::new();
+    for (name, angle) in pose.into_iter().flat_map(|pose| ["roll", "pitch", "yaw"].into_iter().zip(&pose[3..])) {
+        if angle.abs() > std::f64::consts::TAU && (10.0 * angle).fract() == 0.0 {
+            let _ =
+                writeln!(remark, "note: if the {name} of --base-pose, {angle} rad, is in degrees, write {angle}deg");
+        }
+    }
+    remark
 }
 
 /// The centre of mass of a payload that is farther away, m, is probably in millimetres, as in a robot file.
