@@ -232,18 +232,9 @@ fn refuse_too_large(chain: &Chain) -> Result<(), NoUrdf> {
     Ok(())
 }
 
-/// The numbers of motors and limits that a URDF cannot hold.
+/// The numbers of motors that a URDF cannot hold.
 fn of_motors(robot: &Robot) -> Vec<String> {
     let mut remarks = Vec::new();
-    let has_none = |joint: &&Joint| joint.limits.effort.is_none() || joint.limits.velocity.is_none();
-    let limitless: Vec<String> = robot.joints.iter().filter(has_none).map(|joint| one_line(&joint.name)).collect();
-    if !limitless.is_empty() {
-        remarks.push(format!(
-            "limits of effort and velocity that the robot file does not have are written as 0, because a URDF must \
-             have both: {}",
-            limitless.join(", ")
-        ));
-    }
     let motors = || robot.joints.iter().filter_map(|joint| Some((one_line(&joint.name), joint.motor?)));
     if motors().any(|(_, motor)| motor.inertia != 0.0 || motor.gear_ratio != 1.0) {
         let and =
