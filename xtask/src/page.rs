@@ -19,8 +19,8 @@ const PACKAGES: [&str; 3] = ["selenium==4.51.0", "axe-core-python==0.1.0", "pill
 /// CI_FULL all; on that of one robot, on those of five with CI_FULL, nothing moves while the mouse rests on a name:
 /// `tests/page/every.py`. With CI_FULL, a few pages are used as a reader uses them: `tests/page/page.py` compares
 /// torques and vectors in all axes with those of `rne eval`, follows every statement of the PUMA 560 to its equation,
-/// value, unit and arrow and back, and tries sliders, keyboard, fingers, exercises, rules of accessibility, paper, sizes
-/// and times.
+/// value, unit and arrow and back, and tries sliders, keyboard, fingers, exercises, rules of accessibility, paper,
+/// sizes and times.
 #[derive(Args)]
 #[command(after_help = "\
 Needs chromium, chromedriver and python3 with venv; what it fetches is below
