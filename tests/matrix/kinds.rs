@@ -10,7 +10,7 @@ use rne_runtime::{BaseMotion, BaseTwist, DynArm, Inputs, Payload, Pose, Wrench};
 pub(crate) struct Kind {
     pub(crate) name: &'static str,
     pub(crate) robot: Robot,
-    /// The same robot, whose run-time parameters have their values.
+    /// The robot, with numbers in the place of its run-time parameters.
     definite: Robot,
 }
 
@@ -35,7 +35,7 @@ const MASSLESS: &str = "{format: 1, name: cross, source: own, convention: standa
     {type: revolute, dh: {theta: 0, d: 0, a: 0.4, alpha: 0},
      link: {mass: 2, com: [-0.2, 0.05, 0], inertia: {xx: 0.01, yy: 0.05, zz: 0.06}}}]}";
 
-/// `m` and `a` are known when the program runs.
+/// `m` and `iz` are known when the program runs.
 const VARIABLE: &str = "{format: 1, name: rod, source: own, convention: standard, gravity: [0, -9.81, 0], \
     parameters: {m: 2, iz: 0.3}, joints: [
     {type: revolute, dh: {theta: 0, d: 0, a: 0.8, alpha: pi/2}, link: {mass: m, com: [-0.4, 0, 0], inertia: {zz: iz}}},
@@ -165,7 +165,7 @@ impl State {
         }
     }
 
-    /// The same for any number of states.
+    /// These arguments by name, for any number of states.
     pub(crate) fn arguments(&self) -> Arguments<'_, f64> {
         let [q, qd, qdd, tau, multipliers] = &self.joints;
         let [pose, twist, wrenches, wrench, payload] = &self.flat;

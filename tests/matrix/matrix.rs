@@ -121,9 +121,9 @@ const TEXT: &str = "\
 
 A test walks through every function and every kind of robot, and writes this page: \
 `RNE_WRITE_DOCUMENTS=1 cargo test -p matrix`. `●` means that each of these doors has the function: `rne::DynArm`, \
-compiled functions (`rne::compiled`, Python, the C library, SQL) of one state and of many, both forms of generated \
-code, C and PTX in both precisions, CUDA, Rust, and the listings of `rne show` and `rne report`. The numbers of the \
-compiled functions are those of `rne::DynArm`. A letter means that every door refuses the function, for this reason:
+`rne::compiled` in both forms, for one state and for many, C and PTX in both precisions, CUDA, Rust, and the listing \
+of `rne show`. The numbers of `rne::compiled` are those of `rne::DynArm`. A letter means that each of these doors \
+refuses the function, for this reason:
 
 ";
 
