@@ -399,8 +399,9 @@ impl fmt::Display for CompileError {
                 f,
                 "`{function}` is of robots with a floating base, and the file of {robot} has no `floating_base`: the \
                  mass of its base is not known. Import the whole robot with a floating base, in Python by \
-                 `rne.load(FILE, whole=True, floating=True)`, or write the base into the robot file, such as \
-                 `floating_base: {{name: trunk, link: {{mass: 20, com: [0, 0, 0], inertia: {{xx: 1, yy: 1, zz: 1}}}}}}`"
+                 `rne.load(FILE, whole=True, floating=True)`, or write the base into the robot file (`format: 2`), \
+                 such as `floating_base: {{name: trunk, link: {{mass: 20, com: [0, 0, 0], \
+                 inertia: {{xx: 1, yy: 1, zz: 1}}}}}}`"
             ),
             Self::PlanDoesNotFit { robot } => {
                 write!(f, "the plan does not fit `{robot}`: one of its choices is not possible for this robot")

@@ -59,11 +59,12 @@ where
     Debug,
 )]
 #[robot(crate = ::dynamics, yaml = "
-    format: 1
+    format: 2
     name: slides
     source: own numbers
     convention: standard
     gravity: [0, 0, -9.81]
+    floating_base: {name: trunk, link: {mass: 20, com: [0, 0, 0], inertia: {xx: 1, yy: 1, zz: 1}}}
     joints:
       - type: prismatic
         dh: {theta: 0.785398163, d: 3.14159, a: 1.414, alpha: 0.693}
