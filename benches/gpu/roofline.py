@@ -41,8 +41,9 @@ LABELS = {
 
 def read(page):
     """The limits of the card, and the rows: name, type, GB/s, part of chains."""
-    copy = float(re.search(r"moved ([\d,]+) GB/s", page)[1].replace(",", ""))
-    single, double = re.search(r"did\s+([\d.]+) · 10¹² per second in `f32` and ([\d.]+) · 10¹² in `f64`", page).groups()
+    text = " ".join(page.split())  # lines of the page are wrapped anywhere
+    copy = float(re.search(r"moved ([\d,]+) GB/s", text)[1].replace(",", ""))
+    single, double = re.search(r"did ([\d.]+) · 10¹² per second in `f32` and ([\d.]+) · 10¹² in `f64`", text).groups()
     rows = []
     for line in page.splitlines():
         cells = [cell.strip() for cell in line.strip("|").split("|")]
