@@ -79,15 +79,15 @@ pub(crate) fn prefix() -> Result<PathBuf> {
 /// The library, built and laid out below a prefix; the absolute path of that.
 pub(crate) fn built(prefix: &Path) -> Result<PathBuf> {
     let shell = machine::shell()?;
-    let folder = machine::target_folder("target")?;
+    let (folder, (profile, built)) = (machine::target_folder("target")?, machine::profile()?);
     fs::create_dir_all(prefix).with_context(|| prefix.display().to_string())?;
     let prefix = prefix.canonicalize()?;
     let build = cmd!(
         shell,
-        "cargo build --quiet --release --locked --manifest-path doors/capi/Cargo.toml --target-dir {folder}"
+        "cargo build --quiet --profile {profile} --locked --manifest-path doors/capi/Cargo.toml --target-dir {folder}"
     );
     machine::without_flags(build).quiet().run()?;
-    lay_out(&folder.join("release"), &prefix)?;
+    lay_out(&folder.join(built), &prefix)?;
     Ok(prefix)
 }
 

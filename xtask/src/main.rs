@@ -133,7 +133,7 @@ impl Task {
             Self::Growth(task) => ("growth", false, task.run()),
             Self::Mutate(task) => ("mutate", false, task.run()),
             Self::Verify(task) => ("verify", task.install, task.run()),
-            Self::Light(_) => ("light", false, light::Light::run()),
+            Self::Light(task) => ("light", false, task.run()),
             Self::Lines(task) => ("lines", false, task.run()),
             Self::Loops(task) => ("loops", false, task.run()),
             Self::Derivatives(task) => ("derivatives", false, task.run()),

@@ -172,10 +172,11 @@ impl Place {
     pub(crate) fn wheel(&self, install: bool) -> Result<PathBuf> {
         let (shell, maturin) = (&self.shell, self.maturin(install)?);
         let (wheels, target) = (self.folder.join("wheels"), machine::target_folder("target")?);
+        let (profile, _) = machine::profile()?;
         let _ = fs::remove_dir_all(&wheels);
         let build = cmd!(
             shell,
-            "{maturin} build --quiet --release --locked --manifest-path doors/python/Cargo.toml
+            "{maturin} build --quiet --profile {profile} --locked --manifest-path doors/python/Cargo.toml
                 --target-dir {target} --out {wheels}"
         );
         machine::without_flags(build).quiet().run()?;
