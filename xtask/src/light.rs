@@ -20,8 +20,9 @@ use crate::machine::{self, Missing};
 #[command(after_help = "\
 Exit status: 1 when a limit is exceeded or a crate compiles C.
 
-Example:
-  cargo xtask light")]
+Examples:
+  cargo xtask light
+  cargo xtask light --crates    seconds: without the release binary")]
 pub(crate) struct Light {
     /// Count crates alone: the binary takes minutes
     #[arg(long)]

@@ -57,7 +57,7 @@ pub(crate) fn target_folder(default: &str) -> Result<PathBuf> {
 }
 
 /// The profile of the Python package and of the C library, `release` unless `RNE_PROFILE` names `dev`, and its folder.
-/// With `dev`, tests of both compile in half of the time.
+/// Tests use `dev`, which compiles sooner; what is timed or released is `release`.
 pub(crate) fn profile() -> Result<(&'static str, &'static str)> {
     match std::env::var("RNE_PROFILE").as_deref() {
         Ok("dev") => Ok(("dev", "debug")),
