@@ -84,7 +84,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask certify-all", ".ci/run", "step cargo xtask certify-all --install\n"),
     ("cargo xtask certificate", ".ci/run", "step cargo xtask certificate --install\n"),
     ("cargo xtask frozen", ".ci/run", "step cargo xtask frozen\n"),
-    ("cargo xtask light", ".ci/run", "step cargo xtask light\n"),
+    ("cargo xtask light", ".ci/run", "step cargo xtask light $("),
     // its page is checked, and it breaks sources
     ("cargo xtask mutate", "tests/documents/pages.rs", "fn the_page_of_mutations_is_of_the_mutants()"),
     // it searches for minutes
