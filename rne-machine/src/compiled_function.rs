@@ -19,6 +19,8 @@ pub struct CompiledFunction {
     places: Vec<usize>,
     /// The array and the element of it that each input of the machine is.
     inputs: Vec<(usize, usize)>,
+    /// The arrays of sines and cosines, and the joints of which the machine uses one.
+    turns: Option<([usize; 2], Vec<usize>)>,
     #[cfg(feature = "native")]
     natives: std::sync::Arc<crate::number::natively::Natives>,
 }
@@ -37,16 +39,23 @@ impl CompiledFunction {
             });
             places.next()
         };
-        let inputs = machine.inputs().iter().map(|name| place(*name)).collect::<Option<_>>().ok_or_else(too_large)?;
+        let inputs: Vec<(usize, usize)> =
+            machine.inputs().iter().map(|name| place(*name)).collect::<Option<_>>().ok_or_else(too_large)?;
         let arrays: Vec<_> = arrays.iter().map(|array| (array.name, array.elements.len())).collect();
         let places =
             arrays.iter().map(|(name, _)| arguments::place(name)).collect::<Option<_>>().ok_or_else(too_large)?;
+        let array = |name| arrays.iter().position(|(other, _)| *other == name);
+        let turns = array("sin").zip(array("cos")).map(|(sin, cos)| {
+            let is_used = |joint: &usize| inputs.contains(&(sin, *joint)) || inputs.contains(&(cos, *joint));
+            ([sin, cos], (0..program.dof).filter(is_used).collect())
+        });
         Ok(Self {
             program,
             machine,
             arrays,
             places,
             inputs,
+            turns,
             #[cfg(feature = "native")]
             natives: std::sync::Arc::default(),
         })
@@ -154,7 +163,20 @@ impl CompiledFunction {
     /// When an argument is missing, has another size, or is [out of range](OutOfRange).
     pub fn check<T: Number>(&self, states: usize, arguments: &Arguments<'_, T>) -> Result<(), EvaluationError> {
         let mut arrays = self.arrays.iter().enumerate();
-        arrays.try_for_each(|(index, (_, elements))| self.checked(index, *elements, states, arguments).map(|_| ()))
+        arrays.try_for_each(|(index, (_, elements))| self.checked(index, *elements, states, arguments).map(|_| ()))?;
+        let Some((arrays, joints)) = &self.turns else { return Ok(()) };
+        for state in 0..states {
+            for &joint in joints {
+                let mut turn = [f64::NAN; 2];
+                for (number, &index) in turn.iter_mut().zip(arrays) {
+                    let given = self.given(index, arguments)?.number(joint, self.arrays[index].1, state, states);
+                    *number = given.map_or(f64::NAN, |&given| given.into());
+                }
+                let wrong = |mistake| EvaluationError::OutOfRange { mistake, state: state + 1, states };
+                OutOfRange::check_turn(joint, turn).map_err(wrong)?;
+            }
+        }
+        Ok(())
     }
 
     /// The array of the argument at `index`.

@@ -18,6 +18,13 @@ pub enum OutOfRange {
     Step(f64),
     /// The rotation of this argument is not a rotation.
     Rotation(String),
+    /// The sine and the cosine of the position of this joint, counted from 1, are of no angle.
+    Angle {
+        /// The joint.
+        joint: usize,
+        /// Sine and cosine.
+        turn: [f64; 2],
+    },
 }
 
 impl OutOfRange {
@@ -54,6 +61,17 @@ impl OutOfRange {
             _ => Ok(()),
         }
     }
+
+    /// Refuses a sine and a cosine of the position of a joint, whose index is `index`, that are of no angle, as far as
+    /// single precision can say: the sum of their squares is 1 to 1e-4.
+    ///
+    /// # Errors
+    /// The joint and the two numbers.
+    pub fn check_turn(index: usize, turn: [f64; 2]) -> Result<(), Self> {
+        let [sin, cos] = turn;
+        let is_none = (sin * sin + cos * cos - 1.0).abs() > 1e-4;
+        if is_none { Err(Self::Angle { joint: index + 1, turn }) } else { Ok(()) }
+    }
 }
 
 impl fmt::Display for OutOfRange {
@@ -66,6 +84,11 @@ impl fmt::Display for OutOfRange {
                 f,
                 "`{argument}` is no rotation: its three rows must have the length 1, be at right angles to each other, \
                  and be right-handed"
+            ),
+            Self::Angle { joint, turn: [sin, cos] } => write!(
+                f,
+                "`sin` and `cos` are {sin} and {cos} for joint {joint}, but the sum of their squares must be 1: they \
+                 are the sine and the cosine of its position"
             ),
         }
     }

@@ -431,6 +431,23 @@ fn what_an_argument_cannot_be_is_refused_by_every_function_that_takes_it() {
         assert!(said.contains("it must be a finite number above 0"), "{said}");
         assert!(arm.runge_kutta_step_derivatives(&zeros, &zeros, &zeros, step).is_err());
     }
+    // of the joint whose angle the function uses
+    let turned = Function::InverseDynamicsFromSinCos;
+    let planar = CompiledArm::from_file(concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/planar2.yaml"));
+    let planar = planar.expect("a robot file");
+    let (sin, cos) = ([0.0, 0.6], [1.0, 0.8]);
+    for (sin, cos, joint) in [(sin, cos, 0), ([0.0, 0.5], cos, 2), (sin, [0.0, 0.8], 1), (sin, [1.0, f64::NAN], 0)] {
+        let given = Arguments::new().q(Array::Same(&zeros)).qd(Array::Same(&zeros)).qdd(Array::Same(&zeros));
+        let given = given.with("sin", Array::Same(&sin)).and_then(|given| given.with("cos", Array::Same(&cos)));
+        let mut room = [7.0; 2];
+        match planar.run_one(turned, &given.expect("arguments"), &mut room) {
+            Ok(()) => assert!(joint == 0 && room != [7.0; 2], "{room:?}"),
+            Err(error) => {
+                assert!(error.to_string().contains(&format!("for joint {joint}, but the sum of their")), "{error}");
+                assert_eq!(room, [7.0; 2]);
+            }
+        }
+    }
     let said = arm.function(Function::ForwardDynamicsInContact).unwrap_err().to_string();
     assert!(said.contains("the robot file has no `contacts`") && said.contains("kind: point"), "{said}");
 }

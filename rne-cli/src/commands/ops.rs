@@ -87,6 +87,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut failures: Vec<Failure> = Vec::new();
     for path in plan_file::robots(&arguments.files) {
         let outcome = arguments.rotors.robot(path, Shape::Closed).and_then(|robot| {
+            remarks.push_str(&arguments.rotors.note(&robot));
             let compiler = Compiler::new(path, &robot).without(&arguments.without);
             if arguments.tricks {
                 savings.push_str(&tricks(&robot, compiler.plans()?, terminal::room()));
@@ -117,7 +118,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let complaints: Vec<&str> = failures.iter().map(|failure| failure.text.as_str()).collect();
     match failures.first() {
         Some(first) => Err(Failure { text: complaints.join("\n\n"), status: first.status }),
-        None if arguments.tricks => Ok(Outcome::text(savings)),
+        None if arguments.tricks => Ok(Outcome { remark: remarks, ..Outcome::text(savings) }),
         None if arguments.json => Ok(Outcome { remark: remarks, ..Outcome::json(&entries(&counted))? }),
         None => Ok(Outcome { remark: remarks, ..Outcome::text(table(&counted, terminal::room())) }),
     }

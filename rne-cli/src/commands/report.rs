@@ -50,5 +50,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let page = rne_report::page(&robot, Some(&reduced))
         .map_err(|error| Failure::compile(&arguments.file.display().to_string(), &error))?;
     let output = Output { out: Some(arguments.out.clone()), force: arguments.force };
-    output.deliver(Format::Html, page, String::new(), &arguments.file)
+    output.deliver(Format::Html, page, arguments.rotors.note(&robot), &arguments.file)
 }

@@ -210,11 +210,13 @@ impl ChosenArm {
         self.carried.of(self.read(Frames::Dropped, shape)?.0)
     }
 
-    /// The robot without the payload, seen from a frame, and a note that counts the warnings of its file.
+    /// The robot without the payload, seen from a frame, and notes: `--rotors` without effect, and the
+    /// number of warnings of its file.
     pub(crate) fn robot_at(&self, at: &AtFrame) -> Result<(Robot, String), Failure> {
         let names_frame = at.frame.is_some() || self.carried.payload_on.is_some();
         let (robot, lints) = self.read(if names_frame { Frames::Kept } else { Frames::Dropped }, Shape::Closed)?;
-        Ok((at.of(robot)?, robot_file::lint_remark(&lints, &self.file)))
+        let note = self.rotors.note(&robot);
+        Ok((at.of(robot)?, note + &robot_file::lint_remark(&lints, &self.file)))
     }
 
     fn read(&self, frames: Frames, shape: Shape) -> Result<(Robot, Report), Failure> {
