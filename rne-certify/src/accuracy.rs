@@ -4,7 +4,7 @@
 //! ([`Interval`]), which enclose the exact result. The distance of the `f32` result from the farthest number of the
 //! interval is at least the error. So the bound holds at the states of the sample. It says nothing of other states.
 
-use rne_codegen::{Argument, Arguments, Interpreter, Output, Program, Value};
+use rne_codegen::{Argument, Arguments, Interpreter, Output, Program, Real, Value};
 use rne_model::{JointKind, Limits, Robot};
 use serde::Serialize;
 
@@ -50,21 +50,43 @@ const TORQUE: f64 = 10.0;
 /// Positions of a sliding joint without limits, m.
 const SLIDE: f64 = 1.0;
 
-/// The payload of each state, for functions that take one: mass, kg; centre of mass, m; inertia about it xx, yy, zz,
-/// xy, xz, yz, kg m².
-pub const PAYLOAD: [f32; 10] = [1.5, 0.01, -0.02, 0.06, 0.003, 0.004, 0.002, 2e-4, -1e-4, 3e-4];
-/// The force, N, and the moment, N m, at each tip in each state, for functions that take them.
-pub const WRENCH: [f32; 6] = [5.0, -3.0, 20.0, 0.4, -0.6, 0.25];
-/// The motion of the base in each state, for functions that take it: angular velocity, rad/s; angular acceleration,
-/// rad/s²; acceleration, m/s²; gravity, m/s², in the axes of frame 0.
-pub const BASE: [[f32; 3]; 4] = [[0.5, -0.3, 0.7], [1.2, -0.8, 0.6], [0.4, 1.1, -0.9], [0.6, -0.4, -9.78]];
-/// The rotation of the base in each state, for functions that take it, by rows.
-pub const BASE_ROTATION: [[f32; 3]; 3] = [[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]];
+/// Force, N, and moment, N m, at a tip.
+static WRENCH: [f32; 6] = [5.0, -3.0, 20.0, 0.4, -0.6, 0.25];
+/// Mass, kg; centre of mass, m; inertia about it xx, yy, zz, xy, xz, yz, kg m².
+static PAYLOAD: [f32; 10] = [1.5, 0.01, -0.02, 0.06, 0.003, 0.004, 0.002, 2e-4, -1e-4, 3e-4];
+/// Angular velocity, rad/s; angular acceleration, rad/s²; acceleration, m/s²; gravity, m/s², in the axes of frame 0.
+static BASE: [[f32; 3]; 4] = [[0.5, -0.3, 0.7], [1.2, -0.8, 0.6], [0.4, 1.1, -0.9], [0.6, -0.4, -9.78]];
+/// Velocity of the origin of frame 0, m/s, and angular velocity of the base, rad/s.
+static TWIST: [f32; 6] = [0.4, 1.1, -0.9, 0.5, -0.3, 0.7];
+static STEP: [f32; 1] = [0.01];
+/// The rotation of the base, by rows.
+pub static BASE_ROTATION: [f32; 9] = [0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6];
 
-/// The velocity of the origin of frame 0 in each state, m/s, for functions that take it.
-pub const VELOCITY: [f32; 3] = [0.4, 1.1, -0.9];
-/// The duration of a step, s.
-pub const STEP: f32 = 0.01;
+/// The arrays that are the same at each state: the name, the numbers of the state or of a tip, and a clause about them,
+/// with `{}` in the place of the numbers.
+static SAME: [(&str, &[f32], &str); 12] = [
+    ("payload", &PAYLOAD, "the payload is {}: mass (kg), centre of mass (m), inertia (kg m²)"),
+    ("base_omega", &BASE[0], "the base has the angular velocity {} (rad/s)"),
+    ("base_omega_dot", &BASE[1], "its angular acceleration is {} (rad/s²)"),
+    ("base_acceleration", &BASE[2], "its acceleration is {} (m/s²)"),
+    ("base_gravity", &BASE[3], "gravity is {} (m/s²)"),
+    ("omega", &BASE[0], "the base has the angular velocity {} (rad/s)"),
+    ("twist", &TWIST, "the base has the velocity and the angular velocity {} (m/s, rad/s)"),
+    ("base_rotation", &BASE_ROTATION, "the rotation of the base, row by row, is {}"),
+    ("force", WRENCH.split_at(3).0, "the force at the tip is {} (N)"),
+    ("moment", WRENCH.split_at(3).1, "the moment at the tip is {} (N m)"),
+    ("wrenches", &WRENCH, "the force and the moment at each tip are {} (N, N m)"),
+    ("step", &STEP, "the step takes {} s"),
+];
+
+/// The numbers of an array of an argument that is the same at each state, those of one tip if it has a row for each,
+/// and a clause that tells them. `None` for an array that differs from state to state.
+#[must_use]
+pub fn same(array: &str) -> Option<(&'static [f32], String)> {
+    let (_, numbers, clause) = SAME.into_iter().find(|(name, ..)| *name == array)?;
+    let list = numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+    Some((numbers, clause.replace("{}", &list)))
+}
 
 /// The ranges of the joints: the limits of the robot file, and defaults where it has none.
 #[must_use]
@@ -151,63 +173,53 @@ pub(crate) fn largest_errors(
 }
 
 /// Intervals that enclose the exact numbers that a program returns; the last array are accelerations or torques.
-pub(crate) fn enclosed(
+pub(crate) fn enclosed(robot: &Robot, interpreter: &Interpreter, arrays: [&[f32]; 4]) -> Option<Vec<Interval>> {
+    let exactly = |x: f32| Interval::exactly(f64::from(x));
+    run(robot, interpreter, arrays, exactly, Interval::rounded, Interval::sin_cos)
+}
+
+/// The numbers that a program returns in single precision for joint positions, those of the dependent joints,
+/// velocities, and accelerations or torques.
+#[must_use]
+pub fn single_precision(
     robot: &Robot,
     interpreter: &Interpreter,
-    [q, passive, qd, last]: [&[f32]; 4],
-) -> Option<Vec<Interval>> {
-    let parameters: Vec<f32> = robot.run_time.values(robot).into_iter().map(single).collect();
-    let enclose =
-        |numbers: &[f32]| -> Vec<Interval> { numbers.iter().map(|&x| Interval::exactly(f64::from(x))).collect() };
-    let [q, qd, last, parameters, passive] = [q, qd, last, &parameters, passive].map(enclose);
-    let zero = Interval::exactly(0.0);
-    let exactly = |x: f32| Interval::exactly(f64::from(x));
-    let [fx, fy, fz, nx, ny, nz] = WRENCH.map(exactly);
-    let wrenches = vec![WRENCH.map(exactly); robot.tip_count()];
+    arrays: [&[f32]; 4],
+    sin_cos: impl Fn(f32) -> (f32, f32),
+) -> Option<Vec<f32>> {
+    run(robot, interpreter, arrays, |x| x, single, sin_cos)
+}
+
+/// The numbers that a program returns in the arithmetic of `T`: `exactly` has the numbers of the arguments in it,
+/// `rounded` the constants.
+fn run<T: Real>(
+    robot: &Robot,
+    interpreter: &Interpreter,
+    arrays: [&[f32]; 4],
+    exactly: impl Fn(f32) -> T,
+    rounded: impl Fn(f64) -> T,
+    sin_cos: impl Fn(T) -> (T, T),
+) -> Option<Vec<T>> {
+    let all = |numbers: &[f32]| -> Vec<T> { numbers.iter().map(|&x| exactly(x)).collect() };
+    let parameters: Vec<T> = robot.run_time.values(robot).into_iter().map(|x| exactly(single(x))).collect();
+    let [q, passive, qd, last] = arrays.map(all);
+    let ([fx, fy, fz, nx, ny, nz], [vx, vy, vz, ..]) = (WRENCH.map(&exactly), TWIST.map(&exactly));
+    let wrenches = vec![[fx, fy, fz, nx, ny, nz]; robot.tip_count()];
     let arguments = Arguments {
         tau: &last,
         parameters: &parameters,
         force: [fx, fy, fz],
         moment: [nx, ny, nz],
-        payload: PAYLOAD.map(exactly),
+        payload: PAYLOAD.map(&exactly),
         wrenches: &wrenches,
-        base: BASE.map(|triple| triple.map(exactly)),
-        velocity: VELOCITY.map(exactly),
-        step: exactly(STEP),
-        base_rotation: std::array::from_fn(|at| exactly(BASE_ROTATION[at / 3][at % 3])),
+        base: BASE.map(|triple| triple.map(&exactly)),
+        velocity: [vx, vy, vz],
+        step: exactly(STEP[0]),
+        base_rotation: BASE_ROTATION.map(&exactly),
         passive: &passive,
-        ..Arguments::of_joints(&q, &qd, &last, zero)
+        ..Arguments::of_joints(&q, &qd, &last, exactly(0.0))
     };
-    interpreter.run(&arguments, Interval::rounded, Interval::sin_cos)
-}
-
-/// The numbers that a program returns in single precision for joint positions, velocities, and accelerations or
-/// torques.
-#[must_use]
-pub fn single_precision(
-    robot: &Robot,
-    interpreter: &Interpreter,
-    [q, passive, qd, last]: [&[f32]; 4],
-    sin_cos: impl Fn(f32) -> (f32, f32),
-) -> Option<Vec<f32>> {
-    let parameters: Vec<f32> = robot.run_time.values(robot).into_iter().map(single).collect();
-    let [fx, fy, fz, nx, ny, nz] = WRENCH;
-    let wrenches = vec![WRENCH; robot.tip_count()];
-    let arguments = Arguments {
-        tau: last,
-        parameters: &parameters,
-        force: [fx, fy, fz],
-        moment: [nx, ny, nz],
-        payload: PAYLOAD,
-        wrenches: &wrenches,
-        base: BASE,
-        velocity: VELOCITY,
-        step: STEP,
-        base_rotation: std::array::from_fn(|at| BASE_ROTATION[at / 3][at % 3]),
-        passive,
-        ..Arguments::of_joints(q, qd, last, 0.0)
-    };
-    interpreter.run(&arguments, single, sin_cos)
+    interpreter.run(&arguments, rounded, sin_cos)
 }
 
 #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose

@@ -161,6 +161,12 @@ impl Arm {
         Given::matrix(name, axes, elements, value, known)
     }
 
+    /// A vector of the motion of the base; left out, it is zero, gravity that of the robot.
+    pub(crate) fn of_base_motion<'py>(&self, name: &'static str, value: Option<&Bound<'py, PyAny>>) -> Given<'py> {
+        let left_out = if name == "base_gravity" { self.robot().gravity } else { [0.0; 3] };
+        value.map_or_else(|| Given::own(name, left_out.to_vec()), |value| Given::vector(name, 3, value.clone()))
+    }
+
     /// What the tip carries.
     pub(crate) fn payload<'py>(&self, value: &Bound<'py, PyAny>) -> Given<'py> {
         Given::vector("payload", self.elements(Argument::Payload), value.clone())

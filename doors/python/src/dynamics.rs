@@ -182,105 +182,96 @@ macro_rules! methods {
         $variant:ident $axes:tt = $name:ident $arguments:tt -> $returned:ident $(at $of_frame:ident)?:
             $summary:literal $(, $details:literal)?;
     )*) => {
-        $(method! { $($of_frame)? $variant $name $arguments $returned $summary $($details)? })*
+        $(at_frame! { ($($of_frame)?) $variant $name $arguments $returned $summary ($($details)?) })*
+    };
+}
+
+/// A function of the tip can be taken at a frame; at the tip its name at frames is another name of it.
+macro_rules! at_frame {
+    ((pose) $variant:ident $name:ident $($rest:tt)*) => {
+        at_frame! { (at) $variant $name $($rest)* }
+        at_frame! { (at) $variant pose $($rest)* }
+    };
+    (() $($rest:tt)*) => {
+        with_payload! { [] $($rest)* }
+    };
+    (($of_frame:ident) $($rest:tt)*) => {
+        with_payload! { [frame] $($rest)* }
+    };
+}
+
+/// A function of which [`Function::with_payload`] is another one takes a payload.
+macro_rules! with_payload {
+    ($frame:tt InverseDynamics $($rest:tt)*) => { sorted! { $frame [payload] InverseDynamics $($rest)* } };
+    ($frame:tt GravityTorques $($rest:tt)*) => { sorted! { $frame [payload] GravityTorques $($rest)* } };
+    ($frame:tt BiasTorques $($rest:tt)*) => { sorted! { $frame [payload] BiasTorques $($rest)* } };
+    ($frame:tt MassMatrix $($rest:tt)*) => { sorted! { $frame [payload] MassMatrix $($rest)* } };
+    ($frame:tt ForwardDynamics $($rest:tt)*) => { sorted! { $frame [payload] ForwardDynamics $($rest)* } };
+    ($frame:tt MomentumAndRate $($rest:tt)*) => { sorted! { $frame [payload] MomentumAndRate $($rest)* } };
+    ($frame:tt InverseDynamicsDerivatives $($rest:tt)*) => {
+        sorted! { $frame [payload] InverseDynamicsDerivatives $($rest)* }
+    };
+    ($frame:tt ForwardDynamicsDerivatives $($rest:tt)*) => {
+        sorted! { $frame [payload] ForwardDynamicsDerivatives $($rest)* }
+    };
+    ($frame:tt $($rest:tt)*) => { sorted! { $frame [] $($rest)* } };
+}
+
+/// Sorts the arguments: those that must be given, the wrenches at the tips of a base that moves, and the vectors of its
+/// motion. The last two may be left out.
+macro_rules! sorted {
+    ($frame:tt $payload:tt $variant:ident $name:ident ($($arguments:tt)*) $($rest:tt)*) => {
+        sorted! { @ [] [] [] ($($arguments)*) held $frame $payload $variant $name $($rest)* }
+    };
+    (@ $required:tt [] $base:tt (wrenches: Wrenches) moves $($rest:tt)*) => {
+        method! { $required [wrenches] $base $($rest)* }
+    };
+    (@ $required:tt [] [] (base: Base $(, $($more:tt)*)?) $moves:ident $($rest:tt)*) => {
+        sorted! {
+            @ $required [] [base_omega base_omega_dot base_acceleration base_gravity] ($($($more)*)?) moves $($rest)*
+        }
+    };
+    (@ [$($required:tt)*] [] [] (omega: BaseVelocity $(, $($more:tt)*)?) $moves:ident $($rest:tt)*) => {
+        sorted! { @ [$($required)* omega: BaseVelocity,] [] [] ($($($more)*)?) moves $($rest)* }
+    };
+    (@ [$($required:tt)*] [] [] (twist: BaseTwist $(, $($more:tt)*)?) $moves:ident $($rest:tt)*) => {
+        sorted! { @ [$($required)* twist: BaseTwist,] [] [] ($($($more)*)?) moves $($rest)* }
+    };
+    (
+        @ [$($required:tt)*] [] [] ($argument:ident: $kind:ident $(, $($more:tt)*)?) $moves:ident $($rest:tt)*
+    ) => {
+        sorted! { @ [$($required)* $argument: $kind,] [] [] ($($($more)*)?) $moves $($rest)* }
+    };
+    (@ $required:tt [] $base:tt () $moves:ident $($rest:tt)*) => {
+        method! { $required [] $base $($rest)* }
+    };
+}
+
+/// What an argument is that may be left out.
+macro_rules! about_optional {
+    (wrenches) => {
+        concat!(about!(Wrenches), "Without `wrenches` no tip exerts anything.\n\n")
+    };
+    (base_omega) => {
+        "`base_omega`, `base_omega_dot`, `base_acceleration`, `base_gravity`: shape (3,) or (N, 3). What is left out is \
+         zero, `base_gravity` the robot's own.\n\n"
+    };
+    (frame) => {
+        "`frame`: the name of a frame that stands in the place of the tip: a frame in the list `frames` of the robot \
+         file, or a joint for its link frame. None is the tip.\n\n"
+    };
+    (payload) => {
+        about!(Payload)
+    };
+    ($other:ident) => {
+        ""
     };
 }
 
 macro_rules! method {
-    // a function of the tip that can be taken at a frame; at the tip its name at frames is another name of it
-    (pose $($rest:tt)*) => {
-        at_frame! { $($rest)* }
-        at_frame! { pose $($rest)* }
-    };
-    (jacobian $($rest:tt)*) => {
-        at_frame! { $($rest)* }
-    };
-    (jacobian_rate_times_velocity $($rest:tt)*) => {
-        at_frame! { $($rest)* }
-    };
-    (wrench_torques $($rest:tt)*) => {
-        at_frame! { $($rest)* }
-    };
-    (jacobian_rate $($rest:tt)*) => {
-        at_frame! { $($rest)* }
-    };
-    (jacobian_derivatives $($rest:tt)*) => {
-        at_frame! { $($rest)* }
-    };
-    // `Function::with_payload` is the other one
-    (InverseDynamics $($rest:tt)*) => {
-        loaded! { InverseDynamics InverseDynamicsWithPayload $($rest)* }
-    };
-    (GravityTorques $($rest:tt)*) => {
-        loaded! { GravityTorques GravityTorquesWithPayload $($rest)* }
-    };
-    (BiasTorques $($rest:tt)*) => {
-        loaded! { BiasTorques BiasTorquesWithPayload $($rest)* }
-    };
-    (MassMatrix $($rest:tt)*) => {
-        loaded! { MassMatrix MassMatrixWithPayload $($rest)* }
-    };
-    (ForwardDynamics $($rest:tt)*) => {
-        loaded! { ForwardDynamics ForwardDynamicsWithPayload $($rest)* }
-    };
-    (InverseDynamicsDerivatives $($rest:tt)*) => {
-        loaded! { InverseDynamicsDerivatives InverseDynamicsDerivativesWithPayload $($rest)* }
-    };
-    (ForwardDynamicsDerivatives $($rest:tt)*) => {
-        loaded! { ForwardDynamicsDerivatives ForwardDynamicsDerivativesWithPayload $($rest)* }
-    };
-    (MomentumAndRate $($rest:tt)*) => {
-        loaded! { MomentumAndRate MomentumAndRateWithPayload $($rest)* }
-    };
-    // without wrenches no tip exerts anything
-    (FloatingBias $name:ident (q: Positions, qd: Rates, omega: BaseVelocity, wrenches: Wrenches) $($rest:tt)*) => {
-        of_floating_base! { FloatingBias $name (q: Positions, qd: Rates, omega: BaseVelocity) $($rest)* }
-    };
     (
-        FloatingForwardDynamics $name:ident
-            (q: Positions, qd: Rates, tau: Torques, omega: BaseVelocity, wrenches: Wrenches) $($rest:tt)*
-    ) => {
-        of_floating_base! {
-            FloatingForwardDynamics $name (q: Positions, qd: Rates, tau: Torques, omega: BaseVelocity) $($rest)*
-        }
-    };
-    (
-        $variant:ident $name:ident (
-            q: Positions, qd: Rates, tau: Torques, pose: BasePose, twist: BaseTwist, step: Step, wrenches: Wrenches
-        ) $($rest:tt)*
-    ) => {
-        of_floating_base! {
-            $variant $name
-                (q: Positions, qd: Rates, tau: Torques, pose: BasePose, twist: BaseTwist, step: Step) $($rest)*
-        }
-    };
-    (
-        $variant:ident $name:ident
-            (q: Positions, passive: Passive, qd: Rates, tau: Torques, omega: BaseVelocity, wrenches: Wrenches)
-            $($rest:tt)*
-    ) => {
-        of_floating_base! {
-            $variant $name (q: Positions, passive: Passive, qd: Rates, tau: Torques, omega: BaseVelocity) $($rest)*
-        }
-    };
-    (
-        $variant:ident $name:ident
-            (q: Positions, qd: Rates, qdd: Accelerations, base: Base $(, $wrenches:ident: Wrenches)?) $($rest:tt)*
-    ) => {
-        on_moving_base! { $variant $name (q: Positions, qd: Rates, qdd: Accelerations) ($($wrenches)?) $($rest)* }
-    };
-    (
-        $variant:ident $name:ident
-            (q: Positions, passive: Passive, qd: Rates, qdd: Accelerations, base: Base, wrenches: Wrenches)
-            $($rest:tt)*
-    ) => {
-        on_moving_base! {
-            $variant $name (q: Positions, passive: Passive, qd: Rates, qdd: Accelerations) (wrenches) $($rest)*
-        }
-    };
-    (
-        $variant:ident $name:ident ($($argument:ident: $kind:ident),*)
-            $returned:ident $summary:literal $($details:literal)?
+        [$($argument:ident: $kind:ident,)*] [$($wrenches:ident)?] [$($base:ident)*] [$($frame:ident)?]
+            [$($payload:ident)?] $variant:ident $name:ident $returned:ident $summary:literal ($($details:literal)?)
     ) => {
         #[pymethods]
         impl Arm {
@@ -288,167 +279,34 @@ macro_rules! method {
             ///
             $(#[doc = details!($returned, $details)]
             #[doc = ""])?
-            #[doc = concat!($(about!($kind),)* "Returns ", returned!($returned))]
-            #[pyo3(signature = ($($argument,)* *, parameters=None, out=None))]
-            fn $name<'py>(
-                &self,
-                py: Python<'py>,
-                $($argument: &Bound<'py, PyAny>,)*
-                parameters: Option<&Bound<'py, PyAny>>,
-                out: Option<&Bound<'py, PyAny>>,
-            ) -> PyResult<Bound<'py, PyAny>> {
-                let given = vec![$(given!(self, $argument: $kind)),*];
-                self.compute(py, Function::$variant, given, parameters, out)
-            }
-        }
-    };
-}
-
-/// A function of a base that moves; a base whose motion is not given stands still.
-macro_rules! on_moving_base {
-    (
-        $variant:ident $name:ident
-            ($($argument:ident: $kind:ident),*) ($($wrenches:ident)?)
-            $returned:ident $summary:literal $details:literal
-    ) => {
-        #[pymethods]
-        impl Arm {
-            #[doc = $summary]
-            ///
-            #[doc = $details]
-            /// Each vector of the base has the shape (3,) or (N, 3). What is left out is zero, `base_gravity` the
-            /// robot's own.
-            ///
-            #[doc = concat!($(about!($kind)),*)]
-            $(#[doc = about!(Wrenches)]
-            #[doc = concat!("Without `", stringify!($wrenches), "` no tip exerts anything.\n\n")])?
-            #[doc = concat!("Returns ", returned!($returned))]
-            #[pyo3(signature = ($($argument,)* $($wrenches=None,)? *, base_omega=None, base_omega_dot=None,
-                base_acceleration=None, base_gravity=None, parameters=None, out=None))]
+            #[doc = concat!(
+                $(about!($kind),)* $(about_optional!($base),)* $(about_optional!($wrenches),)?
+                $(about_optional!($frame),)? $(about_optional!($payload),)? "Returns ", returned!($returned)
+            )]
+            #[pyo3(signature = ($($argument,)* $($wrenches=None,)? *, $($base=None,)* $($frame=None,)?
+                $($payload=None,)? parameters=None, out=None))]
             #[allow(clippy::too_many_arguments)] // those of Python
             fn $name<'py>(
                 &self,
                 py: Python<'py>,
                 $($argument: &Bound<'py, PyAny>,)*
                 $($wrenches: Option<&Bound<'py, PyAny>>,)?
-                base_omega: Option<&Bound<'py, PyAny>>,
-                base_omega_dot: Option<&Bound<'py, PyAny>>,
-                base_acceleration: Option<&Bound<'py, PyAny>>,
-                base_gravity: Option<&Bound<'py, PyAny>>,
+                $($base: Option<&Bound<'py, PyAny>>,)*
+                $($frame: Option<&Bound<'py, PyAny>>,)?
+                $($payload: Option<&Bound<'py, PyAny>>,)?
                 parameters: Option<&Bound<'py, PyAny>>,
                 out: Option<&Bound<'py, PyAny>>,
             ) -> PyResult<Bound<'py, PyAny>> {
-                let base = [
-                    ("base_omega", base_omega, [0.0; 3]),
-                    ("base_omega_dot", base_omega_dot, [0.0; 3]),
-                    ("base_acceleration", base_acceleration, [0.0; 3]),
-                    ("base_gravity", base_gravity, self.robot().gravity),
-                ];
-                let base = base.map(|(name, value, left_out)| match value {
-                    Some(value) => Given::vector(name, 3, value.clone()),
-                    None => Given::own(name, left_out.to_vec()),
-                });
-                #[allow(unused_mut)] // a function without tips
-                let mut given: Vec<_> = [$(given!(self, $argument: $kind)),*].into_iter().chain(base).collect();
+                #[allow(unused_mut)] // a function without what may be left out
+                let (mut function, mut given) = (Function::$variant, vec![$(given!(self, $argument: $kind)),*]);
+                $(given.push(self.of_base_motion(stringify!($base), $base));)*
                 $(given.push(self.of_tips(stringify!($wrenches), $wrenches)?);)?
-                self.compute(py, Function::$variant, given, parameters, out)
-            }
-        }
-    };
-}
-
-/// A function of a base that moves and that nothing holds; without wrenches no tip exerts anything.
-macro_rules! of_floating_base {
-    (
-        $variant:ident $name:ident ($($argument:ident: $kind:ident),*) $returned:ident $summary:literal $details:literal
-    ) => {
-        #[pymethods]
-        impl Arm {
-            #[doc = $summary]
-            ///
-            #[doc = $details]
-            #[doc = concat!($(about!($kind),)* about!(Wrenches))]
-            #[doc = concat!("Without `wrenches` no tip exerts anything.\n\nReturns ", returned!($returned))]
-            #[pyo3(signature = ($($argument,)* wrenches=None, *, parameters=None, out=None))]
-            #[allow(clippy::too_many_arguments)] // those of Python
-            fn $name<'py>(
-                &self,
-                py: Python<'py>,
-                $($argument: &Bound<'py, PyAny>,)*
-                wrenches: Option<&Bound<'py, PyAny>>,
-                parameters: Option<&Bound<'py, PyAny>>,
-                out: Option<&Bound<'py, PyAny>>,
-            ) -> PyResult<Bound<'py, PyAny>> {
-                let given = vec![$(given!(self, $argument: $kind),)* self.of_tips("wrenches", wrenches)?];
-                self.compute(py, Function::$variant, given, parameters, out)
-            }
-        }
-    };
-}
-
-/// A function of the tip that can be taken at a frame.
-macro_rules! at_frame {
-    (pose $variant:ident $name:ident $($rest:tt)*) => {
-        at_frame! { $variant pose $($rest)* }
-    };
-    (
-        $variant:ident $name:ident ($($argument:ident: $kind:ident),*)
-            $returned:ident $summary:literal $($details:literal)?
-    ) => {
-        #[pymethods]
-        impl Arm {
-            #[doc = $summary]
-            ///
-            $(#[doc = details!($returned, $details)]
-            #[doc = ""])?
-            /// frame: the name of a frame that stands in the place of the tip: a frame in the list `frames` of the
-            /// robot file, or a joint for its link frame. None is the tip.
-            #[doc = concat!($(about!($kind),)* "Returns ", returned!($returned))]
-            #[pyo3(signature = ($($argument,)* *, frame=None, parameters=None, out=None))]
-            fn $name<'py>(
-                &self,
-                py: Python<'py>,
-                $($argument: &Bound<'py, PyAny>,)*
-                frame: Option<&Bound<'py, PyAny>>,
-                parameters: Option<&Bound<'py, PyAny>>,
-                out: Option<&Bound<'py, PyAny>>,
-            ) -> PyResult<Bound<'py, PyAny>> {
-                let given = vec![$(given!(self, $argument: $kind)),*];
-                self.compute_at(py, frame, Function::$variant, given, parameters, out)
-            }
-        }
-    };
-}
-
-/// A function that has another one for the arm with a payload.
-macro_rules! loaded {
-    (
-        $variant:ident $with_payload:ident $name:ident ($($argument:ident: $kind:ident),*)
-            $returned:ident $summary:literal $($details:literal)?
-    ) => {
-        #[pymethods]
-        impl Arm {
-            #[doc = $summary]
-            ///
-            $(#[doc = details!($returned, $details)]
-            #[doc = ""])?
-            #[doc = about!(Payload)]
-            #[doc = concat!("Returns ", returned!($returned))]
-            #[pyo3(signature = ($($argument,)* *, payload=None, parameters=None, out=None))]
-            fn $name<'py>(
-                &self,
-                py: Python<'py>,
-                $($argument: &Bound<'py, PyAny>,)*
-                payload: Option<&Bound<'py, PyAny>>,
-                parameters: Option<&Bound<'py, PyAny>>,
-                out: Option<&Bound<'py, PyAny>>,
-            ) -> PyResult<Bound<'py, PyAny>> {
-                let mut given = vec![$(given!(self, $argument: $kind)),*];
-                let Some(payload) = payload else {
-                    return self.compute(py, Function::$variant, given, parameters, out);
-                };
-                given.push(given!(self, payload: Payload));
-                self.compute(py, Function::$with_payload, given, parameters, out)
+                $(if let Some(payload) = $payload {
+                    function = function.with_payload().unwrap_or(function);
+                    given.push(given!(self, payload: Payload));
+                })?
+                let frame: Option<&Bound<'py, PyAny>> = [None, $($frame)?][..].last().copied().flatten();
+                self.compute_at(py, frame, function, given, parameters, out)
             }
         }
     };

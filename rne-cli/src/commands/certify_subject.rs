@@ -1,13 +1,11 @@
 //! Functions that `rne certify` certifies: a program, an update of the observer, friction or limits of the joints.
 
-use std::fmt::Write as _;
-
 use rne_certify::accuracy::{self, Error, Sample};
 use rne_certify::board::{self, Call};
 use rne_certify::certificate::{Accuracy, NamedError};
 use rne_certify::joint_functions::{BEYOND, JointFunction};
 use rne_certify::observer::{self, LowPass};
-use rne_codegen::{Argument, Function, Interpreter, Layout, Name, Program, Quantity, Record};
+use rne_codegen::{Argument, ArgumentArray, Function, Interpreter, Layout, Name, Program, Quantity, Record};
 use rne_model::{JointKind, Limits, Robot};
 
 use crate::outcome::Failure;
@@ -193,45 +191,20 @@ impl Subject<'_> {
     }
 }
 
-/// The payload and the wrenches that are the same at each state, in words.
+/// The arguments that are the same at each state, in words.
 fn fixed(function: Function) -> String {
-    let list = |numbers: &[f32]| numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-    let mut words = String::new();
-    if function.takes(Argument::Payload) {
-        let payload = list(&accuracy::PAYLOAD);
-        let _ =
-            write!(words, " At each state the payload is {payload}: mass (kg), centre of mass (m), inertia (kg m²).");
-    }
+    let parts = function.arguments().iter().flat_map(|argument| argument.parts());
+    let clauses: Vec<String> = parts.filter_map(|part| Some(accuracy::same(part.name)?.1)).collect();
+    let mut words = match &clauses[..] {
+        [] => String::new(),
+        [only] => format!(" At each state {only}."),
+        [first @ .., last] => format!(" At each state {}, and {last}.", first.join(", ")),
+    };
     if function.takes(Argument::Sines) {
         words.push_str(" Sines and cosines are those of the code's own function; the bound includes their errors.");
     }
-    if function.takes(Argument::Base) {
-        let [omega, omega_dot, acceleration, gravity] = accuracy::BASE.map(|triple| list(&triple));
-        let _ = write!(
-            words,
-            " At each state the base has the angular velocity {omega} (rad/s), the angular acceleration {omega_dot} \
-             (rad/s²) and the acceleration {acceleration} (m/s²), and gravity is {gravity} (m/s²)."
-        );
-    }
     if function.takes(Argument::Passive) {
         words.push_str(" At each state the dependent joints close the loops.");
-    }
-    if function.takes(Argument::Step) {
-        let _ = write!(words, " The step takes {} s.", accuracy::STEP);
-    }
-    if function.takes(Argument::BaseTwist) {
-        let [velocity, omega] = [accuracy::VELOCITY, accuracy::BASE[0]].map(|triple| list(&triple));
-        let _ = write!(
-            words,
-            " At each state the origin of frame 0 moves with {velocity} (m/s), and the base turns with {omega} (rad/s)."
-        );
-    }
-    if function.takes(Argument::BaseRotation) {
-        let rows = accuracy::BASE_ROTATION.map(|row| format!("({})", list(&row))).join(", ");
-        let _ = write!(words, " At each state the rotation of the base has the rows {rows}.");
-    }
-    if function.takes(Argument::Wrench) || function.takes(Argument::Wrenches) {
-        let _ = write!(words, " At each state each wrench is {}: force (N), moment (N m).", list(&accuracy::WRENCH));
     }
     words
 }
@@ -282,77 +255,46 @@ fn turns(dof: usize, name: &str, of: impl Fn(f32) -> f32) -> String {
     )
 }
 
-/// The call of a function with arrays of a state of the board, and with the payload, the wrenches and the motion of the
-/// base of [`accuracy`].
+/// The call of a function with arrays of a state of the board, and with the arrays that are the same at each state.
 fn program_call(program: &Program, prefix: &str, passive: &[f32]) -> Result<Call, Failure> {
     let function = program.function;
-    let numbers = |numbers: &[f32]| numbers.iter().map(|x| format!("{x:?}f")).collect::<Vec<_>>().join(", ");
+    let list = |numbers: &[f32]| numbers.iter().map(|x| format!("{x:?}f")).collect::<Vec<_>>().join(", ");
     let name = format!("{prefix}_{function}");
     let mut call = Call { function: name, length: program.outputs.len(), ..Call::default() };
-    for argument in function.arguments() {
-        let (kind, name) = match argument {
-            Argument::Positions => ("const float *", "s->q"),
-            Argument::Passive => {
-                let passive = numbers(passive);
-                call.before.push(format!("const float passive[{}] = {{{passive}}};", program.passive.len()));
-                ("const float *", "passive")
+    for array in program.arrays_without_parameters() {
+        let ArgumentArray { name, row, is_number, .. } = &array;
+        let (kind, given) = match (*name, row) {
+            ("q" | "qd" | "qdd", _) => ("const float *".to_owned(), format!("s->{name}")),
+            // the third array of a state
+            ("tau" | "multipliers", _) => ("const float *".to_owned(), "s->qdd".to_owned()),
+            ("sin" | "cos", _) => {
+                let of = |q| rne_emit::sin_cos_f32(q);
+                let of: &dyn Fn(f32) -> f32 = if *name == "sin" { &|q| of(q).0 } else { &|q| of(q).1 };
+                call.before.push(turns(program.dof, &format!("{name}_of_states"), of));
+                ("const float *".to_owned(), format!("{name}_of_states[number]"))
             }
-            Argument::Rates => ("const float *", "s->qd"),
-            Argument::Accelerations | Argument::Torques | Argument::Multipliers => ("const float *", "s->qdd"),
-            Argument::Step => {
-                call.before.push(format!("const float step = {:?}f;", accuracy::STEP));
-                ("float", "step")
-            }
-            Argument::Payload => {
-                call.before.push(format!("const float payload[10] = {{{}}};", numbers(&accuracy::PAYLOAD)));
-                ("const float *", "payload")
-            }
-            Argument::Wrench => {
-                let (force, moment) = accuracy::WRENCH.split_at(3);
-                call.before.push(format!("const float force[3] = {{{}}};", numbers(force)));
-                call.before.push(format!("const float moment[3] = {{{}}};", numbers(moment)));
-                call.arguments.push(("const float *".to_owned(), "force".to_owned()));
-                ("const float *", "moment")
-            }
-            Argument::Wrenches => {
-                let tips = program.tips.len();
-                let rows = vec![format!("{{{}}}", numbers(&accuracy::WRENCH)); tips].join(", ");
-                call.before.push(format!("const float wrenches[{tips}][6] = {{{rows}}};"));
-                ("const float (*)[6]", "wrenches")
-            }
-            Argument::Sines => {
-                call.before.push(turns(program.dof, "sines", |q| rne_emit::sin_cos_f32(q).0));
-                ("const float *", "sines[number]")
-            }
-            Argument::Cosines => {
-                call.before.push(turns(program.dof, "cosines", |q| rne_emit::sin_cos_f32(q).1));
-                ("const float *", "cosines[number]")
-            }
-            Argument::Base => {
-                for (part, triple) in argument.parts().zip(accuracy::BASE) {
-                    call.before.push(format!("const float {}[3] = {{{}}};", part.name, numbers(&triple)));
-                    call.arguments.push(("const float *".to_owned(), part.name.to_owned()));
-                }
-                continue;
-            }
-            Argument::BaseTwist => {
-                let twist = [accuracy::VELOCITY, accuracy::BASE[0]].concat();
-                call.before.push(format!("const float twist[6] = {{{}}};", numbers(&twist)));
-                ("const float *", "twist")
-            }
-            // an energy takes it and a step, which are no arrays
-            Argument::BasePose => return Err(not_called(program)),
-            Argument::BaseVelocity => {
-                call.before.push(format!("const float omega[3] = {{{}}};", numbers(&accuracy::BASE[0])));
-                ("const float *", "omega")
-            }
-            Argument::BaseRotation => {
-                let rows = accuracy::BASE_ROTATION.map(|row| format!("{{{}}}", numbers(&row))).join(", ");
-                call.before.push(format!("const float base_rotation[3][3] = {{{rows}}};"));
-                ("const float (*)[3]", "base_rotation")
+            (_, row) => {
+                let of_one = match *name {
+                    "passive" => passive,
+                    name => accuracy::same(name).ok_or_else(|| not_called(program))?.0,
+                };
+                let all = of_one.repeat(array.elements.len() / of_one.len().max(1));
+                let lengths = array.lengths().iter().map(|length| format!("[{length}]")).collect::<Vec<_>>().concat();
+                let value = match row {
+                    Some(row) => format!("{{{{{}}}}}", all.chunks(*row).map(list).collect::<Vec<_>>().join("}, {")),
+                    None if *is_number => list(&all),
+                    None => format!("{{{}}}", list(&all)),
+                };
+                call.before.push(format!("const float {name}{lengths} = {value};"));
+                let kind = match row {
+                    Some(row) => format!("const float (*)[{row}]"),
+                    None if *is_number => "float".to_owned(),
+                    None => "const float *".to_owned(),
+                };
+                (kind, (*name).to_owned())
             }
         };
-        call.arguments.push((kind.to_owned(), name.to_owned()));
+        call.arguments.push((kind, given));
     }
     match program.layout() {
         Layout::Array(_, of) if matches!(*of, Layout::Number) => Ok(call),

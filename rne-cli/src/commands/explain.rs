@@ -22,6 +22,7 @@ use crate::render::link_parameter::LinkParameter;
 use crate::terminal;
 use crate::values::choice;
 use crate::values::choice::Kept;
+use crate::values::state;
 
 /// Explain functions, options, exit statuses, or names in the code
 #[derive(Args)]
@@ -163,7 +164,7 @@ fn of_function(name: &str) -> Option<String> {
     };
     let call = format!(
         "`rne eval FILE --function {function}` takes the options {}. `rne explain arguments` says how they are given.",
-        options(function)
+        state::options(function)
     );
     let words = [function.summary(), function.details(), &call].map(|words| wrap(words, terminal::width(PAGE) - 4, ""));
     let lines = words.iter().flat_map(|words| words.lines()).map(|line| format!("    {line}\n"));
@@ -281,7 +282,6 @@ payload if --wrench or --payload is given.";
 
 /// The table of functions and the options of `rne eval` that each takes.
 fn of_eval() -> String {
-    use Argument::{Accelerations, Multipliers, Positions, Rates, Step, Torques};
     let mut text = String::new();
     let mut row = |options: &str, functions: &str| {
         let indent = " ".repeat(18);
@@ -290,62 +290,29 @@ fn of_eval() -> String {
         let options = if options.len() < 18 { format!("{options:<18}") } else { format!("{options}\n{indent}") };
         let _ = writeln!(text, "{TYPED}{options}{TYPED:#}{words}");
     };
-    row("--q", &functions_of(&[Positions]));
-    row("--q --qd", &functions_of(&[Positions, Rates]));
-    row(
-        "--q --qd --qdd",
-        "inverse_dynamics, inverse_dynamics_from_sin_cos (sines and cosines of --q), regressor, \
-         inverse_dynamics_derivatives, joint_wrenches; with --wrench inverse_dynamics_with_wrench, with --payload \
-         inverse_dynamics_with_payload, with the --base-… options inverse_dynamics_on_moving_base",
-    );
-    row("--q --tau", &functions_of(&[Positions, Torques]));
-    row("--q --qd --tau", &functions_of(&[Positions, Rates, Torques]));
-    row("--q --qd --tau --duration", &functions_of(&[Positions, Rates, Torques, Step]));
-    row("--q --qd --qdd --multipliers", &functions_of(&[Positions, Rates, Accelerations, Multipliers]));
-    row("--qd --qdd", "actuator_torques (zero for a joint without a motor)");
+    let of_joints = Function::ALL.into_iter().filter(|function| !is_of_base_or_tips(*function));
+    let mut rows: Vec<(String, Vec<&str>)> = Vec::new();
+    for (options, name) in of_joints.map(|function| (state::options(function), function.name())) {
+        match rows.iter_mut().find(|(other, _)| *other == options) {
+            Some((_, names)) => names.push(name),
+            None => rows.push((options, vec![name])),
+        }
+    }
+    for (options, names) in rows {
+        row(&options, &names.join(", "));
+    }
     text + &entries(of_base_and_tips()) + "\n" + &wrap(OF_EVAL, terminal::width(PAGE), "") + "\n"
 }
 
-/// The option of `rne eval` for an argument of a function.
-const fn option(argument: Argument) -> &'static str {
-    match argument {
-        Argument::Positions => "--q",
-        // those of the positions
-        Argument::Sines | Argument::Cosines => "",
-        Argument::Rates => "--qd",
-        Argument::Accelerations => "--qdd",
-        Argument::Torques => "--tau",
-        Argument::Multipliers => "--multipliers",
-        Argument::Step => "--duration",
-        Argument::Wrench => "--wrench",
-        Argument::Wrenches => "--tip-wrench",
-        Argument::Payload => "--payload",
-        Argument::Base => "--base-omega --base-omega-dot --base-acceleration --gravity",
-        Argument::BaseVelocity => "--base-omega",
-        Argument::BaseTwist => "--base-velocity --base-omega",
-        Argument::BasePose => "--base-pose",
-        Argument::BaseRotation => "--base-rotation",
-        Argument::Passive => "--passive",
-    }
+/// Whether a function of several arguments is of a floating base, of several tips or of closed loops.
+fn is_of_base_or_tips(function: Function) -> bool {
+    let is_more =
+        function.is_of_floating_base() || function.takes(Argument::Wrenches) || function.takes(Argument::Passive);
+    is_more && function.arguments().len() > 1
 }
 
-/// The options of a function, in the order of its arguments.
-fn options(function: Function) -> String {
-    let options = function.arguments().iter().map(|argument| option(*argument)).filter(|option| !option.is_empty());
-    options.collect::<Vec<_>>().join(" ")
-}
-
-/// The options of each function of a floating base, or of several tips, that takes more than those of the joints.
+/// The options of each function of a floating base, of several tips or of closed loops.
 fn of_base_and_tips() -> impl Iterator<Item = (&'static str, String)> {
-    let is_more = |function: &Function| {
-        function.is_of_floating_base() || function.takes(Argument::Wrenches) || function.takes(Argument::Passive)
-    };
-    let functions = Function::ALL.into_iter().filter(is_more).filter(|function| function.arguments().len() > 1);
-    functions.map(|function| (function.name(), options(function)))
-}
-
-/// The functions with exactly these arguments.
-fn functions_of(arguments: &[Argument]) -> String {
-    let functions = Function::ALL.iter().filter(|function| function.arguments() == arguments);
-    functions.map(|function| function.name()).collect::<Vec<_>>().join(", ")
+    let functions = Function::ALL.into_iter().filter(|function| is_of_base_or_tips(*function));
+    functions.map(|function| (function.name(), state::options(function)))
 }

@@ -44,7 +44,8 @@ pub(crate) fn state(random: &Random, robot: &Robot) -> State {
         tips => (0..tips).map(|_| random.wrench()).collect(),
     };
     // hundredths, which single precision rounds: the code and the runtime agree for a rotation
-    let base_rotation = BASE_ROTATION.map(|row| row.map(|x| (f64::from(x) * 100.0).round() / 100.0));
+    let rounded = BASE_ROTATION.map(|x| (f64::from(x) * 100.0).round() / 100.0);
+    let base_rotation = [0, 1, 2].map(|row| [0, 1, 2].map(|column| rounded[3 * row + column]));
     let pose = Pose { rotation: base_rotation, translation: base.velocity };
     // last, so that the other numbers stay what they were
     let multipliers = (0..dof).map(|_| random.number(1.0)).collect();

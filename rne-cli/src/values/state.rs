@@ -370,6 +370,35 @@ fn argument(
     }
 }
 
+/// The option of `rne eval` for an argument of a function.
+const fn option(argument: Argument) -> &'static str {
+    match argument {
+        Argument::Positions => "--q",
+        // those of the positions
+        Argument::Sines | Argument::Cosines => "",
+        Argument::Rates => "--qd",
+        Argument::Accelerations => "--qdd",
+        Argument::Torques => "--tau",
+        Argument::Multipliers => "--multipliers",
+        Argument::Step => "--duration",
+        Argument::Wrench => "--wrench",
+        Argument::Wrenches => "--tip-wrench",
+        Argument::Payload => "--payload",
+        Argument::Base => "--base-omega --base-omega-dot --base-acceleration --gravity",
+        Argument::BaseVelocity => "--base-omega",
+        Argument::BaseTwist => "--base-velocity --base-omega",
+        Argument::BasePose => "--base-pose",
+        Argument::BaseRotation => "--base-rotation",
+        Argument::Passive => "--passive",
+    }
+}
+
+/// The options of `rne eval` for a function, in the order of its arguments.
+pub(crate) fn options(function: Function) -> String {
+    let options = function.arguments().iter().map(|argument| option(*argument)).filter(|option| !option.is_empty());
+    options.collect::<Vec<_>>().join(" ")
+}
+
 /// The error of an option that a function does not take, with the functions that do.
 fn not_taken(function: Function, name: &str, kind: Argument) -> Failure {
     // --payload chooses the others
