@@ -8,9 +8,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rne::DynArm;
 use rne_codegen::{Answer, Function, Layout};
 use rne_logs::Heading;
-use rne_machine::{Arguments, Array, CompiledArm, CompiledFunction, Destination, OutOfRange};
+use rne_machine::{Arguments, Array, CompiledArm, CompiledFunction, Destination, EvaluationError, OutOfRange};
 
-use crate::files::input_file::is_standard_input;
+use crate::files::input_file::{is_standard_input, name};
 use crate::files::output_file::is_standard_output;
 use crate::files::state_results::{self, Results};
 use crate::files::state_table::{PART, Restricted, Table};
@@ -149,7 +149,14 @@ impl Job<'_> {
                 at += elements;
             }
             let room = &mut numbers[..count * outputs.len()];
-            self.arm.run(self.function, count, &arguments, Destination::Rows(room)).map_err(Failure::input)?;
+            let wrong = |error| match error {
+                // counted from the first part
+                EvaluationError::OutOfRange { mistake, state, .. } => {
+                    Failure::input(format_args!("{}: state {}: {mistake}", name(self.states), states + state))
+                }
+                error => Failure::input(error),
+            };
+            self.arm.run(self.function, count, &arguments, Destination::Rows(room)).map_err(wrong)?;
             remarks.results.see(states, room.chunks(outputs.len().max(1)), is_not_finite);
             match results.write(room) {
                 // the reader has read enough
