@@ -30,6 +30,9 @@ import pinocchio as pin
 import mjcf
 import rne
 
+# Its warnings would go to a file in the current folder.
+mujoco.set_mju_user_warning(lambda message: None)
+
 TOLERANCE = 1e-9
 STATES = 2
 GRAVITY = np.array([1.0, -2.0, -9.0])

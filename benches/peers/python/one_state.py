@@ -20,7 +20,7 @@ import numpy as np
 import rne
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-sys.path += [str(ROOT / "xtask"), str(ROOT / "doors/python/tests")]
+sys.path += [str(ROOT / "tests/reference"), str(ROOT / "doors/python/tests")]
 warnings.filterwarnings("ignore")
 import one_state_calls
 
@@ -72,10 +72,11 @@ def loaded():
     robots, calls = dict(one_state_calls.ROBOTS), {}
     try:
         import pinocchio as pin
-        import urdf
     except ImportError as error:
         print(f"Pinocchio: skipped, {error}", file=sys.stderr)
         return robots, calls
+    import urdf
+
     for name, (file, options) in URDFS.items():
         path = urdf.find(file)
         arm = robots[name] = rne.load(path, snap=False, **options)
