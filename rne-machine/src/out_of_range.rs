@@ -18,9 +18,9 @@ pub enum OutOfRange {
     Step(f64),
     /// The rotation of this argument is not a rotation.
     Rotation(String),
-    /// The sine and the cosine of the position of this joint, counted from 1, are of no angle.
+    /// No angle has this sine and this cosine, which a joint's position has.
     Angle {
-        /// The joint.
+        /// The joint, counted from 1.
         joint: usize,
         /// Sine and cosine.
         turn: [f64; 2],
@@ -62,8 +62,8 @@ impl OutOfRange {
         }
     }
 
-    /// Refuses a sine and a cosine of the position of a joint, whose index is `index`, that are of no angle, as far as
-    /// single precision can say: the sum of their squares is 1 to 1e-4.
+    /// Refuses a sine and a cosine that no angle has, as far as single precision can say: the sum of their squares must
+    /// be 1 to 1e-4. They are those of the joint at this index.
     ///
     /// # Errors
     /// The joint and the two numbers.

@@ -253,8 +253,8 @@ macro_rules! about_optional {
         concat!(about!(Wrenches), "Without `wrenches` no tip exerts anything.\n\n")
     };
     (base_omega) => {
-        "`base_omega`, `base_omega_dot`, `base_acceleration`, `base_gravity`: shape (3,) or (N, 3). What is left out is \
-         zero, `base_gravity` the robot's own.\n\n"
+        "`base_omega`, `base_omega_dot`, `base_acceleration`, `base_gravity`: shape (3,) or (N, 3). What is left out \
+         is zero, `base_gravity` the robot's own.\n\n"
     };
     (frame) => {
         "`frame`: the name of a frame that stands in the place of the tip: a frame in the list `frames` of the robot \
