@@ -34,6 +34,8 @@ impl Restricted {
         self.0.iter().find_map(|&(argument, first)| {
             let number = |element: usize| row.get(first + element).copied();
             let mistake = OutOfRange::check(argument, number).err()?;
+            // the moments of a payload come after its mass and its centre of mass
+            let first = if matches!(mistake, OutOfRange::Moment(_)) { first + 4 } else { first };
             Some(format!("{}: {mistake}", name(first)))
         })
     }

@@ -353,7 +353,10 @@ fn a_negative_mass_of_a_payload_is_refused() {
     let negative: Vec<String> =
         row(1.0).iter().enumerate().map(|(at, x)| if at == moment { "-9".into() } else { x.to_string() }).collect();
     let found = rne_reading(&arguments, &format!("{}{}\n", table(&[1.0]), negative.join(",")));
-    assert!(found.status == 1 && found.err.contains("<standard input>:3: `m`: the payload's inertia has"), "{found:?}");
+    assert!(
+        found.status == 1 && found.err.contains("<standard input>:3: `Ixx`: the payload's inertia has"),
+        "{found:?}"
+    );
 
     // the same rule for one state
     let single = [&arguments[..4], &["--q", "0,0", "--qd", "0,0", "--qdd", "0,0", "--payload=-0.25,0,0,0"]].concat();
