@@ -20,7 +20,7 @@ pub enum OutOfRange {
     Rotation(String),
     /// No angle has this sine and this cosine, which a joint's position has.
     Angle {
-        /// The joint, counted from 1.
+        /// The joint, counted from 1 among those that do not depend on others.
         joint: usize,
         /// Sine and cosine.
         turn: [f64; 2],
@@ -62,14 +62,14 @@ impl OutOfRange {
         }
     }
 
-    /// Refuses a sine and a cosine that no angle has, as far as single precision can say: the sum of their squares must
-    /// be 1 to 1e-4. They are those of the joint at this index.
+    /// Refuses a sine and a cosine that no angle has, as far as half precision can say: the sum of their squares must be
+    /// 1 to 2e-3. They are those of the joint at this index, of the joints that do not depend on others.
     ///
     /// # Errors
     /// The joint and the two numbers.
     pub fn check_turn(index: usize, turn: [f64; 2]) -> Result<(), Self> {
         let [sin, cos] = turn;
-        let is_none = (sin * sin + cos * cos - 1.0).abs() > 1e-4;
+        let is_none = (sin * sin + cos * cos - 1.0).abs() > 2e-3;
         if is_none { Err(Self::Angle { joint: index + 1, turn }) } else { Ok(()) }
     }
 }
