@@ -35,7 +35,18 @@ fn states(arm: &CompiledArm, function: Function, states: usize) -> Vec<(&'static
     let columns = |(array, elements)| {
         (array, (0..elements).map(|element| (0..states).map(|_| number(array, element)).collect()).collect())
     };
-    arrays.into_iter().map(columns).collect()
+    let mut found: Vec<(_, Vec<Vec<f32>>)> = arrays.into_iter().map(columns).collect();
+    // those of an angle
+    let angles = found.iter().find(|(array, _)| *array == "q").map(|(_, columns)| columns.clone()).unwrap_or_default();
+    for (array, columns) in &mut found {
+        let of = match *array {
+            "sin" => f32::sin,
+            "cos" => f32::cos,
+            _ => continue,
+        };
+        *columns = angles.iter().map(|column| column.iter().copied().map(of).collect()).collect();
+    }
+    found
 }
 
 /// The kernels of a function on these states, by columns and by rows, beside what the processor computes.
