@@ -27,7 +27,8 @@ WRONG = {
 def arguments(operands):
     """Arguments of one state that are right."""
     given = {"step": 0.01, "pose": TURNED, "base_rotation": TURNED[:3, :3], "payload": rne.payload(1.0)}
-    return {name: given.get(name, np.full(shape, 0.1)) for name, shape in operands}
+    turns = {"sin": np.sin(0.1), "cos": np.cos(0.1)}
+    return {name: given.get(name, np.full(shape, turns.get(name, 0.1))) for name, shape in operands}
 
 
 def calls():
@@ -56,6 +57,15 @@ def test_every_function_refuses_what_an_argument_cannot_be():
                     call(**{**given, name: value})
                 refused += 1
     assert refused > 100
+
+
+def test_a_sine_and_a_cosine_are_those_of_an_angle():
+    arm, q = rne.load("planar2"), np.array([[0.3, 0.4], [0.5, 0.6]])
+    sin, cos = np.sin(q), np.cos(q)
+    assert np.allclose(arm.inverse_dynamics_from_sin_cos(sin, cos, q, q, q), arm.inverse_dynamics(q, q, q))
+    sin[1, 1] += 0.1
+    with pytest.raises(ValueError, match="state 2 of 2: `sin` and `cos` are .* for joint 2, but the sum of their squares"):
+        arm.inverse_dynamics_from_sin_cos(sin, cos, q, q, q)
 
 
 def test_every_function_takes_its_keywords_and_no_others():
