@@ -62,8 +62,8 @@ impl OutOfRange {
         }
     }
 
-    /// Refuses a sine and a cosine that no angle has, as far as half precision can say: the sum of their squares must be
-    /// 1 to 2e-3. They are those of the joint at this index, of the joints that do not depend on others.
+    /// Refuses a sine and a cosine that no angle has, as far as half precision can say: the sum of their squares must
+    /// be 1 to 2e-3. They are those of the joint at this index, of the joints that do not depend on others.
     ///
     /// # Errors
     /// The joint and the two numbers.
