@@ -57,7 +57,7 @@ static PAYLOAD: [f32; 10] = [1.5, 0.01, -0.02, 0.06, 0.003, 0.004, 0.002, 2e-4, 
 /// Angular velocity, rad/s; angular acceleration, rad/s²; acceleration, m/s²; gravity, m/s², in the axes of frame 0.
 static BASE: [[f32; 3]; 4] = [[0.5, -0.3, 0.7], [1.2, -0.8, 0.6], [0.4, 1.1, -0.9], [0.6, -0.4, -9.78]];
 /// Velocity of the origin of frame 0, m/s, and angular velocity of the base, rad/s.
-static TWIST: [f32; 6] = [0.4, 1.1, -0.9, 0.5, -0.3, 0.7];
+static TWIST: [f32; 6] = [0.4, 1.1, -0.9, BASE[0][0], BASE[0][1], BASE[0][2]];
 static STEP: [f32; 1] = [0.01];
 /// The rotation of the base, by rows.
 pub static BASE_ROTATION: [f32; 9] = [0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6];

@@ -305,7 +305,8 @@ macro_rules! method {
                     function = function.with_payload().unwrap_or(function);
                     given.push(given!(self, payload: Payload));
                 })?
-                let frame: Option<&Bound<'py, PyAny>> = [None, $($frame)?][..].last().copied().flatten();
+                let frame: Option<&Bound<'py, PyAny>> = None;
+                $(let frame = frame.or($frame);)?
                 self.compute_at(py, frame, function, given, parameters, out)
             }
         }
