@@ -45,6 +45,10 @@ const DOCUMENTS: [&str; 31] = [
     "robots/README.md",
 ];
 
+/// Those of them whose commands run in each `cargo test`: the first page, and the first of each track. `cargo xtask verify
+/// certify` runs the commands of all.
+const FIRST_READ: [&str; 4] = ["README.md", "docs/command-line.md", "docs/firmware.md", "docs/teaching.md"];
+
 /// Commands that take long, install something or change the repository: how they begin, and the file that has them run,
 /// by this text.
 const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
@@ -317,7 +321,8 @@ fn commands_of_documents_work() {
         fs::write(Path::new(ROOT).join(IDENTIFIED), today).expect("a writable file");
     }
     let mut commands = 0;
-    for document in DOCUMENTS {
+    let tried_here = if shipped::is_exhaustive() { &DOCUMENTS[..] } else { &FIRST_READ };
+    for &document in tried_here {
         let folder = copy("documents");
         let path = Path::new(ROOT).join(document);
         let page = fs::read_to_string(&path).expect("a document");

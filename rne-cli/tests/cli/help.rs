@@ -103,7 +103,9 @@ fn examples_of_helps_work() {
     for (command, help) in pages() {
         let examples = examples(&help);
         assert!(!examples.is_empty(), "{command}: no example");
-        for example in examples {
+        // `cargo xtask verify certify` runs them all
+        let tried_here = if shipped::is_exhaustive() { examples.len() } else { 1 };
+        for example in &examples[..tried_here] {
             assert!(example.starts_with("rne ") && !example.contains("  "), "{command}: {example}");
             if command == "search" || command == "import" {
                 continue; // minutes, and a URDF of the reader's: `search.rs` and `import.rs` have their own
