@@ -120,6 +120,14 @@ pub trait CoriolisMatrix<const DOF: usize> {
     /// ∂M_ik/∂q_j - ∂M_jk/∂q_i) q̇_k: Ṁ - 2C is skew, Ṁ = C + Cᵀ, and C is half the derivative of C q̇ with respect to q̇.
     #[must_use]
     fn coriolis_matrix<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> [[T; DOF]; DOF];
+
+    /// Coriolis and centrifugal torques C(q, q̇) q̇, N m (prismatic: N): the bias torques without gravity. Every matrix C
+    /// gives the same; generated code needs none.
+    #[must_use]
+    fn coriolis_torques<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> [T; DOF] {
+        let row = |row: [T; DOF]| row.iter().zip(qd).fold(T::zero(), |sum, (c, rate)| sum + *c * *rate);
+        self.coriolis_matrix(q, qd).map(row)
+    }
 }
 
 /// Motion from torques, for simulation.

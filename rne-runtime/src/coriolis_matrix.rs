@@ -46,4 +46,9 @@ definitions! { CoriolisMatrix<DOF> {
         let [q, qd] = [q, qd].map(|values| robot.of_joints(values));
         robot.coordinates.matrix(robot.mechanism.coriolis_matrix(q.as_ref(), qd.as_ref()))
     };
+    /// As [`CoriolisMatrix::coriolis_torques`]: C(q, q̇) q̇.
+    fn coriolis_torques(q: joints, qd: joints) -> vector = |robot| {
+        let weightless = BaseMotion::fixed([T::zero(); 3]);
+        robot.torques_on([q, qd, robot.zeros().as_ref()], &weightless, AtTip::Nothing)
+    };
 } }

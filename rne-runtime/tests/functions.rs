@@ -42,6 +42,7 @@ fn all<T: Scalar>(arm: &Arm<6, impl Constant>, [q, qd, qdd]: &[[T; 6]; 3]) -> Ve
     vec![
         arm.mass_matrix(q).concat(),
         arm.coriolis_matrix(q, qd).concat(),
+        arm.coriolis_torques(q, qd).to_vec(),
         arm.forward_dynamics(q, qd, qdd).to_vec(),
         of_pose(&arm.forward_kinematics(q)),
         arm.link_poses(q).iter().flat_map(of_pose).collect(),
@@ -68,6 +69,7 @@ fn all_of_dyn(arm: &DynArm, [q, qd, qdd]: &[[f64; 6]; 3]) -> Result<Vec<Vec<f64>
     Ok(vec![
         arm.mass_matrix(q)?.concat(),
         arm.coriolis_matrix(q, qd)?.concat(),
+        arm.coriolis_torques(q, qd)?,
         arm.forward_dynamics(q, qd, qdd)?,
         of_pose(&arm.forward_kinematics(q)?),
         arm.link_poses(q)?.iter().flat_map(of_pose).collect(),

@@ -101,6 +101,7 @@ pub(crate) fn numbers<const DOF: usize, const NV: usize, const BODIES: usize, T:
         Function::MassMatrix => flat(robot.mass_matrix(q)),
         Function::InverseMassMatrix => flat(robot.inverse_mass_matrix(q)),
         Function::CoriolisMatrix => flat(robot.coriolis_matrix(q, qd)),
+        Function::CoriolisTorques => robot.coriolis_torques(q, qd).to_vec(),
         Function::ForwardDynamics => robot.forward_dynamics(q, qd, tau).to_vec(),
         Function::ForwardKinematics => pose(&robot.forward_kinematics(q)),
         Function::LinkPoses => robot.link_poses(q).iter().flat_map(pose).collect(),

@@ -170,6 +170,7 @@ impl Driver<'_> {
                 Function::WrenchTorques => "q, force, moment",
                 Function::BiasTorques
                 | Function::CoriolisMatrix
+                | Function::CoriolisTorques
                 | Function::JacobianRateTimesVelocity
                 | Function::JacobianRate
                 | Function::KineticEnergy => "q, qd",

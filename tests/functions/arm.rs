@@ -290,6 +290,10 @@ impl Arm {
         self.rows(&self.numbers(Function::CoriolisMatrix, &Given::of_joints(q, qd, &[])))
     }
 
+    pub(crate) fn coriolis_torques<T: Scalar>(&self, q: &[T], qd: &[T]) -> Vec<T> {
+        self.numbers(Function::CoriolisTorques, &Given::of_joints(q, qd, &[]))
+    }
+
     pub(crate) fn forward_dynamics<T: Scalar>(&self, q: &[T], qd: &[T], tau: &[T]) -> Vec<T> {
         self.numbers(Function::ForwardDynamics, &Given { tau, ..Given::of_joints(q, qd, &[]) })
     }

@@ -15,13 +15,14 @@ use crate::golden::ROBOTS;
 use crate::tree_functions::contact_condition;
 
 /// Functions whose seven steps are the runtime's operations, in its order.
-const SAME_BITS: [Function; 37] = [
+const SAME_BITS: [Function; 38] = [
     Function::InverseDynamics,
     Function::InverseDynamicsWithWrench,
     Function::InverseDynamicsWithPayload,
     Function::InverseDynamicsFromSinCos,
     Function::GravityTorques,
     Function::BiasTorques,
+    Function::CoriolisTorques,
     Function::MassMatrix,
     Function::ForwardDynamics,
     Function::EulerStep,
@@ -83,6 +84,7 @@ pub(crate) fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f6
         | Function::CentroidalBias
         | Function::GravityTorques
         | Function::BiasTorques
+        | Function::CoriolisTorques
         | Function::FloatingInverseDynamicsDerivatives
         | Function::InverseDynamicsDerivatives
         | Function::InverseDynamicsDerivativesWithWrenches => LEAST * of(Function::JointWrenches),

@@ -36,6 +36,7 @@ fn functions_of_the_shipped_robots_are_the_independent_ones() {
                 ("torques of sines", Function::InverseDynamicsFromSinCos, "tau"),
                 ("tip wrench", Function::InverseDynamicsWithWrench, "tau_wrench"),
                 ("gravity", Function::GravityTorques, "gravity"),
+                ("Coriolis", Function::CoriolisTorques, "coriolis"),
             ] {
                 worst.see(what, error_on_scale(&arm.numbers(function, &given), &array(key), 1e-2 * scale));
             }

@@ -86,6 +86,8 @@ fn the_coriolis_matrix_is_christoffel_s() {
         let both = sum(&flat(&coriolis), &flat(transposed(&coriolis)));
         worst.see("Ṁ = C + Cᵀ", error_on_scale(&both, &flat(&rate), scale));
 
+        let torques = arm.coriolis_torques(q, qd);
+        worst.see("C q̇", error_on_scale(&product(&coriolis, qd), &torques, scale));
         let bias = arm.bias_torques(q, qd);
         let gravity = arm.gravity_torques(q);
         worst.see("C q̇ + g", error_on_scale(&sum(&product(&coriolis, qd), &gravity), &bias, scale));

@@ -382,6 +382,10 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
         }
         Function::GravityTorques | Function::GravityTorquesWithPayload => torques(q, &zeros, &zeros, fixed),
         Function::BiasTorques | Function::BiasTorquesWithPayload => torques(q, qd, &zeros, fixed),
+        Function::CoriolisTorques => {
+            let [bias, gravity] = [qd, &zeros[..]].map(|qd| torques(q, qd, &zeros, fixed));
+            bias.iter().zip(gravity).map(|(bias, gravity)| bias - gravity).collect()
+        }
         Function::MassMatrix | Function::MassMatrixWithPayload => flat(mass_matrix()),
         Function::InverseMassMatrix => solved(DMatrix::identity(dof, dof)),
         Function::InverseMassMatrixTimesTorques => solved(DMatrix::from_column_slice(dof, 1, tau)),

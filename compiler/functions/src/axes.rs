@@ -13,6 +13,8 @@ named! {
         GravityTorques = "gravity_torques",
         /// Torques where nothing accelerates.
         BiasTorques = "bias_torques",
+        /// C(q, q̇) q̇: torques where nothing accelerates or weighs.
+        CoriolisTorques = "coriolis_torques",
         /// M(q).
         MassMatrix = "mass_matrix",
         /// M(q)⁻¹.

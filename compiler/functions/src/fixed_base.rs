@@ -117,6 +117,7 @@ pub(crate) const FIXED_BASE: &[Entry] = &[
         is_of_motion: true,
         ..Entry::of(What::CoriolisMatrix, Capability::CoriolisMatrix)
     },
+    Entry { is_of_motion: true, ..Entry::torques(What::CoriolisTorques, Capability::CoriolisMatrix) },
     FORWARD_DYNAMICS,
     Entry {
         output: "tip",

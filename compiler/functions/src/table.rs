@@ -396,6 +396,9 @@ macro_rules! functions {
                  rotation vector, both in axes of frame 0 before the step for columns and after the step for rows. \
                  The velocities of the base are twist. A base without mass gives numbers that mean nothing or are not \
                  finite.";
+            CoriolisTorques [CoriolisTorques] = coriolis_torques(q: Positions, qd: Rates) -> Vector:
+                "Coriolis and centrifugal torques, C(q, q̇) q̇: the bias torques without gravity.",
+                "tau: C(q, q̇) q̇, without gravity, accelerations and friction; bias_torques less gravity_torques.";
         }
     };
 }

@@ -24,6 +24,7 @@ SHAPES = {
     "mass_matrix": ("q", lambda n: (n, n)),
     "inverse_mass_matrix": ("q", lambda n: (n, n)),
     "coriolis_matrix": ("q qd", lambda n: (n, n)),
+    "coriolis_torques": ("q qd", lambda n: (n,)),
     "forward_dynamics": ("q qd tau", lambda n: (n,)),
     "forward_kinematics": ("q", lambda n: (4, 4)),
     "link_poses": ("q", lambda n: (n, 4, 4)),
@@ -90,6 +91,7 @@ def test_laws(name):
 
     close(np.einsum("nij,nj->ni", mass, qdd) + arm.bias_torques(q, qd), tau)
     close(np.einsum("nij,nj->ni", arm.coriolis_matrix(q, qd), qd) + arm.gravity_torques(q), arm.bias_torques(q, qd))
+    close(arm.coriolis_torques(q, qd) + arm.gravity_torques(q), arm.bias_torques(q, qd))
     close(arm.regressor(q, qd, qdd) @ arm.inertial_parameters().ravel(), tau)
     close(arm.kinetic_energy(q, qd), 0.5 * np.einsum("ni,nij,nj->n", qd, mass, qd), np.abs(mass).max() * 10)
     close(arm.inverse_dynamics_from_sin_cos(np.sin(q), np.cos(q), q, qd, qdd), tau)

@@ -147,6 +147,7 @@ methods! {
     MassMatrix: mass_matrix(q: [f32; 6]) -> [[f32; 6]; 6];
     MassMatrix: inverse_mass_matrix(q: [f32; 6]) -> [[f32; 6]; 6];
     CoriolisMatrix: coriolis_matrix(q: [f32; 6], qd: [f32; 6]) -> [[f32; 6]; 6];
+    CoriolisMatrix: coriolis_torques(q: [f32; 6], qd: [f32; 6]) -> [f32; 6];
     ForwardDynamics: forward_dynamics(q: [f32; 6], qd: [f32; 6], tau: [f32; 6]) -> [f32; 6];
     Kinematics: forward_kinematics(q: [f32; 6]) -> Pose<f32>;
     Kinematics: link_poses(q: [f32; 6]) -> [Pose<f32>; 6];

@@ -204,7 +204,7 @@ fn all_functions_compile_and_compute_the_same() {
         let call = [&["eval", PUMA, "--json", "--function", function], &arguments.concat()[..]].concat();
         evaluated(&call)
     };
-    let calls: [(&str, &[&[&str]], &str); 24] = [
+    let calls: [(&str, &[&[&str]], &str); 25] = [
         ("inverse_dynamics", &[full], "q, qd, qdd"),
         (
             "inverse_dynamics_with_wrench",
@@ -222,6 +222,7 @@ fn all_functions_compile_and_compute_the_same() {
         ("mass_matrix", &[positions], "q"),
         ("inverse_mass_matrix", &[positions], "q"),
         ("coriolis_matrix", &[rates], "q, qd"),
+        ("coriolis_torques", &[rates], "q, qd"),
         ("forward_dynamics", &[rates, &["--tau", tau]], "q, qd, &[1., 30., 5., 0.1, -0.2, 0.3]"),
         ("forward_kinematics", &[positions], "q"),
         ("link_poses", &[positions], "q"),
@@ -364,7 +365,7 @@ fn functions_are_chosen() {
     assert_eq!(twice.matches("pub fn ").count(), 1);
     let others = fine(&["emit", ROBOT, "--function", "mass_matrix,jacobian"]);
     assert!(others.contains("pub fn mass_matrix") && others.contains("pub fn jacobian"), "{others}");
-    assert_eq!(fine(&["emit", ROBOT, "--function", "all"]).matches("pub fn ").count(), 39, "no motors");
+    assert_eq!(fine(&["emit", ROBOT, "--function", "all"]).matches("pub fn ").count(), 40, "no motors");
     for lang in ["rust", "c"] {
         let zeros = fine(&["emit", ROBOT, "--function", "actuator_torques", "--lang", lang]);
         assert!(zeros.contains("actuator_torques"), "{zeros}");

@@ -290,6 +290,7 @@ fn every_function_has_the_shape_of_its_trait() {
     same(&of_puma("bias_torques", "q qd", &[]), &json!(arm.bias_torques(&Q, &QD)));
     same(&of_puma("mass_matrix", "q", &[]), &json!(arm.mass_matrix(&Q)));
     same(&of_puma("coriolis_matrix", "q qd", &[]), &json!(arm.coriolis_matrix(&Q, &QD)));
+    same(&of_puma("coriolis_torques", "q qd", &[]), &json!(arm.coriolis_torques(&Q, &QD)));
     let tau = [1.0, 30.0, 5.0, 0.1, -0.2, 0.3];
     let forward = of_puma("forward_dynamics", "q qd", &["--tau", &written(&tau)]);
     same(&forward, &json!(arm.forward_dynamics(&Q, &QD, &tau)));

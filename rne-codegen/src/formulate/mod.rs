@@ -53,9 +53,11 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
     let derivation = Derivation::new(builder, robot, function);
     let is_floating = function.is_of_floating_base();
     let outputs = match function.what() {
-        What::InverseDynamics | What::InverseDynamicsFromSinCos | What::GravityTorques | What::BiasTorques => {
-            derivation.forces()
-        }
+        What::InverseDynamics
+        | What::InverseDynamicsFromSinCos
+        | What::GravityTorques
+        | What::BiasTorques
+        | What::CoriolisTorques => derivation.forces(),
         What::MassMatrix if is_floating => {
             floating_mass_matrix(builder, &derivation.system(), &derivation.floating_half())
         }
@@ -226,7 +228,8 @@ impl<'s, 'r> Derivation<'s, 'r> {
             let is_first = function == Function::FloatingEulerStepDerivatives && !builder.has_accelerations();
             if is_first { builder.unnamed(of_base) } else { of_base() }
         } else {
-            Motion::of_fixed_base(builder, arm.gravity)
+            let is_weightless = function.what() == What::CoriolisTorques;
+            Motion::of_fixed_base(builder, if is_weightless { builder.zeros(Cause::NoGravity) } else { arm.gravity })
         };
         Self { builder, robot, arm, states, base, tip }
     }

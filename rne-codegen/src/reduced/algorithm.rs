@@ -69,9 +69,11 @@ impl Algorithm {
         match what {
             What::InverseDynamics if matches!(base, Base::Moving) => &[],
             What::InverseDynamics | What::BiasTorques if carries => &[Algorithm::Rnea, Algorithm::UnturnedPayload],
-            What::InverseDynamics | What::InverseDynamicsFromSinCos | What::BiasTorques | What::TorqueGradient => {
-                &[Algorithm::Rnea]
-            }
+            What::InverseDynamics
+            | What::InverseDynamicsFromSinCos
+            | What::BiasTorques
+            | What::CoriolisTorques
+            | What::TorqueGradient => &[Algorithm::Rnea],
             What::GravityTorques if carries => &[Algorithm::Rnea, Algorithm::UnturnedPayload, BY_GROUPS, BY_JOINTS],
             What::GravityTorques => &[Algorithm::Rnea, BY_GROUPS, BY_JOINTS],
             What::CoriolisMatrix | What::InverseDynamicsDerivatives | What::TorqueHessian if is_plain => {
@@ -208,6 +210,10 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
     let named = |name: Name, symbol: Symbol<'s>| (name, builder.name(name, symbol));
     Some(match (builder.function.what(), algorithm) {
         (What::GravityTorques, Algorithm::Crba(_)) => by_joint(Quantity::Torque, crba::gravity_torques(arm)),
+        (What::CoriolisTorques, _) => {
+            let joint_frames = arm.joint_frames.without_gravity();
+            by_joint(Quantity::Torque, recursion(&Arm { joint_frames: &joint_frames, ..*arm }, algorithm))
+        }
         (What::MomentumAndRate, _) => {
             let [momenta, rates] = momentum::momentum_and_rate(arm);
             [by_joint(Quantity::Momentum, momenta), by_joint(Quantity::MomentumRate, rates)].concat()

@@ -38,7 +38,7 @@ pub fn mass_matrix_is_symmetric<const DOF: usize, R: MassMatrix<DOF>>(robot: &R,
     }
 }
 
-/// C(q, q̇).
+/// C(q, q̇), and C(q, q̇) q̇ by a recursion of its own.
 pub fn coriolis_matrix_is_that_of_the_runtime<const DOF: usize, R: CoriolisMatrix<DOF>>(robot: &R, file: &RobotFile) {
     let arm = file.arm::<DOF>();
     for state in states() {
@@ -47,6 +47,8 @@ pub fn coriolis_matrix_is_that_of_the_runtime<const DOF: usize, R: CoriolisMatri
         // differences of masses at unit rates
         let allowed = Allowed::Rounding { scale: largest(arm.mass_matrix(q).as_flattened()) };
         compare("coriolis_matrix", &state, allowed, found.as_flattened(), expected.as_flattened());
+        let (found, expected) = (robot.coriolis_torques(q, qd), arm.coriolis_torques(q, qd));
+        compare("coriolis_torques", &state, file.same_operations(largest(&expected)), &found, &expected);
     }
 }
 

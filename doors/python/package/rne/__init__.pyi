@@ -448,6 +448,11 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
         """Derivatives of `floating_euler_step` by positions, velocities and τ: the linear model of a step."""
+    def coriolis_torques(
+        self, q: Joints, qd: Joints, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Coriolis and centrifugal torques, C(q, q̇) q̇: the bias torques without gravity."""
     # <!-- end -->
     def runge_kutta_step(
         self, q: Joints, qd: Joints, tau: Joints, step: ArrayLike, *, steps: int = ...,
