@@ -45,8 +45,8 @@ const DOCUMENTS: [&str; 31] = [
     "robots/README.md",
 ];
 
-/// Those of them whose commands run in each `cargo test`: the first page, and the first of each track. `cargo xtask verify
-/// certify` runs the commands of all.
+/// The documents whose commands run in each `cargo test`: the first page, and the first of each track. `cargo xtask
+/// verify certify` runs the commands of all.
 const FIRST_READ: [&str; 4] = ["README.md", "docs/command-line.md", "docs/firmware.md", "docs/teaching.md"];
 
 /// Commands that take long, install something or change the repository: how they begin, and the file that has them run,
