@@ -269,7 +269,13 @@ def test_pinocchio(mimic):
 
 
 AXIS = np.array([0.36, -0.48, 0.8])
-MADE = {"HelicalUnaligned": (AXIS, 0.1), "Universal": (AXIS, np.array([0.8, 0.6, 0.0])), "Ellipsoid": (1.0, 2.0, 3.0)}
+# In Python, the constructor of an unbounded joint takes no axis.
+MADE = {
+    "HelicalUnaligned": (AXIS, 0.1),
+    "RevoluteUnboundedUnaligned": (),
+    "Universal": (AXIS, np.array([0.8, 0.6, 0.0])),
+    "Ellipsoid": (1.0, 2.0, 3.0),
+}
 
 
 def three_joints(pin, kind, leader=None):
