@@ -258,7 +258,7 @@ fn counts_as_a_table() {
     let all = fine(&["ops", "robots/planar1.yaml", "robots/puma560.yaml"]);
     let rows = all.lines().filter(|line| line.contains("seven_steps"));
     let widths: Vec<usize> = rows.map(|line| line.chars().count()).collect();
-    assert_eq!(widths.len(), 39 + 40);
+    assert_eq!(widths.len(), 40 + 41);
     assert!(widths.iter().all(|width| *width == widths[0]), "aligned: {all}");
 }
 
