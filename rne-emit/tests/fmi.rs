@@ -49,7 +49,7 @@ fn printed(robot: &Robot, files: &[(String, String)], main: &str) -> Option<Vec<
         }
     }
     fs::write(folder.path().join("main.c"), main).expect("written");
-    let flags = "-std=c99 -Wall -Wextra -Wshadow -Wconversion -Werror -pedantic -ffp-contract=off -O0 -o program";
+    let flags = "-std=c99 -Wall -Wextra -Wshadow -Wconversion -Werror -pedantic -ffp-contract=off -O1 -o program";
     let compiled = Command::new(std::env::var("CC").unwrap_or_else(|_| "cc".to_owned()))
         .args(flags.split(' '))
         .args(["main.c", "fmi-functions.c", &format!("{}.c", robot.name)])
