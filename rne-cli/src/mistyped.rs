@@ -31,7 +31,7 @@ pub(crate) fn explained(error: &clap::Error, words: &[String]) -> Option<(String
         let is_stray = error.kind() == ErrorKind::UnknownArgument;
         is_stray.then(|| refused(command, words).or_else(|| of_others(&grammar, command, error))).flatten()
     });
-    let text = text.or_else(|| needed_by_another(command, error, words));
+    let text = text.or_else(|| needed_by_another(command, error, words)).or_else(|| beside_states(command, error));
     let text = text.or_else(|| missing_or_too_many(command, error))?;
     Some((format!("rne {name}"), Failure::usage(text)))
 }
@@ -241,8 +241,37 @@ fn needed_by_another(command: &Command, error: &clap::Error, words: &[String]) -
     })?;
     // what else the command cannot do without
     let is_required = command.get_arguments().any(|arg| arg.is_required_set() && Some(&needing[2..]) == arg.get_long());
-    let advice = if is_required || names.len() > 1 { "give all of them" } else { "give both, or neither" };
+    let advice = match names.len() {
+        1 if is_required => "give it, too",
+        1 => "give both, or neither",
+        _ => "give all of them",
+    };
     Some(format!("{TYPED}{needing}{TYPED:#} needs {}; {advice}", joined(&names)))
+}
+
+/// Numbers of one state beside a table, which has them in its columns: `--states TABLE --payload LIST`.
+fn beside_states(command: &Command, error: &clap::Error) -> Option<String> {
+    if error.kind() != ErrorKind::ArgumentConflict {
+        return None;
+    }
+    let names = |kind| match error.get(kind) {
+        Some(ContextValue::String(name)) => vec![name.clone()],
+        Some(ContextValue::Strings(names)) => names.clone(),
+        _ => Vec::new(),
+    };
+    let names = [ContextKind::InvalidArg, ContextKind::PriorArg].map(names).concat();
+    let args = || names.iter().filter_map(|name| Some(option(command, name.split_whitespace().next()?)?.0));
+    args().find(|arg| arg.get_long() == Some("states"))?;
+    let list = args().find(|arg| takes_list(arg))?.get_long()?;
+    let payload = if list == "payload" {
+        "; a function such as --function mass_matrix_with_payload has columns for the payload"
+    } else {
+        ""
+    };
+    Some(format!(
+        "{TYPED}--{list}{TYPED:#} is for one state; with {TYPED}--states{TYPED:#}, the columns of the table have its \
+         numbers{payload}"
+    ))
 }
 
 /// Arguments that are missing, and words that no argument takes, where the parser proposes nothing: with an example.

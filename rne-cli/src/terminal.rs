@@ -3,7 +3,9 @@
 use std::env;
 use std::fmt::{self, Write as _};
 use std::io::{self, Write};
+use std::mem;
 use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
 
 use anstream::AutoStream;
 use rne_model::{is_control, one_line};
@@ -27,7 +29,8 @@ pub(crate) fn room() -> usize {
 
 /// Prints what a command returned.
 pub(crate) fn show(outcome: &Outcome) -> ExitCode {
-    let (before, after) = if outcome.remark_last { ("", &*outcome.remark) } else { (&*outcome.remark, "") };
+    let remark = notes_of_files() + &outcome.remark;
+    let (before, after) = if outcome.remark_last { ("", &*remark) } else { (&*remark, "") };
     let _ = write(AutoStream::auto(io::stderr().lock()), before);
     let written = write(AutoStream::auto(io::stdout().lock()), &outcome.text);
     let _ = write(AutoStream::auto(io::stderr().lock()), after);
@@ -50,9 +53,21 @@ pub(crate) fn remark(what: fmt::Arguments<'_>) {
     let _ = write(AutoStream::auto(io::stderr().lock()), &what.to_string());
 }
 
+/// Notes on the files that were read, until the command has a result or an error.
+static OF_FILES: Mutex<String> = Mutex::new(String::new());
+
+/// Prints a note with the result of the command, whatever that is: no command can drop it.
+pub(crate) fn note_of_file(note: &str) {
+    OF_FILES.lock().unwrap_or_else(PoisonError::into_inner).push_str(note);
+}
+
+fn notes_of_files() -> String {
+    mem::take(&mut OF_FILES.lock().unwrap_or_else(PoisonError::into_inner))
+}
+
 /// Prints why a command could not do its work.
 pub(crate) fn complain(command: &str, failure: &Failure) -> ExitCode {
-    let mut text = format!("{}\n", failure.text.trim_end());
+    let mut text = format!("{}{}\n", notes_of_files(), failure.text.trim_end());
     if failure.status == USAGE {
         let _ = writeln!(text, "\nFor more information, try '{TYPED}{command} --help{TYPED:#}'.");
     }

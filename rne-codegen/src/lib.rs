@@ -80,9 +80,25 @@ use crate::prove::Reference;
 use crate::reduced::near_origins;
 
 /// Whether frames of the table stand so far from the arm that code of the seven steps loses digits.
-#[must_use]
-pub fn has_far_frames(robot: &Robot) -> bool {
+fn has_far_frames(robot: &Robot) -> bool {
     near_origins(robot).is_some()
+}
+
+/// Whether code that is not proved may lose more digits in single precision than need no words: frames of the table
+/// stand far from the arm, or a length is very long.
+#[must_use]
+pub fn loses_digits(robot: &Robot) -> bool {
+    /// No length of an arm that stands in its own axes is as long, m.
+    const LONGEST: f64 = 20.0;
+    let of_rows = robot.joints.iter().flat_map(|joint| {
+        let [x, y, z] = joint.row.link.com;
+        [joint.row.dh.a, joint.row.dh.d, x, y, z]
+    });
+    let branches = robot.joints.iter().filter_map(|joint| joint.branch).map(|branch| branch.placement);
+    let frames = robot.frames.iter().map(|frame| frame.fixed.placement);
+    let placements = [robot.base, robot.tool].into_iter().chain(branches).chain(frames);
+    let is_long = |x: f64| x.abs() > LONGEST;
+    of_rows.chain(placements.flat_map(|placement| placement.xyz)).any(is_long) || has_far_frames(robot)
 }
 
 /// A program of a robot with what it loses in single precision. What is proved is measured already.
@@ -164,7 +180,7 @@ impl<'r> Compiler<'r> {
     /// cannot be proved.
     pub fn compile(&self, function: Function, form: Form) -> Result<Program, CompileError> {
         let program = self.compile_unmeasured(function, form)?;
-        Ok(if has_far_frames(self.robot) { measured(self.robot, program) } else { program })
+        Ok(if loses_digits(self.robot) { measured(self.robot, program) } else { program })
     }
 
     fn compile_unmeasured(&self, function: Function, form: Form) -> Result<Program, CompileError> {

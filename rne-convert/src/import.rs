@@ -544,8 +544,8 @@ pub(crate) fn remarks(robot: &Robot, table: &Table) -> Vec<String> {
         if distance > FAR {
             remarks.push(format!(
                 "the centre of mass of link {} is {distance:.0} m from the origin of its link frame: single precision \
-                 loses digits there, except in code of the form `reduced`; a joint with the key `at` (format 2) needs \
-                 no such frame",
+                 loses digits there, most of all in code of the form `seven_steps`; a joint with the key `at` (format \
+                 2) needs no such frame",
                 row + 1
             ));
         }

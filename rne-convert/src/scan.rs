@@ -240,7 +240,9 @@ pub(crate) fn scan(source: &Source) -> Result<Scanned, Report> {
     }
     if !scanner.has_robot {
         let message = "there is no element `robot`; a URDF is XML that begins with <robot name=\"…\">";
-        return Err(source.error(&(0..0), message, None));
+        let is_robot_file = source.text.contains("convention:");
+        let help = is_robot_file.then(|| "this is a robot file, which needs no import".to_owned());
+        return Err(source.error(&(0..0), message, help));
     }
     Ok(scanner.scanned)
 }

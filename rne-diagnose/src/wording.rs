@@ -152,8 +152,17 @@ impl Slip {
             Self::InertiaNotTwisted => "[I] = Rx(α) I Rx(α)ᵀ in axes with z along the joint".to_owned(),
             Self::ProductsOfInertia => "`xy` is the element of the tensor, -∫ x y dm".to_owned(),
             Self::ComReversed | Self::ComFromOtherEnd | Self::ComOfOtherEnd => com.to_owned(),
-            Self::PositionsAsDegrees | Self::PositionsInDegrees => "q in rad: deg(30) is pi/6".to_owned(),
-            Self::StateAsDegrees | Self::StateInDegrees => "q, q̇ and q̈ in rad, rad/s and rad/s²".to_owned(),
+            Self::PositionsAsDegrees => {
+                "q in rad: deg(30) is pi/6. If your torques are right, the q that you gave here is in degrees"
+                    .to_owned()
+            }
+            Self::PositionsInDegrees => "q in rad: deg(30) is pi/6".to_owned(),
+            Self::StateAsDegrees => {
+                "q, q̇ and q̈ in rad, rad/s and rad/s². If your torques are right, the state that you gave here is in \
+                 degrees"
+                    .to_owned()
+            }
+            Self::StateInDegrees => "q, q̇ and q̈ in rad, rad/s and rad/s²".to_owned(),
             Self::NoOffsets | Self::OffsetsReversed => {
                 "the joint angle is theta + q; the offset of a prismatic joint is d + q".to_owned()
             }

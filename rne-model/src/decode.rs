@@ -205,7 +205,13 @@ impl<'d> Fields<'d> {
         let allowed: Vec<&'static str> = mapping.keys.iter().map(|key| key.name).collect();
         cx.opens(mapping);
         let Content::Mapping(entries) = &node.content else {
-            return cx.wrong_shape(node, &format!("a mapping ({})", allowed.join(", ")));
+            let expected = format!("a mapping ({})", allowed.join(", "));
+            if !allowed.contains(&"convention") {
+                return cx.wrong_shape(node, &expected);
+            }
+            let message = format!("found {} where {expected} is needed", node.described());
+            let help = "a robot file begins with `format: 1`, or with `format: 2`";
+            return cx.refuse(Diagnostic::error(node.head(), message).label("no robot file").help(help));
         };
         // Each key is compared with those allowed, and looked for by each of them.
         cx.problems.count(2 * entries.len() * allowed.len());

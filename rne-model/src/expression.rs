@@ -406,6 +406,10 @@ fn unknown_name(name: &str, range: Range<usize>, text: &str, names: &impl Names)
         let help = format!("the joint variable is added by itself: write only the constant part, such as `{constant}`");
         return Mistake::new(range, format!("unknown name {}", quoted(name))).help(help);
     }
+    if Function::NAMES.contains(&name) {
+        let help = format!("`{name}` is a function: write its argument in parentheses, as in `{name}(2)`");
+        return Mistake::new(range, format!("{} needs an argument", quoted(name))).help(help);
+    }
     let known = did_you_mean(name, ["pi"].into_iter().chain(Function::NAMES)).map(str::to_owned);
     let mistake = Mistake::new(range, format!("unknown name {}", quoted(name)));
     match known.or_else(|| names.similar(name)) {

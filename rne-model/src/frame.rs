@@ -45,10 +45,21 @@ pub struct UnknownFrame {
     pub frames: Vec<String>,
     /// The names of its joints, which are the names of their link frames.
     pub joints: Vec<String>,
+    /// Whether the name is that of frame 0, which no joint moves.
+    pub is_base: bool,
 }
 
 impl fmt::Display for UnknownFrame {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.is_base {
+            return write!(
+                f,
+                "{} is the base of {}, and no frame of a link: {}",
+                quoted(&self.name),
+                self.robot,
+                self.known()
+            );
+        }
         write!(f, "{} has no frame {}: {}", self.robot, quoted(&self.name), self.known())?;
         let known: Vec<&str> = self.frames.iter().chain(&self.joints).map(String::as_str).collect();
         match nearest_name(&self.name, &known) {
@@ -85,6 +96,7 @@ impl Robot {
             robot: self.name.clone(),
             frames: self.frames.iter().map(|frame| frame.name.clone()).collect(),
             joints: self.joints.iter().map(|joint| joint.name.clone()).collect(),
+            is_base: name == BASE || self.floating_base.as_ref().is_some_and(|base| base.name == name),
         })
     }
 

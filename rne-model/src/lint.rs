@@ -169,8 +169,8 @@ pub(crate) fn nearly_parallel(cx: &Context, joints: &[Joint]) {
     });
     let help = format!(
         "axes are nearly parallel, so that their common normal is far from the arm.{} Such frames lose digits in \
-         single precision (f32), except in code of the form `reduced`. The key `at` (format 2) places a joint where it \
-         is, without a common normal",
+         single precision (f32), most of all in code of the form `seven_steps`. The key `at` (format 2) places a \
+         joint where it is, without a common normal",
         far.collect::<String>()
     );
     cx.problems.relabel(MILLIMETRES, "far from the arm", &help);

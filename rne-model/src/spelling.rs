@@ -26,8 +26,21 @@ pub fn did_you_mean<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str
             let close = distance == 0 || (distance <= shorter.div_ceil(3).min(MOST) && distance < shorter);
             close.then_some((distance, candidate))
         })
-        .min_by_key(|(distance, _)| *distance)
+        // letters in another order are likelier than another letter, and a first letter is rarely wrong
+        .min_by_key(|(distance, candidate)| {
+            (*distance, letters(candidate) != letters(&word), first(candidate) != first(&word))
+        })
         .map(|(_, candidate)| candidate)
+}
+
+fn first(word: &str) -> Option<char> {
+    word.chars().next().map(|letter| letter.to_ascii_lowercase())
+}
+
+fn letters(word: &str) -> Vec<char> {
+    let mut letters: Vec<char> = word.to_lowercase().chars().collect();
+    letters.sort_unstable();
+    letters
 }
 
 /// The name that was probably meant by another: a slip away, longer, or without the name of a maker before it, as
@@ -61,5 +74,13 @@ mod tests {
         assert_eq!(did_you_mean("inertia-about", ["inertia_about"]), Some("inertia_about"));
         assert_eq!(did_you_mean("offset", keys), None);
         assert_eq!(did_you_mean("xzy", ["xyz", "rpy"]), Some("xyz"));
+        // an element of a symmetric tensor by its other name
+        let elements = ["xx", "yy", "zz", "xy", "xz", "yz", "ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
+        for (other, element) in
+            [("yx", "xy"), ("zx", "xz"), ("zy", "yz"), ("iyx", "ixy"), ("izx", "ixz"), ("izy", "iyz")]
+        {
+            assert_eq!(did_you_mean(other, elements), Some(element));
+        }
+        assert_eq!(did_you_mean("w2_zz", ["i2_zz", "w2_z"]), Some("w2_z"));
     }
 }

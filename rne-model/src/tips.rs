@@ -2,7 +2,7 @@
 
 use crate::decode::{Context, text};
 use crate::diagnostic::Diagnostic;
-use crate::document::Node;
+use crate::document::{Content, Node};
 use crate::source::quoted;
 use crate::tree::items;
 use crate::{Entry, FixedFrame, Frame, Joint, Robot, Transform};
@@ -29,6 +29,12 @@ impl Robot {
         self.tips.iter().map(|&tip| self.frames[tip].name.as_str()).collect()
     }
 
+    /// Whether the name `tip` has two meanings: the robot has no list `tips`, and a frame has this name.
+    #[must_use]
+    pub fn has_two_tips(&self, name: &str) -> bool {
+        self.tips.is_empty() && name == TIP && self.frames.iter().any(|frame| frame.name == TIP)
+    }
+
     /// How many frames carry wrenches.
     #[must_use]
     pub const fn tip_count(&self) -> usize {
@@ -45,6 +51,15 @@ impl Robot {
 
 /// Reads the list `tips` of a file whose root is `root`: the frames that carry wrenches, each counted from 0.
 pub(crate) fn tips(cx: &Context, root: &Node, format: u32, frames: &[Frame]) -> Option<Vec<usize>> {
+    if root.get("tips").is_none()
+        && let Some(frame) = frames.iter().position(|frame| frame.name == TIP)
+        && let Some(Content::Sequence(listed)) = root.get("frames").map(|node| &node.content)
+        && let Some(node) = listed.get(frame).and_then(|frame| frame.get("name"))
+    {
+        let message = "the frame `tip` has the name of the tip of the robot, which is at its `tool`";
+        let help = "choose another name, or write `tips: [tip]`: then wrenches at `tip` act at this frame";
+        cx.report(Diagnostic::lint(node.span.clone(), message).label("two meanings").help(help));
+    }
     let help = "write the names of the frames that carry wrenches, such as `tips: [left, right]`";
     let items = items(cx, root, ("tips", format), "names", help)?;
     let mut tips = Vec::new();

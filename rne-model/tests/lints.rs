@@ -1,7 +1,7 @@
 //! Every lint: where it points, what it says, and what it leaves alone.
 
 use crate::common::{BASE, found, the_one, with};
-use rne_model::{Reader, Severity};
+use rne_model::{Checked, Reader, Severity};
 
 /// A mass that is forgotten, unless it is said to be zero.
 #[test]
@@ -517,4 +517,25 @@ fn frames_of_nearly_parallel_axes_are_told_as_such() {
     for said in [arm("standard", "0.0004", 300.0), arm("modified", "0", 0.3), arm("modified", "pi/2", 0.3)] {
         assert!(said.to_string().contains("millimetres?") && !said.to_string().contains("far from"), "{said}");
     }
+}
+
+/// Without `tips`, wrenches at `tip` act at the tool.
+#[test]
+fn a_frame_with_the_name_of_the_tip_is_told() {
+    let text = |more: &str| {
+        format!(
+            "{{format: 2, name: x, source: own, convention: standard, gravity: [0, 0, -9.81], {more}\
+             frames: [{{name: hand, on: j1, xyz: [0, 0, 0.1]}}, {{name: tip, on: j1, xyz: [0.1, 0, 0]}}], joints: [\
+             {{name: j1, type: revolute, dh: {{theta: 0, d: 0, a: 1, alpha: 0}}, link: {{mass: 1, com: [0, 0, 0], \
+             inertia: {{zz: 0.1}}}}}}]}}"
+        )
+    };
+    let found = |more: &str| Reader::new("x").read(&text(more)).unwrap_or_else(|report| panic!("{report}"));
+    let Checked { robot, lints, .. } = found("");
+    assert!(robot.has_two_tips("tip") && !robot.has_two_tips("hand"));
+    let told: Vec<_> = lints.warnings().filter(|warning| warning.message.contains("the name of the tip")).collect();
+    let [warning] = &told[..] else { panic!("{lints}") };
+    assert_eq!(warning.label.as_deref(), Some("two meanings"));
+    let Checked { robot, lints, .. } = found("tips: [tip], ");
+    assert!(!robot.has_two_tips("tip") && !lints.to_string().contains("two meanings"), "{lints}");
 }

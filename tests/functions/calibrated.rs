@@ -102,13 +102,14 @@ fn error(arm: &Arm, right: &Arm, function: Function, states: usize) -> f64 {
     if error == 0.0 { 0.0 } else { error / scale }
 }
 
-/// No code of the form `reduced` loses more than its limit, but for what is about frames of the table themselves; code
-/// of the seven steps says what it loses.
+/// Code says what it loses. Of the form `reduced`, a function in fifty loses something, but for those that are about
+/// frames of the table themselves.
 #[test]
 fn calibrated_tables_keep_single_precision_or_say_what_they_lose() {
     let (tables, states) = if shipped::is_exhaustive() { (200, 20) } else { (1, 4) };
     let mut rng = Rng::with_seed(57);
-    let mut lost = 0;
+    let (mut lost, mut lost_reduced, mut reduced) = (0, 0, 0);
+    let mut wrong = String::new();
     for table in 0..tables {
         let joints = joints(&mut rng);
         let near = near(&joints);
@@ -132,15 +133,73 @@ fn calibrated_tables_keep_single_precision_or_say_what_they_lose() {
                     // energy is zero at frame 0, and a floating base is frame 0, wherever the table has it
                     let is_of_frame_0 = function.what() == What::PotentialEnergy || function.is_of_floating_base();
                     let is_of_table = function.is_of_table_points() || is_of_frame_0;
-                    let is_said = loss.is_some() && (form == Form::SevenSteps || is_of_table);
                     lost += usize::from(loss.is_some());
+                    if form == Form::Reduced && !is_of_table {
+                        reduced += 1;
+                        lost_reduced += usize::from(loss.is_some());
+                    }
                     // other states than those that the compiler tries
-                    let most = 3.0 * limit(function).max(loss.filter(|_| is_said).unwrap_or_default());
-                    assert!(error <= most, "{table}, {convention:?}, {form}, {function}: {error:e}, said {loss:?}");
-                    assert!(is_said || loss.is_none(), "{table}, {convention:?}, {form}, {function}: lost {loss:?}");
+                    let most = 3.0 * limit(function).max(loss.unwrap_or_default());
+                    if error > most || error.is_nan() {
+                        let _ =
+                            writeln!(wrong, "{table}, {convention:?}, {form}, {function}: {error:e}, said {loss:?}");
+                    }
                 }
             }
         }
     }
+    println!("{lost} functions say that they lose digits, {lost_reduced} of {reduced} in the form reduced");
+    assert!(wrong.is_empty(), "{wrong}");
     assert!(lost > 0, "no table of these is a hard one");
+    assert!(lost_reduced * 50 <= reduced, "{lost_reduced} of {reduced}");
+}
+
+/// Long lengths that are no common normals of nearly parallel axes: beside parallel axes, of a base in the axes of a
+/// site, and behind joints that slide.
+const LONG: [&str; 3] = [
+    "name: parallel, convention: modified, joints: [
+     {type: revolute, dh: {theta: 0, d: 0.3, a: 0, alpha: 0}, link: {com: [0.1, 0, 0], BODY}},
+     {type: revolute, dh: {theta: 0, d: 5000, a: 0, alpha: pi/2}, link: {com: [0.1, 0, -5000], BODY}},
+     {type: revolute, dh: {theta: 0, d: -5000, a: 0.4, alpha: 0}, link: {com: [0.1, 0, 0], BODY}}]",
+    "name: site, convention: modified, base: {xyz: [5000, 6000, 0]}, joints: [
+     {type: revolute, dh: {theta: 0, d: 0.3, a: 0, alpha: 0}, link: {com: [0.1, 0, 0], BODY}},
+     {type: revolute, dh: {theta: 0, d: 0, a: 0.3, alpha: pi/2}, link: {com: [0.1, 0, 0], BODY}}]",
+    "name: slides, convention: standard, joints: [
+     {type: prismatic, dh: {theta: 0, d: 0.1, a: 0, alpha: pi/2}, link: {BODY}},
+     {type: prismatic, dh: {theta: pi/2, d: 0.2, a: 0, alpha: pi/2}, link: {BODY}},
+     {type: prismatic, dh: {theta: 0, d: -11266, a: 0.3, alpha: 0}, link: {BODY}},
+     {type: revolute, dh: {theta: 0, d: 389, a: 0.4, alpha: -4e-5}, link: {com: [-0.1, 0, -389], BODY}},
+     {type: revolute, dh: {theta: 0, d: 10877, a: 0.3, alpha: -6e-5}, link: {com: [-0.1, 0, 0], BODY}}]",
+];
+
+/// The matter of each link of these.
+const BODY: &str = "mass: 2, inertia: {xx: 0.02, yy: 0.02, zz: 0.02}";
+
+/// What no form keeps is said, wherever the long length is.
+#[test]
+fn code_of_robots_with_long_lengths_says_what_it_loses() {
+    let mut wrong = String::new();
+    for text in LONG {
+        let head = "{format: 1, source: own, gravity: [0, 0, -9.81], ";
+        let text = format!("{head}{}}}", text.replace("BODY", BODY));
+        let robot = Reader::new("long").read(&text).unwrap_or_else(|report| panic!("{report}")).robot;
+        let right = Arm::new(&robot, Maker::Runtime);
+        let mut lost = 0;
+        for form in [Form::SevenSteps, Form::Reduced] {
+            let arm = Arm::by_no_choice(&robot, Maker::Code(form));
+            let is_solvable = |function: &Function| !function.is_of_floating_base();
+            for function in Function::OF_TREES.into_iter().filter(is_solvable) {
+                let loss = arm.program(function).loss;
+                lost += usize::from(loss.is_some());
+                let error = error(&arm, &right, function, 300);
+                // where one in ten is lost, there is no digit to rely on
+                let is_useless = loss.is_some_and(|loss| loss > 0.1);
+                if error.is_nan() || error > 3.0 * limit(function).max(loss.unwrap_or_default()) && !is_useless {
+                    let _ = writeln!(wrong, "{}, {form}, {function}: {error:e}, said {loss:?}", robot.name);
+                }
+            }
+        }
+        assert!(lost > 0, "{}", robot.name);
+    }
+    assert!(wrong.is_empty(), "{wrong}");
 }

@@ -433,7 +433,7 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
         misra,
         trace,
     };
-    Ok((certificate, remarks + &robot_file::lint_remark(&checked.lints, &arguments.file)))
+    Ok((certificate, remarks))
 }
 
 /// Notes on options that have no effect, or a small one.

@@ -139,7 +139,7 @@ fn refusals(path: &Path, robot: &Robot) -> Result<Vec<String>, Failure> {
         let Ok(program) = compiler.compiled(function, Form::Reduced)? else { continue };
         let is_reduced = program.form == Form::Reduced;
         programs.push(program);
-        if is_reduced && rne_codegen::has_far_frames(robot) {
+        if is_reduced && rne_codegen::loses_digits(robot) {
             programs.extend(compiler.compiled(function, Form::SevenSteps)?.ok());
         }
     }

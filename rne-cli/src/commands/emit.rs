@@ -227,7 +227,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     outcome.remark += &not_for_casadi(arguments, &programs);
     outcome.remark += &arguments.rotors.note(&robot);
     outcome.remark += &losses(arguments, &programs);
-    outcome.remark += &robot_file::lint_remark(&checked.lints, &arguments.file);
     Ok(outcome)
 }
 

@@ -264,7 +264,7 @@ fn computed(arguments: &Arguments, robot: Robot) -> Result<Outcome, Failure> {
     if is_singular(&robot, function, [&state.q, &state.passive], state.payload.as_ref()) {
         return Err(Failure::input(format_args!("{function} has no result: {BUT_FOR_ROUNDING}")));
     }
-    let mut remark = limits::remark(&robot, &state.q, &state.passive)
+    let mut remark = limits::remark(&robot, [&state.q, &state.qd], &state.passive)
         + &closure::remark(&robot, &arm, &state, arguments.passive.is_some());
     if is_indefinite(&robot, function, [&state.q, &state.passive], state.payload.as_ref()) {
         let _ = writeln!(remark, "note: {NOT_DEFINITE}");

@@ -107,7 +107,6 @@ pub(super) fn write(
     let archive = archive(&entries).map_err(|error| Failure::input(format_args!("{}: {error}", out.display())))?;
     remark += &write_bytes(out, &archive)?;
     remark += &rotors.note(&robot);
-    remark += &robot_file::lint_remark(&checked.lints, file);
     Ok(Outcome::remark(remark))
 }
 

@@ -215,7 +215,7 @@ fn told(account: &Account, arguments: &Arguments) -> String {
     let _ = writeln!(text, "{QUIET}{}{QUIET:#}", rounding(&account.rounding));
     let lints = account.lints.warnings().count();
     if lints > 0 {
-        let lints = if lints == 1 { "1 lint".to_owned() } else { format!("{lints} lints") };
+        let lints = if lints == 1 { "1 warning".to_owned() } else { format!("{lints} warnings") };
         let _ = writeln!(text, "{lints} in the robot file; {TYPED}rne check{TYPED:#} shows where");
     }
     text

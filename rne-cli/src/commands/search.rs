@@ -10,7 +10,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use rne_codegen::plan::{Accuracy, Cost};
 use rne_codegen::{CheckFor as _, Function};
-use rne_model::{Robot, plan_of};
+use rne_model::{Checked, Robot, plan_of};
 use rne_search::{PlanFile, Progress, SearchError, SearchOptions};
 
 use crate::files::input_file::is_stream;
@@ -80,7 +80,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
              {name}.yaml{TYPED:#}"
         )));
     }
-    let robot = robot_file::robot_in_yaml(&arguments.file)?;
+    let Checked { robot, lints, .. } = robot_file::robot_in_yaml(&arguments.file)?;
+    robot_file::note_warnings(&arguments.file, &lints, &[]);
     let options = SearchOptions { rewrite: rewritten(arguments, &robot)?, seed: arguments.seed };
     let known = plan_file::known(&arguments.file, &robot, arguments.fresh)?;
     let path = plan_of(&arguments.file);
@@ -137,7 +138,8 @@ impl Searched<'_> {
 
     /// Whether what was found is of the robot as its file has it now; comments and names may have changed.
     fn is_unchanged(&self, found: &PlanFile) -> Result<(), Failure> {
-        let is_same = |now: Robot| now.name == found.robot && rne_search::fingerprint(&now) == found.fingerprint;
+        let is_same =
+            |Checked { robot, .. }| robot.name == found.robot && rne_search::fingerprint(&robot) == found.fingerprint;
         if robot_file::robot_in_yaml(self.file).is_ok_and(is_same) {
             return Ok(());
         }
@@ -313,7 +315,7 @@ mod tests {
             let shipped = rne_robots::find("scara_cobra600").expect("shipped");
             let file = folder.path().join("arm.yaml");
             fs::write(&file, shipped.yaml).expect("written");
-            let robot = robot_file::robot_in_yaml(&file).unwrap_or_else(|failure| panic!("{}", failure.text));
+            let robot = robot_file::robot_in_yaml(&file).unwrap_or_else(|failure| panic!("{}", failure.text)).robot;
             let plan = PlanFile::read("plan", shipped.plan.expect("a plan"), &robot).expect("of the robot");
             Self { folder, robot, plan }
         }

@@ -7,7 +7,7 @@ use std::str::FromStr;
 use clap::Args;
 use rne::Payload;
 use rne_codegen::Function;
-use rne_model::{Checked, Report, Robot};
+use rne_model::{Checked, Robot};
 
 use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::Failure;
@@ -139,17 +139,19 @@ impl Carried {
     pub(crate) fn of(&self, robot: Robot) -> Result<Robot, Failure> {
         let Some(list) = &self.payload else { return Ok(robot) };
         let Payload { mass, com, inertia } = payload(list)?;
-        let frame = match &self.payload_on {
-            Some(name) => robot.fixed_frame(robot.frame(name).map_err(Failure::usage)?),
-            None => robot.tip(),
+        let frame = match self.payload_on.as_deref().map(|name| robot.frame(name)) {
+            None => Some(robot.tip()),
+            Some(Ok(frame)) => Some(robot.fixed_frame(frame)),
+            Some(Err(unknown)) if unknown.is_base => None,
+            Some(Err(unknown)) => return Err(Failure::usage(unknown)),
         };
-        if frame.on.is_none() {
+        let Some(frame) = frame.filter(|frame| frame.on.is_some()) else {
             return Err(Failure::usage(if robot.floating_base.is_some() {
-                "--payload-on names a frame on the floating base; write a payload there into the list `bodies`"
+                "--payload-on names the floating base or a frame on it; write a payload there into the list `bodies`"
             } else {
-                "--payload-on names a frame on the base, where a payload has no effect"
+                "--payload-on names the base or a frame on it, where a payload has no effect"
             }));
-        }
+        };
         Ok(rne_convert::carrying_at(&robot, &frame, mass, com, inertia))
     }
 
@@ -207,19 +209,18 @@ impl ChosenArm {
 
     /// The robot with the payload as a part of the link with the tip.
     pub(crate) fn robot_with_payload(&self, shape: Shape) -> Result<Robot, Failure> {
-        self.carried.of(self.read(Frames::Dropped, shape)?.0)
+        self.carried.of(self.read(Frames::Dropped, shape)?)
     }
 
-    /// The robot without the payload, seen from a frame, and notes: `--rotors` without effect, and the
-    /// number of warnings of its file.
+    /// The robot without the payload, seen from a frame, and a note: `--rotors` without effect.
     pub(crate) fn robot_at(&self, at: &AtFrame) -> Result<(Robot, String), Failure> {
         let names_frame = at.frame.is_some() || self.carried.payload_on.is_some();
-        let (robot, lints) = self.read(if names_frame { Frames::Kept } else { Frames::Dropped }, Shape::Closed)?;
+        let robot = self.read(if names_frame { Frames::Kept } else { Frames::Dropped }, Shape::Closed)?;
         let note = self.rotors.note(&robot);
-        Ok((at.of(robot)?, note + &robot_file::lint_remark(&lints, &self.file)))
+        Ok((at.of(robot)?, note))
     }
 
-    fn read(&self, frames: Frames, shape: Shape) -> Result<(Robot, Report), Failure> {
+    fn read(&self, frames: Frames, shape: Shape) -> Result<Robot, Failure> {
         let shown = self.file.display();
         if !self.file.exists() && shown.to_string().parse::<List>().is_ok() {
             return Err(Failure::usage(format_args!(
@@ -227,9 +228,9 @@ impl ChosenArm {
                  without blanks, as in {TYPED}rne eval planar2 --q 0.5,0.3{TYPED:#}"
             )));
         }
-        let Checked { robot, lints, .. } = with_settings(&self.file, &self.set, frames, shape)?;
+        let robot = with_settings(&self.file, &self.set, frames, shape)?.robot;
         let without: Vec<&str> = self.without.iter().map(String::as_str).collect();
-        Ok((self.rotors.of(robot).without_bodies(&without).map_err(Failure::usage)?, lints))
+        self.rotors.of(robot).without_bodies(&without).map_err(Failure::usage)
     }
 }
 

@@ -9,7 +9,7 @@ use crate::files::input_file;
 use crate::outcome::Failure;
 use crate::palette::{TITLE, TYPED};
 use crate::remedy::in_options;
-use crate::terminal::remark;
+use crate::terminal::{note_of_file, remark};
 
 /// The robots that a command takes.
 #[derive(Clone, Copy, PartialEq)]
@@ -71,6 +71,10 @@ fn read_by(
 ) -> Result<(Checked, Vec<u8>), Failure> {
     let (name, bytes) = yaml(path, frames)?;
     let checked = checked(&name, &bytes, parameters, shape)?;
+    // of all robots, as `rne check` wants them, it prints every lint
+    if frames != Frames::DroppedOfAll {
+        note_warnings(path, &checked.lints, parameters.0);
+    }
     Ok((checked, bytes))
 }
 
@@ -95,6 +99,7 @@ pub(crate) fn read_with_free_parameters(path: &Path, shape: Shape) -> Result<Che
     let free: Vec<_> = names.filter_map(alone).collect();
     let is_defined = |index: usize| free.iter().any(|(_, _, defined)| defined.iter().any(|(other, _)| *other == index));
     let free: Vec<&str> = free.iter().filter(|(index, ..)| !is_defined(*index)).map(|(_, name, _)| *name).collect();
+    note_warnings(path, &constant.lints, &[]);
     checked(&name, &bytes, (&[], &free), shape)
 }
 
@@ -203,36 +208,39 @@ pub(crate) fn not_opened(error: &OpenError) -> Failure {
     }
 }
 
-/// A line for standard error where a robot file has warnings; the command does its work all the same.
-pub(crate) fn lint_remark(lints: &Report, path: &Path) -> String {
-    match lints.warnings().count() {
-        0 => String::new(),
-        1 => format!(
-            "{TITLE}note{TITLE:#}: 1 warning in the robot file; {TYPED}rne check {}{TYPED:#} shows it\n",
-            shell(path)
-        ),
-        count => {
-            format!(
-                "{TITLE}note{TITLE:#}: {count} warnings in the robot file; {TYPED}rne check {}{TYPED:#} shows them\n",
-                shell(path)
-            )
-        }
+/// Says that a robot file has warnings, which change what every command computes; commands do their work all the same.
+pub(crate) fn note_warnings(path: &Path, lints: &Report, settings: &[(&str, f64)]) {
+    let count = lints.warnings().count();
+    let Some(first) = lints.warnings().next() else { return };
+    let warnings = if count == 1 { "1 warning".to_owned() } else { format!("{count} warnings") };
+    if settings.is_empty() {
+        let shows = if count == 1 { "shows it" } else { "shows them" };
+        let path = shell(path);
+        note_of_file(&format!(
+            "{TITLE}note{TITLE:#}: {warnings} in the robot file; {TYPED}rne check {path}{TYPED:#} {shows}\n"
+        ));
+    } else {
+        // of other values of parameters the file alone says nothing
+        let settings: Vec<String> = settings.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        let (settings, message) = (settings.join(", "), &first.message);
+        let first = if count == 1 { "" } else { "; the first" };
+        note_of_file(&format!("{TITLE}note{TITLE:#}: {warnings} with {settings}{first}: {message}\n"));
     }
 }
 
-/// A valid robot. `rne check` prints its lints; commands that write code and `rne eval` count its warnings.
+/// A valid robot. `rne check` prints its lints; all other commands count its warnings.
 pub(crate) fn robot(path: &Path, shape: Shape) -> Result<Robot, Failure> {
     Ok(read(path, shape)?.robot)
 }
 
 /// A valid robot of a robot file, for commands that write a file beside it. A URDF is refused with the command that
 /// imports it.
-pub(crate) fn robot_in_yaml(path: &Path) -> Result<Robot, Failure> {
+pub(crate) fn robot_in_yaml(path: &Path) -> Result<Checked, Failure> {
     let (name, bytes) = match open(path)? {
         Opened::RobotFile(name, bytes) => (name, bytes),
         Opened::Urdf(name, text) => (name, text.into_bytes()),
     };
-    Ok(checked(&name, &bytes, (&[], &[]), Shape::Coupled)?.robot)
+    checked(&name, &bytes, (&[], &[]), Shape::Coupled)
 }
 
 /// A path as a shell reads it back.

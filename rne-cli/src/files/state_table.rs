@@ -11,6 +11,8 @@ use rne_model::{did_you_mean, open_file};
 use crate::files::csv_table::quoted;
 use crate::files::input_file::{self, is_standard_input, is_stream};
 use crate::outcome::Failure;
+use crate::palette::TITLE;
+use crate::terminal::remark;
 
 /// States of a part: some megabytes, whatever the file's size.
 pub(crate) const PART: usize = 16_384;
@@ -118,6 +120,21 @@ impl Table {
                     return Err(Failure::input(format_args!("{name}: the column `{column}` occurs twice")));
                 }
             }
+        }
+        // as `q3` beside `q1` and `q2`: such a table is probably that of another robot
+        let beyond = |column: &str| {
+            let stem = column.trim_end_matches(|c: char| c.is_ascii_digit());
+            let is_wanted = |other: &String| other.trim_end_matches(|c: char| c.is_ascii_digit()) == stem;
+            let is_known = wanted.iter().chain(others.iter().flatten()).any(|other| other == column);
+            stem.len() < column.len() && !is_known && wanted.iter().any(is_wanted)
+        };
+        if let Some(column) = header.iter().find(|column| beyond(column)) {
+            remark(format_args!(
+                "{TITLE}note{TITLE:#}: {name}: the column {} belongs to no joint of this robot, and is not read; the \
+                 required columns are {}\n",
+                quoted(column),
+                wanted.join(", ")
+            ));
         }
         let rows = Rows::Csv { rows: Box::new(rows), columns };
         Ok(Self { states: None, name, rows, restricted: Restricted::default() })

@@ -5,9 +5,10 @@ use std::fmt::Write as _;
 
 use rne_model::{Joint, JointKind, Robot, six_digits};
 
-/// A line for each joint whose position, rad or m, lies outside of its limits in the file: of those of `q`, and of the
-/// dependent joints of closed loops. The numbers are right all the same: limits are no part of the dynamics.
-pub(crate) fn remark(robot: &Robot, q: &[f64], passive: &[f64]) -> String {
+/// A line for each joint whose position, rad or m, or whose velocity lies outside of its limits in the file: of `q`, of
+/// `qd`, and of the dependent joints of closed loops. The numbers are right all the same: limits are no part of the
+/// dynamics.
+pub(crate) fn remark(robot: &Robot, [q, qd]: [&[f64]; 2], passive: &[f64]) -> String {
     let mut text = String::new();
     let joints = robot.independent_joints().zip(robot.coordinate_limits()).zip(q);
     let joints = joints.enumerate().map(|(index, (joint, q))| (format!("q{}", index + 1), joint, q));
@@ -28,17 +29,32 @@ pub(crate) fn remark(robot: &Robot, q: &[f64], passive: &[f64]) -> String {
             joint.name
         );
     }
+    let joints = robot.independent_joints().zip(robot.coordinate_limits()).zip(qd);
+    for (index, ((joint, limits), qd)) in joints.enumerate() {
+        let Some(most) = limits.velocity.filter(|most| qd.abs() > most * (1.0 + 1e-12)) else { continue };
+        let (unit, [qd, most]) = (joint.row.kind.position_unit(), [*qd, most].map(six_digits));
+        let _ = writeln!(
+            text,
+            "note: qd{} = {qd} {unit}/s is beyond the velocity limit of {}: {most} {unit}/s",
+            index + 1,
+            joint.name
+        );
+    }
     text
 }
 
 /// A position of a revolute joint that is probably in degrees: it is more than a turn, and the positions of all states
-/// have few digits, as no angles in radians.
+/// have few digits, as no angles in radians; or it is many turns.
 #[derive(Default)]
 pub(crate) struct Degrees {
     /// The first position over a turn, and the name of its joint.
     first: Option<(String, f64)>,
     have_digits: bool,
+    is_far: bool,
 }
+
+/// No joint turns as often, rad.
+const MANY_TURNS: f64 = 5.0 * TAU;
 
 impl Degrees {
     /// Looks at the positions of each state.
@@ -53,6 +69,7 @@ impl Degrees {
         let turns = |(joint, _): &(&Joint, &f64)| joint.row.kind == JointKind::Revolute;
         for (joint, &q) in robot.independent_joints().zip(q).filter(turns) {
             self.have_digits |= (10.0 * q).fract() != 0.0;
+            self.is_far |= q.abs() > MANY_TURNS;
             if self.first.is_none() && q.abs() > TAU {
                 self.first = Some((joint.name.clone(), q));
             }
@@ -61,7 +78,7 @@ impl Degrees {
 
     /// The remark; `remedy` says how the position is written instead.
     pub(crate) fn remark(&self, remedy: impl Fn(f64) -> String) -> String {
-        self.first.as_ref().filter(|_| !self.have_digits).map_or_else(String::new, |(joint, q)| {
+        self.first.as_ref().filter(|_| self.is_far || !self.have_digits).map_or_else(String::new, |(joint, q)| {
             let remedy = remedy(*q);
             format!("note: {joint} is at {q} rad, more than a full turn; if this is in degrees, {remedy}\n")
         })
@@ -77,21 +94,22 @@ mod tests {
         {name: turn, type: revolute, limits: {position: [-deg(160), pi/2]},
          dh: {theta: 0, d: 0, a: 1, alpha: 0}, link: {mass: 1}},
         {name: free, type: revolute, dh: {theta: 0, d: 0, a: 1, alpha: 0}, link: {mass: 1}},
-        {name: slide, type: prismatic, limits: {position: [0, 0.5]},
+        {name: slide, type: prismatic, limits: {position: [0, 0.5], velocity: 0.2},
          dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 1}}]}";
 
     #[test]
     fn joints_beyond_their_limits() {
         let robot = Robot::from_yaml(ARM).unwrap_or_else(|report| panic!("{report}"));
-        assert_eq!(remark(&robot, &[0.0, 1e9, 0.25], &[]), "");
+        assert_eq!(remark(&robot, [&[0.0, 1e9, 0.25], &[]], &[]), "");
         // at a limit, as an expression and as digits, and of a function that takes no positions
-        assert_eq!(remark(&robot, &[std::f64::consts::FRAC_PI_2, 0.0, 0.5], &[]), "");
-        assert_eq!(remark(&robot, &[-2.792_526_803_190_927, 0.0, 0.0], &[]), "");
-        assert_eq!(remark(&robot, &[], &[]), "");
+        assert_eq!(remark(&robot, [&[std::f64::consts::FRAC_PI_2, 0.0, 0.5], &[]], &[]), "");
+        assert_eq!(remark(&robot, [&[-2.792_526_803_190_927, 0.0, 0.0], &[]], &[]), "");
+        assert_eq!(remark(&robot, [&[], &[]], &[]), "");
         assert_eq!(
-            remark(&robot, &[-3.0, 0.0, 0.6], &[]),
+            remark(&robot, [&[-3.0, 0.0, 0.6], &[0.0, 0.0, -0.3]], &[]),
             "note: q1 = -3 rad is outside of the limits of turn: -2.79253 to 1.5708 rad\n\
-             note: q3 = 0.6 m is outside of the limits of slide: 0 to 0.5 m\n"
+             note: q3 = 0.6 m is outside of the limits of slide: 0 to 0.5 m\n\
+             note: qd3 = -0.3 m/s is beyond the velocity limit of slide: 0.2 m/s\n"
         );
     }
 
@@ -106,7 +124,7 @@ mod tests {
         let robot = rne_model::Reader::new("four_bar").trees().couplings().loops().read(text.as_bytes());
         let robot = robot.unwrap_or_else(|report| panic!("{}", report.render(false))).robot;
         let expected = "note: the position = 0.6 rad is outside of the limits of coupler: -0.5 to 0.5 rad\n";
-        assert_eq!(remark(&robot, &[0.2], &[0.6, 1.0]), expected);
-        assert_eq!(remark(&robot, &[0.2], &[0.4, 1.0]), "");
+        assert_eq!(remark(&robot, [&[0.2], &[]], &[0.6, 1.0]), expected);
+        assert_eq!(remark(&robot, [&[0.2], &[]], &[0.4, 1.0]), "");
     }
 }

@@ -85,13 +85,15 @@ pub(crate) fn rne_reading(arguments: &[&str], text: &str) -> Called {
 pub(crate) const EFFORTS: &str = "note: efforts are taken as torques, N m, or forces, N; if they are currents,\n      \
                                   give the N m/A with --torque-constant\n";
 
-/// A call that succeeds and says nothing on standard error, but which positions are outside of the limits of the file,
-/// how many warnings the file has, that rotors are left out, and that efforts are taken as torques.
+/// A call that succeeds and says nothing on standard error, but which positions and velocities are outside of the
+/// limits of the file, how many warnings the file has, that rotors are left out, and that efforts are taken as torques.
 pub(crate) fn fine(arguments: &[&str]) -> String {
     let called = rne(arguments);
     let is_note = |line: &str| {
         line.starts_with("note: q") && line.contains(" is outside of the limits of ")
+            || line.starts_with("note: qd") && line.contains(" is beyond the velocity limit of ")
             || line.contains(" in the robot file; rne check ")
+            || line.starts_with("note: 1 warning with ")
             || line.contains(" random states are few: ")
             || line.starts_with("the inertia of the rotors is left out")
             || EFFORTS.lines().any(|of| of == line)

@@ -530,7 +530,7 @@ fn positions_outside_of_the_limits_are_noted() {
         assert_eq!(rne(&[&at[..], &["0,0,0,0,0,0"], more].concat()).err, "");
     }
     // no limits, no notes
-    let free = rne(&["eval", "robots/planar2.yaml", "--function", "gravity_torques", "--q", "100.05,100.05"]);
+    let free = rne(&["eval", "robots/planar2.yaml", "--function", "gravity_torques", "--q", "30.05,-30.05"]);
     assert_eq!((free.status, free.err.as_str()), (0, ""));
 }
 
@@ -594,4 +594,91 @@ fn degrees_of_positions() {
     for right in ["0.3,6.2", "30deg,400deg"] {
         assert_eq!(at(right).err, "", "{right}");
     }
+}
+
+/// The table of another robot, numbers beside a table, and the names of a base and of a tip that mean two things.
+#[test]
+fn what_may_be_meant_for_another_robot_is_said() {
+    let folder = folder("of_another_robot");
+    let write = |name: &str, text: &str| {
+        fs::write(folder.join(name), text).expect("a file");
+        folder.join(name).display().to_string()
+    };
+    let wide = write("wide.csv", "q1,q2,q3\n0,0,0\n");
+    let states = ["eval", "planar2", "--function", "gravity_torques", "--states", &wide];
+    let called = rne(&states);
+    assert_eq!(called.status, 0, "{called:?}");
+    assert!(called.err.contains("the column `q3` belongs to no joint"), "{}", called.err);
+    let called = rne(&[&states[..], &["--payload", "1,0,0,0"]].concat());
+    assert_eq!(called.status, 2);
+    assert!(called.err.contains("has columns for the payload"), "{}", called.err);
+    let called = rne(&[&states[..], &["--q", "0,0"]].concat());
+    assert!(called.err.contains("--q is for one state"), "{}", called.err);
+
+    let two = write(
+        "two.yaml",
+        "{format: 2, name: two, source: own, convention: modified, gravity: [0, 0, -9.81], floating_base: {name: bus, \
+         link: {mass: 5, inertia: {xx: 1, yy: 1, zz: 1}}}, frames: [{name: tip, on: j1, xyz: [0.1, 0, 0]}], joints: [\
+         {name: j1, type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 1, com: [0.3, 0, 0], inertia: \
+         {xx: 0.1, yy: 0.1, zz: 0.1}}}, {name: j2, type: revolute, dh: {theta: 0, d: 0, a: 1, alpha: pi/2}, link: \
+         {mass: 1, com: [0.1, 0, 0], inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}}]}",
+    );
+    let called = rne(&["eval", &two, "--q", "1,2", "--tip-wrench", "tip=0,0,0,3,5,7"]);
+    assert_eq!(called.status, 2);
+    assert!(called.err.contains("also a frame of its file"), "{}", called.err);
+    for base in ["base", "bus"] {
+        let called = rne(&["eval", &two, "--q", "1,2", "--function", "jacobian", "--frame", base]);
+        assert!(called.err.contains(&format!("`{base}` is the base of two")), "{}", called.err);
+        let payload = ["--payload", "1,0,0,0", "--payload-on", base];
+        let called = rne(&[&["eval", &two, "--q", "1,2", "--function", "gravity_torques"][..], &payload].concat());
+        assert!(called.err.contains("into the list `bodies`"), "{}", called.err);
+    }
+}
+
+/// Every command that computes with a robot file says that the file has warnings; with other values of parameters, it
+/// says which.
+#[test]
+fn every_command_counts_the_warnings_of_its_robot_file() {
+    let folder = folder("warnings");
+    let link = "{mass: 1, com: [-0.5, 0, 0], inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}";
+    let text = |alpha: &str| {
+        format!(
+            "{{format: 1, name: two, source: own, convention: standard, gravity: [0, -9.81, 0], parameters: {{a: 1}}, \
+             joints: [{{type: revolute, dh: {{theta: 0, d: 0, a: a, alpha: {alpha}}}, link: {link}}}, {{type: \
+             revolute, dh: {{theta: 0, d: 0, a: 1, alpha: 0}}, link: {link}}}]}}"
+        )
+    };
+    let path = folder.join("two.yaml").display().to_string();
+    fs::write(&path, text("90")).expect("a file");
+    let out = |name: &str| folder.join(name).display().to_string();
+    let (report, plot, fmu, sheets) = (out("report.html"), out("plot.svg"), out("two.fmu"), out("sheets"));
+    let state = ["--q", "0.1,0.2", "--qd", "1,1", "--qdd", "1,1"];
+    let commands: [Vec<&str>; 16] = [
+        vec!["show", &path],
+        vec!["show", &path, "--symbolic"],
+        vec!["emit", &path],
+        vec!["certify", &path, "--cc", "none"],
+        vec!["ops", &path],
+        vec!["report", &path, "-o", &report],
+        [&["eval", &path][..], &state].concat(),
+        vec!["eval", &path, "--golden", "2"],
+        vec!["worksheet", &path, "--seed", "1", "-o", &sheets, "ada"],
+        [&["diagnose", &path][..], &state, &["--tau", "1,2"]].concat(),
+        vec!["plot", &path, "-o", &plot],
+        vec!["excite", &path, "--seconds", "0.01"],
+        vec!["search", &path, "--seconds", "0.01"],
+        vec!["convert", &path, "--convention", "modified"],
+        vec!["export", &path, "--urdf"],
+        vec!["export", &path, "--fmu", "--no-build", "-o", &fmu],
+    ];
+    for command in commands {
+        let called = rne(&command);
+        let times = called.err.matches("1 warning in the robot file").count();
+        assert_eq!(times, 1, "{command:?}: {}", called.err);
+    }
+    fs::write(&path, text("0")).expect("a file");
+    let called = rne(&["eval", &path, "--q", "0,0", "--function", "gravity_torques", "--set", "a=500"]);
+    assert_eq!(called.err, "note: 1 warning with a = 500: the length `a` = 500 m is over 20 m\n");
+    let called = rne(&["eval", &path, "--q", "90.25,45", "--function", "gravity_torques"]);
+    assert!(called.err.contains("if this is in degrees, write 90.25deg"), "{}", called.err);
 }

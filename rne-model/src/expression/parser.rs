@@ -284,7 +284,7 @@ impl<'t> Parser<'t> {
 /// `.nan`, `NaN`, `.inf`: what other readers take for a number.
 pub(super) fn no_digits(found: &str, range: Range<usize>) -> Mistake {
     Mistake::new(range, format!("{} is not a number here: numbers are finite and written in digits", quoted(found)))
-        .help(format!("delete a limit that is unknown; {ALLOWED}"))
+        .help(format!("if this is a limit that is unknown, delete its key; {ALLOWED}"))
 }
 
 /// Characters that come with numbers copied from papers and other formats.
