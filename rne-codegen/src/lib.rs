@@ -90,15 +90,15 @@ fn has_far_frames(robot: &Robot) -> bool {
 pub fn loses_digits(robot: &Robot) -> bool {
     /// No length of an arm that stands in its own axes is as long, m.
     const LONGEST: f64 = 20.0;
-    let of_rows = robot.joints.iter().flat_map(|joint| {
-        let [x, y, z] = joint.row.link.com;
-        [joint.row.dh.a, joint.row.dh.d, x, y, z]
-    });
+    let of_rows = robot.joints.iter().flat_map(|joint| [joint.row.dh.a, joint.row.dh.d]);
+    let links = robot.joints.iter().map(|joint| &joint.row.link);
+    let links = links.chain(robot.floating_base.iter().map(|base| &base.link));
+    let of_links = links.flat_map(|link| link.com);
     let branches = robot.joints.iter().filter_map(|joint| joint.branch).map(|branch| branch.placement);
     let frames = robot.frames.iter().map(|frame| frame.fixed.placement);
     let placements = [robot.base, robot.tool].into_iter().chain(branches).chain(frames);
     let is_long = |x: f64| x.abs() > LONGEST;
-    of_rows.chain(placements.flat_map(|placement| placement.xyz)).any(is_long) || has_far_frames(robot)
+    of_rows.chain(of_links).chain(placements.flat_map(|placement| placement.xyz)).any(is_long) || has_far_frames(robot)
 }
 
 /// A program of a robot with what it loses in single precision. What is proved is measured already.

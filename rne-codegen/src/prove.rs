@@ -343,7 +343,7 @@ fn errors(reference: &Reference<'_>, program: &Program, states: usize) -> Vec<Er
             closure.map(|it| robot.closed.passive.iter().map(|&joint| closed(it, joint)).collect()).unwrap_or_default();
         let mut random = |range: f64| (0..robot.dof()).map(|_| between(-range, range)).collect::<Vec<f64>>();
         let (qd, qdd) = (random(2.0), random(4.0));
-        // what a user is told holds for any motion of the base
+        // users read the largest error of these states: the base must move in many ways, not in one
         let vectors = [(); 4].map(|()| match state_index {
             ..STATES => [5.0, -3.0, 2.0],
             _ => [(); 3].map(|()| between(-10.0, 10.0)),

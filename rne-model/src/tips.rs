@@ -29,10 +29,17 @@ impl Robot {
         self.tips.iter().map(|&tip| self.frames[tip].name.as_str()).collect()
     }
 
-    /// Whether the name `tip` has two meanings: the robot has no list `tips`, and a frame has this name.
+    /// The message for a tip whose name has two meanings: the robot has no list `tips`, and a frame has the name `tip`.
     #[must_use]
-    pub fn has_two_tips(&self, name: &str) -> bool {
-        self.tips.is_empty() && name == TIP && self.frames.iter().any(|frame| frame.name == TIP)
+    pub fn two_tips(&self, name: &str) -> Option<String> {
+        let has_two = self.tips.is_empty() && name == TIP && self.frames.iter().any(|frame| frame.name == TIP);
+        has_two.then(|| {
+            format!(
+                "`{TIP}` is the tip of {}, which is at its `tool`, and also a frame of its file; choose another name for \
+                 the frame, or write `tips: [{TIP}]` into the robot file",
+                self.name
+            )
+        })
     }
 
     /// How many frames carry wrenches.

@@ -532,10 +532,10 @@ fn a_frame_with_the_name_of_the_tip_is_told() {
     };
     let found = |more: &str| Reader::new("x").read(&text(more)).unwrap_or_else(|report| panic!("{report}"));
     let Checked { robot, lints, .. } = found("");
-    assert!(robot.has_two_tips("tip") && !robot.has_two_tips("hand"));
+    assert!(robot.two_tips("tip").is_some() && robot.two_tips("hand").is_none());
     let told: Vec<_> = lints.warnings().filter(|warning| warning.message.contains("the name of the tip")).collect();
     let [warning] = &told[..] else { panic!("{lints}") };
     assert_eq!(warning.label.as_deref(), Some("two meanings"));
     let Checked { robot, lints, .. } = found("tips: [tip], ");
-    assert!(!robot.has_two_tips("tip") && !lints.to_string().contains("two meanings"), "{lints}");
+    assert!(robot.two_tips("tip").is_none() && !lints.to_string().contains("two meanings"), "{lints}");
 }

@@ -153,12 +153,9 @@ impl Arm {
         };
         let tips = || self.robot().tip_names();
         let value = if let Ok(of_tips) = value.cast::<PyDict>() {
-            let two = of_tips.keys().iter().filter_map(|key| key.extract::<String>().ok());
-            if let Some(tip) = two.into_iter().find(|tip| self.robot().has_two_tips(tip)) {
-                return Err(PyValueError::new_err(format!(
-                    "{name}: `{tip}` is the tip of the arm, which is at its `tool`, and also a frame of its file; \
-                     choose another name for the frame, or write `tips: [{tip}]` into the robot file"
-                )));
+            let names = of_tips.keys().iter().filter_map(|key| key.extract::<String>().ok()).collect::<Vec<_>>();
+            if let Some(two) = names.iter().find_map(|tip| self.robot().two_tips(tip)) {
+                return Err(PyValueError::new_err(format!("{name}: {two}")));
             }
             value.py().import("rne.names")?.call_method1("of_tips", (value, tips(), name))?
         } else {

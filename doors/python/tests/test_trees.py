@@ -198,3 +198,17 @@ def test_wrenches_at_tips_by_name_and_by_array():
         arm.inverse_dynamics_with_wrenches(q, qd, qdd, {"hand": left})
     with pytest.raises(ValueError, match="has the shape"):
         arm.inverse_dynamics_with_wrenches(q, qd, qdd, left)
+
+
+def test_a_tip_whose_name_has_two_meanings_is_refused(tmp_path):
+    path = tmp_path / "two.yaml"
+    path.write_text("""{format: 2, name: two, source: own, convention: modified, gravity: [0, 0, -9.81],
+        frames: [{name: tip, on: j1, xyz: [0.1, 0, 0]}], joints: [
+        {name: j1, type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 1, inertia: {zz: 0.1}}},
+        {name: j2, type: revolute, dh: {theta: 0, d: 0, a: 1, alpha: 0}, link: {mass: 1, inertia: {zz: 0.1}}}]}""")
+    with pytest.warns(UserWarning, match="the name of the tip"):
+        arm = rne.load(path)
+    still, wrench = np.zeros(2), np.array([0.0, 0, 0, 1, 2, 3])
+    with pytest.raises(ValueError, match="also a frame of its file"):
+        arm.inverse_dynamics_with_wrenches(still, still, still, {"tip": wrench})
+    np.testing.assert_allclose(arm.inverse_dynamics_with_wrenches(still, still, still, wrench[None]), [3, 3])

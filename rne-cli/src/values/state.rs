@@ -318,12 +318,8 @@ fn tip_wrenches(function: Function, given: &[TipWrench], robot: &Robot) -> Resul
         )));
     }
     for (index, TipWrench { tip, numbers: List(numbers) }) in given.iter().enumerate() {
-        if robot.has_two_tips(tip) {
-            return Err(Failure::usage(format_args!(
-                "`{tip}` is the tip of {}, which is at its `tool`, and also a frame of its file; choose another name \
-                 for the frame, or write `tips: [{tip}]` into the robot file",
-                robot.name
-            )));
+        if let Some(two) = robot.two_tips(tip) {
+            return Err(Failure::usage(two));
         }
         let Some(place) = names.iter().position(|name| name == tip) else {
             if robot.frames.iter().any(|frame| frame.name == *tip) {
