@@ -35,8 +35,8 @@ impl Robot {
         let has_two = self.tips.is_empty() && name == TIP && self.frames.iter().any(|frame| frame.name == TIP);
         has_two.then(|| {
             format!(
-                "`{TIP}` is the tip of {}, which is at its `tool`, and also a frame of its file; choose another name for \
-                 the frame, or write `tips: [{TIP}]` into the robot file",
+                "`{TIP}` is the tip of {}, which is at its `tool`, and also a frame of its file; choose another name \
+                 for the frame, or write `tips: [{TIP}]` into the robot file",
                 self.name
             )
         })

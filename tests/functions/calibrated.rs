@@ -102,8 +102,8 @@ fn error(arm: &Arm, right: &Arm, function: Function, states: usize) -> f64 {
     if error == 0.0 { 0.0 } else { error / scale }
 }
 
-/// Code says what it loses. Of the form `reduced`, at most one function in fifty loses something, but for those that are
-/// about frames of the table themselves.
+/// Code says what it loses. Of the form `reduced`, at most one function in fifty loses something, but for those that
+/// are about frames of the table themselves.
 #[test]
 fn calibrated_tables_keep_single_precision_or_say_what_they_lose() {
     let (tables, states) = if shipped::is_exhaustive() { (200, 20) } else { (1, 4) };
