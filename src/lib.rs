@@ -121,51 +121,11 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[doc(inline)]
-pub use rne_macro::{
-    Actuation, BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics,
-    BatchInverseDynamicsDerivatives, BatchMassMatrix, CentreOfMass, CentroidalMomentum, ClosedLoops, ContactDynamics,
-    CoriolisMatrix, Energy, EulerStep, EulerStepDerivatives, FloatingBase, FloatingClosedLoops, FloatingEnergy,
-    FloatingEulerStep, FloatingEulerStepDerivatives, FloatingInverseDynamicsDerivatives, FloatingKinematics,
-    FloatingRegressor, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics, InverseDynamics,
-    InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian, JacobianDerivatives, JointWrenches,
-    Kinematics, MassMatrix, MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches,
-};
+pub use rne_macro::*;
 #[doc(inline)]
 pub use rne_model as model;
 #[doc(inline)]
-pub use rne_runtime::{
-    AccelerationDerivatives, AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, BaseMotion, BaseTwist,
-    BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives,
-    BatchMassMatrix, BatchScalar, CentreOfMass, CentroidalMomentum, ClosedLoops, ClosureStep, ComputedTorque, Constant,
-    ContactDynamics, CoriolisMatrix, Desired, Dual, Energy, EulerStep, EulerStepDerivatives, FloatingAccelerations,
-    FloatingBase, FloatingClosedLoops, FloatingEnergy, FloatingEulerStep, FloatingEulerStepDerivatives,
-    FloatingIntegratorStep, FloatingInverseDynamicsDerivatives, FloatingKinematics, FloatingNextState,
-    FloatingRegressor, FloatingRungeKuttaStepDerivatives, FloatingState, FloatingStepDerivatives,
-    FloatingTorqueDerivatives, FloatingTorques, ForwardDynamics, ForwardDynamicsDerivatives, FrameKinematics,
-    InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsGradient, InverseDynamicsHessian, JacobianDerivatives,
-    JointOrderError, JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumAndRate, MomentumObserver,
-    MovingBase, NegativeMass, NextState, NextStateDerivatives, ObserverState, Operations, Payload, PayloadDynamics,
-    Pose, Quaternion, Regressor, RungeKuttaStep, RungeKuttaStepDerivatives, Scalar, StepDerivatives, TipWrenches,
-    TorqueDerivatives, TorqueGradient, TorqueHessian, VectorUnit, Wrench, dynamically_consistent_inverse, joint_order,
-    operational_space_inertia,
-};
-#[cfg(feature = "arm")]
-#[doc(inline)]
-pub use rne_runtime::{Arm, ArmWithTips, LinkTrace, Trace};
-#[cfg(all(feature = "arm", feature = "std"))]
-#[doc(inline)]
-pub use rne_runtime::{
-    BaseParameter, BaseParameters, DynAccelerationDerivatives, DynArm, DynFloatingNextState,
-    DynFloatingStepDerivatives, DynFloatingTorqueDerivatives, DynNextState, DynNextStateDerivatives, DynObserverState,
-    DynStepDerivatives, DynTorqueDerivatives, DynTorqueGradient, DynTorqueHessian, DynTrace, LinkParameter, LoadError,
-    WrongJointCount, WrongLength,
-};
-// The Python package has arms of any number of joints.
-#[doc(hidden)]
-pub use rne_runtime::operational_space;
-// Derived code names them.
-#[doc(hidden)]
-pub use rne_runtime::{RunTimeParameter, batch, frame_index, processor, testing, unknown_frame};
+pub use rne_runtime::*;
 
 /// Any arm at run time, nearly as fast as a derived one: read, compiled to the code of a machine, and run over blocks
 /// of states on the widest vector unit.
@@ -189,10 +149,9 @@ pub use rne_runtime::{RunTimeParameter, batch, frame_index, processor, testing, 
 pub mod compiled {
     #[doc(inline)]
     pub use rne_machine::{
-        ARGUMENTS, Argument, Arguments, ArmError, Array, CompiledArm, CompiledFunction, Derivatives, Destination,
-        EvaluationError, Form, FrictionWidth, Function, Layout, Machine, Number, OutOfRange, PlanFile, Record,
-        RobotFiles, Rollout, RolloutError, RolloutLimits, SearchError, SearchOptions, SearchProgress, Sizes, WrongSize,
-        sizes_of,
+        ARGUMENTS, Argument, Arguments, ArmError, Array, CompiledArm, CompiledFunction, Destination, EvaluationError,
+        Form, FrictionWidth, Function, Layout, Machine, Number, OutOfRange, PlanFile, Record, RobotFiles, Rollout,
+        RolloutError, RolloutLimits, SearchError, SearchOptions, SearchProgress, Sizes, WrongSize, sizes_of,
     };
 }
 

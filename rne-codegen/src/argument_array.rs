@@ -1,7 +1,9 @@
 //! The arguments of a generated function.
 
-use crate::function::{Argument, ArgumentPart, Length};
-use crate::ir::{Axis, Name, Quantity};
+use std::array::from_fn;
+
+use crate::function::{ArgumentPart, Owner};
+use crate::ir::{Name, Quantity};
 use crate::program::Program;
 
 /// An argument array and the names of its elements; `None` for an element that is not used.
@@ -64,24 +66,15 @@ impl Program {
 
 fn arguments(program: &Program) -> Vec<ArgumentArray> {
     let used = |name: Name| program.arguments().any(|used| used == name).then_some(name);
-    let tip = program.joints + 1;
-    let elements = |part: &ArgumentPart| match (part.length, part.argument) {
-        (Length::Joints, _) => {
-            program.coordinates.iter().map(|&joint| used(Name::scalar(quantity(part), joint))).collect()
-        }
-        (Length::Passive, _) => {
-            program.passive.iter().map(|&joint| used(Name::scalar(quantity(part), joint))).collect()
-        }
-        (_, Argument::Step) => vec![used(Name::scalar(quantity(part), 0))],
-        (_, Argument::Payload) => Name::of_payload(tip).map(used).into(),
-        (_, Argument::BaseTwist) => Name::of_twist().map(used).into(),
-        (_, Argument::BasePose) => Name::of_pose().map(used).into(),
-        (_, Argument::Wrenches) => (1..=program.tips.len()).flat_map(Name::of_tip).map(used).collect(),
-        (_, Argument::BaseRotation) => Name::of_base_rotation().map(used).into(),
-        (_, argument) => {
-            let joint = if matches!(argument, Argument::Base | Argument::BaseVelocity) { 0 } else { tip };
-            Axis::ALL.map(|axis| used(Name::vector(quantity(part), joint, axis))).into()
-        }
+    let elements = |part: &ArgumentPart| {
+        let joints = match part.owner {
+            Owner::Joints => program.coordinates.clone(),
+            Owner::Passive => program.passive.clone(),
+            Owner::Base => vec![0],
+            Owner::Tip => vec![program.joints + 1],
+            Owner::EachTip => (1..=program.tips.len()).collect(),
+        };
+        joints.into_iter().flat_map(|joint| names_of(part.name, joint)).map(used).collect()
     };
     let parts = program.function.arguments().iter().flat_map(|argument| argument.parts());
     let array = |part: &ArgumentPart| ArgumentArray {
@@ -100,12 +93,24 @@ fn parameters(program: &Program) -> Option<ArgumentArray> {
     (program.parameters > 0).then_some(ArgumentArray { name: "parameters", elements, row: None, is_number: false })
 }
 
-/// The quantity that the numbers of an array are.
-fn quantity(part: &ArgumentPart) -> Quantity {
+/// The names of the numbers of an array that belong to a joint, to the base (0) or to a tip, in order.
+fn names_of(array: &str, joint: usize) -> impl Iterator<Item = Name> {
+    let quantities = quantities(array).iter();
+    quantities.flat_map(move |&(quantity, count)| (0..count).map(move |at| Name::nth(quantity, joint, count, at)))
+}
+
+/// The names of all numbers of an array that does not depend on the robot, as the table of arguments has them.
+pub(crate) fn all_names_of<const COUNT: usize>(array: &str, joint: usize) -> [Name; COUNT] {
+    let names: Vec<Name> = names_of(array, joint).collect();
+    from_fn(|at| names[at])
+}
+
+/// The quantities of the numbers of an array, and how many numbers each has.
+fn quantities(array: &str) -> &'static [(Quantity, usize)] {
     macro_rules! quantities {
-        ($($name:ident: $argument:ident, $length:ident $(($elements:literal))?, $quantity:ident, $about:literal;)*) => {
-            match part.name {
-                $(stringify!($name) => Quantity::$quantity,)*
+        ($($name:ident: $argument:ident, $owner:ident [$($quantity:ident * $count:literal),*], $about:literal;)*) => {
+            match array {
+                $(stringify!($name) => &[$((Quantity::$quantity, $count)),*],)*
                 name => unreachable!("no argument is passed in {name}"),
             }
         };

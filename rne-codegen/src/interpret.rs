@@ -2,6 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use crate::argument_array::all_names_of;
 use crate::ir::{Component, Name, Operator, Quantity};
 use crate::program::Program;
 use crate::values::{Contraction, Negated, Value, ValueId, Values};
@@ -125,13 +126,15 @@ impl Interpreter {
         constant: impl Fn(f64) -> T,
         sin_cos: impl Fn(T) -> (T, T),
     ) -> Option<Vec<T>> {
-        self.run_named(arguments, |_, value| Some(constant(value)), sin_cos)
+        let input = |name| arguments.input(name, [&self.coordinates, &self.passive], &sin_cos);
+        self.run_named(input, |_, value| Some(constant(value)), &sin_cos)
     }
 
-    /// As [`Interpreter::run`], with constants by their names: the name of a constant that is just 0 is `None`.
+    /// As [`Interpreter::run`], with arguments and constants by their names: the name of a constant that is just 0 is
+    /// `None`.
     pub(crate) fn run_named<T: Real>(
         &self,
-        arguments: &Arguments<'_, T>,
+        input: impl Fn(Name) -> Option<T>,
         constant: impl Fn(Option<Name>, f64) -> Option<T>,
         sin_cos: impl Fn(T) -> (T, T),
     ) -> Option<Vec<T>> {
@@ -145,9 +148,7 @@ impl Interpreter {
                 _ => turn.insert((angle, sin_cos(number(angle)))).1,
             };
             let number = match value {
-                Value::Argument => {
-                    arguments.input(self.values.name(id)?, [&self.coordinates, &self.passive], &sin_cos)?
-                }
+                Value::Argument => input(self.values.name(id)?)?,
                 Value::Constant(number) => constant(self.values.name(id), number)?,
                 Value::Sine(angle) => turned(angle).0,
                 Value::Cosine(angle) => turned(angle).1,
@@ -186,21 +187,22 @@ impl<T: Copy> Arguments<'_, T> {
     }
 
     fn get(&self, name: Name, place: impl Fn() -> Option<usize>) -> Option<T> {
-        if let Quantity::Mass | Quantity::Com | Quantity::Inertia = name.quantity {
-            let index = Name::of_payload(name.joint).iter().position(|known| *known == name)?;
-            return Some(self.payload[index]);
-        }
-        if let Quantity::TipForce | Quantity::TipMoment = name.quantity {
-            let index = Name::of_tip(name.joint).iter().position(|known| *known == name)?;
-            return Some(self.wrenches.get(name.joint.checked_sub(1)?)?[index]);
-        }
-        if let Quantity::FrameRotation | Quantity::FrameOrigin = name.quantity {
-            let index = Name::of_pose().iter().position(|known| *known == name)?;
-            return Some(self.pose[index]);
-        }
-        if name.quantity == Quantity::BaseRotation {
-            let index = Name::of_base_rotation().iter().position(|known| *known == name)?;
-            return Some(self.base_rotation[index]);
+        let place_in = |names: &[Name]| names.iter().position(|known| *known == name);
+        match name.quantity {
+            Quantity::Mass | Quantity::Com | Quantity::Inertia => {
+                return Some(self.payload[place_in(&all_names_of::<10>("payload", name.joint))?]);
+            }
+            Quantity::TipForce | Quantity::TipMoment => {
+                let wrench = self.wrenches.get(name.joint.checked_sub(1)?)?;
+                return Some(wrench[place_in(&all_names_of::<6>("wrenches", name.joint))?]);
+            }
+            Quantity::FrameRotation | Quantity::FrameOrigin => {
+                return Some(self.pose[place_in(&all_names_of::<12>("pose", 0))?]);
+            }
+            Quantity::BaseRotation => {
+                return Some(self.base_rotation[place_in(&all_names_of::<9>("base_rotation", 0))?]);
+            }
+            _ => {}
         }
         let Component::Vector(axis) = name.component else {
             let array = match name.quantity {

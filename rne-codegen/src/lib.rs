@@ -53,8 +53,8 @@ pub use expression::{Expression, ExpressionKind};
 pub use factorization::Factorization;
 pub use function::{
     Answer, AnswerTable, Argument, ArgumentPart, Axes, Base, Capability, Entry, Form, Function, Labels, Layout, Length,
-    Load, MatrixUnit, OfRobot, Own, Record, Returned, Shape, Sizes, What, function_named, function_of_plan,
-    functions_of, own, sizes_of,
+    Load, MatrixUnit, OfRobot, Own, Owner, Record, Shape, Sizes, What, function_named, function_of_plan, functions_of,
+    own, sizes_of,
 };
 pub use interpret::{Arguments, Interpreter, Real};
 pub use ir::{
@@ -70,7 +70,7 @@ pub use reduced::algorithm::Algorithm;
 pub use reduced::inward::ExpressedIn;
 pub use refusal::{Attempt, LeftOut, Reason, Refusal};
 pub use registers::{order_for_registers, ordered_for_registers, statements_of_outputs};
-pub use rne_functions::{argument_parts, functions};
+pub use rne_functions::{argument_parts, argument_type, functions};
 pub use values::{Contraction, Negated, Value, ValueId, Values};
 
 use crate::formulation::Formulation;

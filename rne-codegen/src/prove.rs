@@ -9,7 +9,7 @@ use rne_model::{Angle, Robot};
 use crate::exact::ExactFunction;
 use crate::function::Function;
 use crate::interpret::{Arguments, Interpreter, Real};
-use crate::ir::{Axis, Embedding, Exactly, Input, Name, Quantity, Residue, SamplePoint, composed, operators};
+use crate::ir::{Embedding, Exactly, Input, Name, Quantity, Residue, SamplePoint, composed, operators};
 use crate::program::{Program, Proof};
 use crate::refusal::{largest_loss, largest_rounding};
 use crate::{CompileError, Suspect};
@@ -199,36 +199,6 @@ fn argument(point: &SamplePoint, name: Name) -> Value {
 
 /// The results of a program at a point.
 fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &SamplePoint) -> Option<Vec<Residue>> {
-    let tip = robot.joints.len() + 1;
-    let joints = |quantity| -> Vec<Value> {
-        robot.coordinates().map(|joint| argument(point, Name::scalar(quantity, joint + 1))).collect()
-    };
-    let vector = |quantity, joint| Axis::ALL.map(|axis| argument(point, Name::vector(quantity, joint, axis)));
-    let passive: Vec<Value> =
-        robot.closed.passive.iter().map(|joint| argument(point, Name::scalar(Quantity::Position, joint + 1))).collect();
-    let (q, qd, qdd) = (joints(Quantity::Position), joints(Quantity::Rate), joints(Quantity::RateDot));
-    let tau = joints(Quantity::AppliedTorque);
-    let parameters: Vec<_> = (1..=robot.run_time.names.len())
-        .map(|index| Value::number(point.argument(Input::new(Name::scalar(Quantity::Parameter, index)))))
-        .collect();
-    let wrenches: Vec<_> =
-        (1..=robot.tip_count()).map(|tip| Name::of_tip(tip).map(|name| argument(point, name))).collect();
-    let arguments = Arguments {
-        wrenches: &wrenches,
-        force: vector(Quantity::JointForce, tip),
-        moment: vector(Quantity::JointMoment, tip),
-        payload: Name::of_payload(tip).map(|name| argument(point, name)),
-        tau: &tau,
-        base: [Quantity::Omega, Quantity::OmegaDot, Quantity::Acceleration, Quantity::Gravity]
-            .map(|quantity| vector(quantity, 0)),
-        velocity: vector(Quantity::OriginVelocity, 0),
-        pose: Name::of_pose().map(|name| argument(point, name)),
-        base_rotation: Name::of_base_rotation().map(|name| argument(point, name)),
-        step: argument(point, Name::scalar(Quantity::Duration, 0)),
-        parameters: &parameters,
-        passive: &passive,
-        ..Arguments::of_joints(&q, &qd, &qdd, Value::number(Residue::ZERO))
-    };
     let constant = |name: Option<Name>, _| {
         let Some(name) = name else { return Some(Value::number(Residue::ZERO)) };
         let (number, turn) = constants.get(&name)?;
@@ -239,7 +209,14 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Sam
         Some(Value { turn, ..Value::number(number.residue) })
     };
     let sin_cos = |angle: Value| (Value::number(angle.turn.0), Value::number(angle.turn.1));
-    let outputs = program.run_named(&arguments, constant, sin_cos)?;
+    // sines and cosines that are arguments belong to the positions
+    let turn = |name: Name| argument(point, Name::scalar(Quantity::Position, name.joint)).turn;
+    let input = |name: Name| match name.quantity {
+        Quantity::Sine => Some(Value::number(turn(name).0)),
+        Quantity::Cosine => Some(Value::number(turn(name).1)),
+        _ => Some(argument(point, name)),
+    };
+    let outputs = program.run_named(input, constant, sin_cos)?;
     Some(outputs.into_iter().map(|output| output.number).collect())
 }
 

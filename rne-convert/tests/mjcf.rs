@@ -5,7 +5,7 @@ use std::path::Path;
 
 use rne_convert::{Imported, Options, Selection, Urdf};
 use rne_model::{Convention, Reader, Robot};
-use rne_runtime::{BaseMotion, DynArm, Wrench};
+use rne_runtime::{BaseMotion, DynArm, DynFloatingTorques, Wrench};
 
 fn whole() -> Options {
     let selection = Selection { whole: true, ..Selection::default() };
@@ -120,7 +120,8 @@ fn a_free_joint_makes_the_base_float() {
             let base = BaseMotion { omega, omega_dot, acceleration, gravity, ..BaseMotion::default() };
             let [q, qd, qdd] = [0, 1, 2].map(|part| &joints[part * robot.dof()..][..robot.dof()]);
             let free = vec![Wrench::zero(); arm.tips().len()];
-            let (wrench, tau) = arm.inverse_dynamics_of_floating_base(q, qd, qdd, &base, &free).expect("a state");
+            let DynFloatingTorques { wrench, tau } =
+                arm.inverse_dynamics_of_floating_base(q, qd, qdd, &base, &free).expect("a state");
             let found = [wrench.force.to_vec(), wrench.moment.to_vec(), tau].concat();
             let scale = expected.iter().fold(0.0, |largest: f64, torque| largest.max(torque.abs()));
             assert_eq!(found.len(), expected.len(), "{name}");

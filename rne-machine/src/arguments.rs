@@ -2,6 +2,7 @@
 
 use core::ops::Range;
 
+use rne_codegen::ArgumentPart;
 use rne_runtime::machine::Source;
 
 /// An argument of many states: its elements, a number per joint most often, for each of them.
@@ -108,7 +109,7 @@ fn strided<T>(numbers: &[T], start: usize, stride: usize) -> Source<'_, T> {
 
 macro_rules! arguments {
     ($(
-        $name:ident: $argument:ident, $length:ident $(($elements:literal))?, $quantity:ident, $about:literal;
+        $name:ident: $argument:ident, $owner:ident [$($quantity:ident * $count:literal),*], $about:literal;
     )*) => {
         /// The arguments of a function, by name. What it does not take may be there and is not read.
         ///
@@ -168,6 +169,11 @@ impl<'a, T> Arguments<'a, T> {
     #[must_use]
     pub fn with(self, name: &str, array: Array<'a, T>) -> Option<Self> {
         place(name).map(|place| self.with_array(place, array))
+    }
+
+    /// The argument of a part of the table.
+    pub(crate) fn of_part(self, part: &ArgumentPart, array: Array<'a, T>) -> Self {
+        self.with_array(part.place(), array)
     }
 
     /// The argument at a place.

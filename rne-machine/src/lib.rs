@@ -49,7 +49,6 @@ pub use compiled_arm::{CompiledArm, RobotFiles};
 pub use compiled_function::CompiledFunction;
 pub use error::{ArmError, EvaluationError};
 pub use out_of_range::OutOfRange;
-pub use results::Derivatives;
 pub use rne_codegen::{Argument, Form, Function, Layout, Record, Sizes, sizes_of};
 pub use rne_search::{PlanFile, SearchError, SearchOptions};
 pub use rollout::{FrictionWidth, Rollout, RolloutError, RolloutLimits};

@@ -1,6 +1,6 @@
 //! The numbers of a state.
 
-use rne_runtime::BatchScalar;
+use rne_runtime::{BatchScalar, Numbers, Shaped};
 
 /// A number of a state: `f64` and `f32`, and no other type.
 #[cfg(feature = "native")]
@@ -10,7 +10,10 @@ use rne_runtime::BatchScalar;
     note = "`Array::Rows` and `Destination::Rows` take flat slices of numbers: of states such as \
             `states: Vec<[f64; 7]>`, write `.q(&states)` and `Destination::Rows(states.as_flattened_mut())`"
 )]
-pub trait Number: BatchScalar + Into<f64> + crate::translation::sealed::Number + natively::Natively {}
+pub trait Number:
+    BatchScalar + Into<f64> + Numbers<Self> + Shaped<Self> + crate::translation::sealed::Number + natively::Natively
+{
+}
 
 /// A number of a state: `f64` and `f32`, and no other type.
 #[cfg(not(feature = "native"))]
@@ -20,7 +23,7 @@ pub trait Number: BatchScalar + Into<f64> + crate::translation::sealed::Number +
     note = "`Array::Rows` and `Destination::Rows` take flat slices of numbers: of states such as \
             `states: Vec<[f64; 7]>`, write `.q(&states)` and `Destination::Rows(states.as_flattened_mut())`"
 )]
-pub trait Number: BatchScalar + Into<f64> {}
+pub trait Number: BatchScalar + Into<f64> + Numbers<Self> + Shaped<Self> {}
 
 impl Number for f32 {}
 impl Number for f64 {}

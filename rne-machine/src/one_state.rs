@@ -1,9 +1,9 @@
 //! The functions by their own names, for one state: arguments and results as those of `DynArm`.
 
-use rne_codegen::Function;
-use rne_runtime::{BaseMotion, BaseTwist, Payload, Pose, VectorUnit, Wrench};
+use rne_codegen::{Argument, Function, Length, argument_type};
+use rne_runtime::{BaseMotion, BaseTwist, Numbers, Payload, Pose, Shaped, VectorUnit, Wrench};
 
-use crate::results::{self, Shaped};
+use crate::results;
 use crate::{Arguments, Array, CompiledArm, EvaluationError, Number};
 
 /// One state. Arrays have one element per joint: rad, rad/s, rad/s², N m for revolute joints; m, m/s, m/s², N for
@@ -37,78 +37,40 @@ impl CompiledArm {
     }
 }
 
-/// The type of an argument.
-macro_rules! taken {
-    (Wrench) => { &Wrench<T> };
-    (Wrenches) => { &[Wrench<T>] };
-    (Payload) => { &Payload<T> };
-    (Base) => { &BaseMotion<T> };
-    (BaseVelocity) => { &[T; 3] };
-    (BaseTwist) => { &BaseTwist<T> };
-    (BasePose) => { &Pose<T> };
-    (BaseRotation) => { &[[T; 3]; 3] };
-    (Step) => { T };
-    ($of_joints:ident) => { &[T] };
+/// The arguments of a call, one after the other.
+struct Given<T> {
+    numbers: Vec<T>,
+    /// Where the arrays of the arguments end.
+    ends: Vec<usize>,
 }
 
-/// A source that an argument is read from.
-macro_rules! read {
-    (Payload $payload:ident) => {
-        $payload.to_array()
-    };
-    (Wrenches $wrenches:ident) => {
-        $wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment]).flatten().collect::<Vec<_>>()
-    };
-    (Step $step:ident) => {
-        [$step]
-    };
-    (BaseTwist $twist:ident) => {
-        [$twist.linear, $twist.angular].concat()
-    };
-    (BasePose $pose:ident) => {
-        $pose.rotation.iter().chain([&$pose.translation]).flatten().copied().collect::<Vec<_>>()
-    };
-    ($kind:ident $argument:ident) => {
-        $argument
-    };
-}
+impl<T: Number> Given<T> {
+    /// Adds an argument: all of its numbers, however many there are, or those of its arrays.
+    fn add(&mut self, argument: Argument, given: &impl Numbers<T>) {
+        let start = self.numbers.len();
+        given.each(&mut |number| self.numbers.push(*number));
+        let mut end = start;
+        let lengths = argument.parts().map(|part| part.length);
+        self.ends.extend(lengths.map(|length| {
+            match length {
+                // of one array
+                Length::Fixed(count) if !argument.is_of_each_tip() => end += count,
+                _ => end = self.numbers.len(),
+            }
+            end
+        }));
+    }
 
-/// An argument among others.
-macro_rules! with {
-    ($others:ident, Wrench $wrench:ident) => {
-        $others.force(Array::Same(&$wrench.force)).moment(Array::Same(&$wrench.moment))
-    };
-    ($others:ident, Payload $payload:ident) => {
-        $others.payload(Array::Same(&$payload))
-    };
-    ($others:ident, Wrenches $wrenches:ident) => {
-        $others.wrenches(Array::Same(&$wrenches))
-    };
-    ($others:ident, Base $base:ident) => {
-        $others
-            .base_omega(Array::Same(&$base.omega))
-            .base_omega_dot(Array::Same(&$base.omega_dot))
-            .base_acceleration(Array::Same(&$base.acceleration))
-            .base_gravity(Array::Same(&$base.gravity))
-    };
-    ($others:ident, BaseVelocity $omega:ident) => {
-        $others.omega(Array::Same($omega))
-    };
-    ($others:ident, BaseTwist $twist:ident) => {
-        $others.twist(Array::Same(&$twist))
-    };
-    ($others:ident, Step $step:ident) => {
-        $others.step(Array::Same(&$step))
-    };
-    ($others:ident, BasePose $pose:ident) => {
-        $others.pose(Array::Same(&$pose))
-    };
-    ($others:ident, BaseRotation $rotation:ident) => {
-        $others.base_rotation(Array::Same($rotation.as_flattened()))
-    };
-    ($others:ident, $of_joints:ident $argument:ident) => {
-        $others.$argument(Array::Rows($argument))
-    };
+    /// These arguments of a function.
+    fn arguments(&self, function: Function) -> Arguments<'_, T> {
+        let parts = function.arguments().iter().flat_map(|argument| argument.parts());
+        let (mut arguments, mut start) = (Arguments::new(), 0);
+        for (part, &end) in parts.zip(&self.ends) {
+            arguments = arguments.of_part(part, Array::Same(&self.numbers[start..end]));
+            start = end;
+        }
+        arguments
+    }
 }
 
 macro_rules! methods {
@@ -126,12 +88,11 @@ macro_rules! methods {
             #[allow(clippy::too_many_arguments)] // those of the table
             pub fn $name<T: Number>(
                 &self,
-                $($argument: taken!($kind),)*
+                $($argument: argument_type!($kind),)*
             ) -> Result<results::$returned<T>, EvaluationError> {
-                let arguments = Arguments::new();
-                $(let $argument = read!($kind $argument);)*
-                $(let arguments = with!(arguments, $kind $argument);)*
-                self.result(Function::$variant, &arguments)
+                let mut given = Given { numbers: Vec::with_capacity(64), ends: Vec::with_capacity(8) };
+                $(given.add(Argument::$kind, &$argument);)*
+                self.result(Function::$variant, &given.arguments(Function::$variant))
             }
         )*}
     };

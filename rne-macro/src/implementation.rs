@@ -2,7 +2,7 @@
 
 use proc_macro2::{Group, Ident, Literal, Span, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident, quote};
-use rne_codegen::{Argument, Capability, Form, Function, Length, Operations, Program, Shape, Sizes};
+use rne_codegen::{Argument, Capability, Form, Function, Length, Operations, Program, Record, Shape, Sizes};
 use rne_model::Robot;
 use syn::{DeriveInput, GenericParam, Path, Visibility};
 
@@ -104,31 +104,10 @@ impl Target<'_> {
         }
     }
 
-    /// The arguments of the trait of a capability: the number of joints, and that of tips where it needs it.
+    /// The parameters of the trait of a capability: the number of joints, and others that it needs.
     fn sizes(&self, capability: Capability, dof: &TokenStream) -> TokenStream {
-        let (tips, velocities) = (&self.tips, velocities(dof));
-        match capability {
-            Capability::FloatingBase
-            | Capability::FloatingKinematics
-            | Capability::ContactDynamics
-            | Capability::FloatingInverseDynamicsDerivatives
-            | Capability::FloatingEulerStepDerivatives => quote!(#dof, #velocities, #tips),
-            Capability::CentroidalMomentum => quote!(#dof, #velocities),
-            Capability::ClosedLoops => {
-                let (passive, equations) = (&self.passive, &self.equations);
-                quote!(#dof, #passive, #equations, #tips)
-            }
-            Capability::FloatingClosedLoops => {
-                let passive = &self.passive;
-                quote!(#dof, #passive, #velocities, #tips)
-            }
-            Capability::FloatingRegressor => {
-                let bodies = bodies(dof);
-                quote!(#dof, #velocities, #bodies)
-            }
-            _ if capability.has_tips() => quote!(#dof, #tips),
-            _ => quote!(#dof),
-        }
+        let sizes = capability.lengths().map(|length| self.size(length, dof));
+        quote!(#(#sizes),*)
     }
 
     /// Writes a stub for a robot that is not known: every use of it compiles, so that the mistake that is reported
@@ -143,24 +122,12 @@ impl Target<'_> {
         let (ident, krate, name) = (&self.item.ident, self.krate, format_ident!("{}", capability.name()));
         let (_, type_generics, where_clause) = self.item.generics.split_for_impl();
         let mut generics = self.item.generics.clone();
-        generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
-        if capability.has_velocities() {
-            generics.params.push(syn::parse_quote!(const __VELOCITIES: ::core::primitive::usize));
-        }
-        if capability == Capability::FloatingRegressor {
-            generics.params.push(syn::parse_quote!(const __BODIES: ::core::primitive::usize));
-        }
-        if matches!(capability, Capability::ClosedLoops | Capability::FloatingClosedLoops) {
-            generics.params.push(syn::parse_quote!(const __PASSIVE: ::core::primitive::usize));
-        }
-        if capability == Capability::ClosedLoops {
-            generics.params.push(syn::parse_quote!(const __EQUATIONS: ::core::primitive::usize));
-        }
-        if capability.has_tips() {
-            generics.params.push(syn::parse_quote!(const __TIPS: ::core::primitive::usize));
+        let joints = quote!(__JOINTS);
+        for length in capability.lengths() {
+            let size = self.size(length, &joints);
+            generics.params.push(syn::parse_quote!(const #size: ::core::primitive::usize));
         }
         let (impl_generics, ..) = generics.split_for_impl();
-        let joints = quote!(__JOINTS);
         let sizes = self.sizes(capability, &joints);
         let methods = capability.functions().map(|function| {
             // what has the shape of an argument returns it
@@ -197,54 +164,8 @@ impl Target<'_> {
         };
         let body = body.whole();
         let function = program.function;
-        let wrench = function.takes(Argument::Wrench).then(|| quote!(let #krate::Wrench { force, moment } = wrench;));
-        // named as its type's array, which the body takes apart
-        let payload =
-            function.takes(Argument::Payload).then(|| quote!(let payload = &#krate::Payload::to_array(payload);));
-        let wrenches = function.takes(Argument::Wrenches).then(|| {
-            let numbers = (0..program.tips.len()).flat_map(|tip| {
-                let tip = Literal::usize_unsuffixed(tip);
-                let part = move |part: &str| {
-                    let (tip, part) = (tip.clone(), format_ident!("{part}"));
-                    [0, 1, 2].map(Literal::usize_unsuffixed).map(|axis| quote!(wrenches[#tip].#part[#axis]))
-                };
-                ["force", "moment"].into_iter().flat_map(part)
-            });
-            quote!(let wrenches = &[#(#numbers),*];)
-        });
-        let base = function.takes(Argument::Base).then(|| {
-            quote! {
-                let #krate::BaseMotion {
-                    omega: base_omega,
-                    omega_dot: base_omega_dot,
-                    acceleration: base_acceleration,
-                    gravity: base_gravity,
-                    ..
-                } = base;
-            }
-        });
-        // named as their arrays, too
-        let triple = |of: &TokenStream| {
-            let axes = [0, 1, 2].map(Literal::usize_unsuffixed).map(|axis| quote!(#of[#axis]));
-            quote!(#(#axes),*)
-        };
-        let twist = function.takes(Argument::BaseTwist).then(|| {
-            let [linear, angular] = [quote!(twist.linear), quote!(twist.angular)].map(|part| triple(&part));
-            quote!(let twist = &[#linear, #angular];)
-        });
-        let pose = function.takes(Argument::BasePose).then(|| {
-            let rows = [0, 1, 2].map(Literal::usize_unsuffixed).map(|row| triple(&quote!(pose.rotation[#row])));
-            let origin = triple(&quote!(pose.translation));
-            quote!(let pose = &[#(#rows,)* #origin];)
-        });
-        let rotation = function.takes(Argument::BaseRotation).then(|| {
-            let element = |at: usize| {
-                let [row, column] = [at / 3, at % 3].map(Literal::usize_unsuffixed);
-                quote!(base_rotation[#row][#column])
-            };
-            let elements = (0..9).map(element);
-            quote!(let base_rotation = &[#(#elements),*];)
-        });
+        let arguments = function.arguments().iter().filter_map(|&argument| self.taken_apart(argument, program));
+        let body = quote!(#(#arguments)* #body);
         let (count, parameters) = (parameters.names().len(), parameters.read(krate));
         let dof = Literal::usize_unsuffixed(program.dof);
         let of_trait = match program.frame {
@@ -254,7 +175,6 @@ impl Target<'_> {
         let of_trait = quote!(#krate::#of_trait).to_string().replace(' ', "");
         let documentation = description::method(robot, program, of_trait.trim_start_matches("::"));
         let dof = quote!(#dof);
-        let body = quote!(#wrench #payload #wrenches #base #twist #pose #rotation #body);
         let body =
             if is_asked { self.call(function, &dof, count, &parameters, &body) } else { quote!(#parameters #body) };
         let method = match program.frame {
@@ -262,6 +182,32 @@ impl Target<'_> {
             None => self.signature(function, &dof, &body),
         };
         quote!(#[doc = #documentation] #method)
+    }
+
+    /// The statement that takes an argument apart into the arrays that the body reads; `None` where it is one of them.
+    fn taken_apart(&self, argument: Argument, program: &Program) -> Option<TokenStream> {
+        let (krate, name) = (self.krate, format_ident!("{}", argument.name()));
+        let parts: Vec<_> = argument.parts().map(|part| format_ident!("{}", part.name)).collect();
+        match argument.shape() {
+            Shape::Number => None,
+            Shape::Array(_, of) if matches!(of, Shape::Number) => None,
+            // its inertia is a type of the model
+            Shape::Record(Record::Payload, _) => Some(quote!(let #name = &#krate::Payload::to_array(#name);)),
+            Shape::Record(record, _) if parts.len() > 1 => {
+                let fields = record.fields().iter().zip(&parts).map(|(field, part)| {
+                    let field = format_ident!("{field}");
+                    if field == *part { quote!(#field) } else { quote!(#field: #part) }
+                });
+                let record = format_ident!("{}", record.name());
+                // the velocity of a base has no influence
+                Some(quote!(let #krate::#record { #(#fields,)* .. } = #name;))
+            }
+            // named as its array, too
+            shape => {
+                let numbers = elements(quote!(#name), shape, program.tips.len());
+                Some(quote!(let #name = &[#(#numbers),*];))
+            }
+        }
     }
 
     /// Whether a method is computed by the instructions that the processor has, not by those alone that the program is
@@ -299,9 +245,8 @@ impl Target<'_> {
         let krate = self.krate;
         let arguments = self.arguments(function, dof, &quote!('a)).into_iter().zip(function.arguments());
         // a call takes references; `&step` is the pattern and the argument
-        let by_reference = |((name, kind), argument): ((Ident, TokenStream), &Argument)| match argument {
-            Argument::Step => (quote!(&#name), quote!(&'a #kind)),
-            _ => (quote!(#name), kind),
+        let by_reference = |((name, kind), argument): ((Ident, TokenStream), &Argument)| {
+            if argument.is_number() { (quote!(&#name), quote!(&'a #kind)) } else { (quote!(#name), kind) }
         };
         let (mut names, mut kinds): (Vec<_>, Vec<_>) = arguments.map(by_reference).unzip();
         if parameter_count > 0 {
@@ -329,28 +274,10 @@ impl Target<'_> {
 
     /// The arguments of a function and their types, references of the given lifetime, in which `T` is the scalar.
     fn arguments(&self, function: Function, dof: &TokenStream, lifetime: &TokenStream) -> Vec<(Ident, TokenStream)> {
-        let (krate, tips, passive) = (self.krate, &self.tips, &self.passive);
         let name_and_type = |argument: &Argument| {
-            let (name, kind) = match argument {
-                Argument::Sines => ("sin", quote!([T; #dof])),
-                Argument::Cosines => ("cos", quote!([T; #dof])),
-                Argument::Positions => ("q", quote!([T; #dof])),
-                Argument::Passive => ("passive", quote!([T; #passive])),
-                Argument::Rates => ("qd", quote!([T; #dof])),
-                Argument::Accelerations => ("qdd", quote!([T; #dof])),
-                Argument::Torques => ("tau", quote!([T; #dof])),
-                Argument::Multipliers => ("multipliers", quote!([T; #dof])),
-                Argument::Step => return (format_ident!("step"), quote!(T)),
-                Argument::Wrench => ("wrench", quote!(#krate::Wrench<T>)),
-                Argument::Payload => ("payload", quote!(#krate::Payload<T>)),
-                Argument::Base => ("base", quote!(#krate::BaseMotion<T>)),
-                Argument::BaseVelocity => ("omega", quote!([T; 3])),
-                Argument::BaseTwist => ("twist", quote!(#krate::BaseTwist<T>)),
-                Argument::BasePose => ("pose", quote!(#krate::Pose<T>)),
-                Argument::BaseRotation => ("base_rotation", quote!([[T; 3]; 3])),
-                Argument::Wrenches => ("wrenches", quote!([#krate::Wrench<T>; #tips])),
-            };
-            (format_ident!("{name}"), quote!(&#lifetime #kind))
+            let kind = self.returned(argument.shape(), dof);
+            let reference = (!argument.is_number()).then(|| quote!(&#lifetime));
+            (format_ident!("{}", argument.name()), quote!(#reference #kind))
         };
         function.arguments().iter().map(name_and_type).collect()
     }
@@ -376,7 +303,7 @@ impl Target<'_> {
         if self.is_taken("T") { renamed(method, "T", &format_ident!("{}", self.free_name())) } else { method }
     }
 
-    /// The type that a method returns.
+    /// The type of an argument or a result.
     fn returned(&self, shape: &Shape, dof: &TokenStream) -> TokenStream {
         let krate = self.krate;
         match shape {
@@ -570,6 +497,27 @@ impl Constants {
             velocity_limits: vec![f64::INFINITY; joints],
             effort_limits: vec![f64::INFINITY; joints],
             operations: Operations::default(),
+        }
+    }
+}
+
+/// The numbers of an argument of this shape, in order, as expressions.
+fn elements(of: TokenStream, shape: &Shape, tips: usize) -> Vec<TokenStream> {
+    match shape {
+        Shape::Number => vec![of],
+        Shape::Array(length, element) => {
+            let count = length.of(Sizes { dof: 0, tips, passive: 0, equations: 0 });
+            let each = (0..count).map(Literal::usize_unsuffixed);
+            each.flat_map(|at| elements(quote!(#of[#at]), element, tips)).collect()
+        }
+        Shape::Record(record, parts) => {
+            let parts = record.fields().iter().zip(*parts);
+            parts
+                .flat_map(|(field, part)| {
+                    let field = format_ident!("{field}");
+                    elements(quote!(#of.#field), part, tips)
+                })
+                .collect()
         }
     }
 }

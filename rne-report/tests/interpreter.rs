@@ -353,7 +353,7 @@ fn a_floating_base_of_the_page_is_that_of_the_runtime() {
             let still = vec![0.0; robot.dof()];
             let free = vec![rne_runtime::Wrench::default(); tips];
             let of = |qd: &[f64], qdd: &[f64], base, wrenches: &[rne_runtime::Wrench<f64>]| {
-                let (on_base, tau) =
+                let rne_runtime::DynFloatingTorques { wrench: on_base, tau } =
                     arm.inverse_dynamics_of_floating_base(&q, qd, qdd, base, wrenches).expect("lengths are right");
                 [&on_base.force[..], &on_base.moment[..], &tau[..]].concat()
             };

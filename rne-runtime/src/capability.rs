@@ -7,18 +7,16 @@
 mod closed_loops;
 mod floating_base;
 
-pub use closed_loops::{ClosedLoops, ClosureStep, FloatingClosedLoops};
-pub use floating_base::{
-    AccelerationsAndWrenches, BaseAcceleration, CentroidalMomentum, ContactDynamics, FloatingAccelerations,
-    FloatingBase, FloatingEnergy, FloatingKinematics, FloatingRegressor, FloatingTorques,
-};
+pub use closed_loops::*;
+pub use floating_base::*;
 
 use crate::jacobian_derivatives::{derivatives_of_rows, rate_of_rows};
 use crate::ldlt::{factor, inverse_of, solve};
 use crate::optimisation::{rows_by, still};
-use crate::shapes::records;
 use crate::smooth_sign::SmoothSign;
-use crate::{AccelerationDerivatives, BaseMotion, Dual, Payload, Pose, Scalar, Wrench};
+use crate::{
+    AccelerationDerivatives, BaseMotion, Dual, MomentumAndRate, Payload, Pose, Scalar, TorqueDerivatives, Wrench,
+};
 
 /// Torques from motion: recursive Newton-Euler inverse dynamics, τ(q, q̇, q̈).
 ///
@@ -350,18 +348,6 @@ pub trait Regressor<const DOF: usize> {
     fn regressor<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], qdd: &[T; DOF]) -> [[[T; 10]; DOF]; DOF];
 }
 
-records! {
-    /// ∂τ/∂q and ∂τ/∂q̇ of one state. Row i is torque i, column j is joint j.
-    ///
-    /// Units: of a torque (N m, or N for a prismatic joint) per rad or m, and per rad/s or m/s.
-    TorqueDerivatives<DOF>, DynTorqueDerivatives {
-        /// ∂τ_i/∂q_j.
-        dq: [[T; DOF]; DOF] | Vec<Vec<T>>,
-        /// ∂τ_i/∂q̇_j.
-        dqd: [[T; DOF]; DOF] | Vec<Vec<T>>,
-    }
-}
-
 /// How the torques change with the state.
 #[diagnostic::on_unimplemented(
     note = "`InverseDynamicsDerivatives` belongs into the same `derive`: `#[derive(InverseDynamicsDerivatives)]`, and \
@@ -389,23 +375,6 @@ pub trait JointWrenches<const DOF: usize> {
     /// normal on axis i. Moment in N m, force in N.
     #[must_use]
     fn joint_wrenches<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], qdd: &[T; DOF]) -> [Wrench<T>; DOF];
-}
-
-/// The momentum of the joints p = M(q) q̇ of one state, and the rate that it has without external torques. Row i is
-/// joint i.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MomentumAndRate<const DOF: usize, T> {
-    /// p = M(q) q̇, N m s or N s.
-    pub momentum: [T; DOF],
-    /// τ + C(q, q̇)ᵀ q̇ - g(q), which is τ + ∂T/∂q - ∂V/∂q, N m or N.
-    pub rate: [T; DOF],
-}
-
-#[cfg(feature = "arm")]
-impl<const DOF: usize, T> From<[[T; DOF]; 2]> for MomentumAndRate<DOF, T> {
-    fn from([momentum, rate]: [[T; DOF]; 2]) -> Self {
-        Self { momentum, rate }
-    }
 }
 
 /// External torques without accelerations: what a momentum observer asks of the arm at every tick. Its state, gain and

@@ -15,7 +15,10 @@ use rne_model::{ClosedLoops, Cut, FixedFrame, JointKind, Pivot, Robot};
 
 use crate::coordinates::Coordinates as _;
 use crate::floating_base::{BASE, of_base, solve_from_the_ends, turning};
-use crate::{BaseAcceleration, BaseMotion, Constant, DynArm, Scalar, Wrench, WrongLength};
+use crate::{
+    BaseMotion, Constant, DynArm, DynClosureStep, DynFloatingAccelerations, DynFloatingTorques, Scalar, Wrench,
+    WrongLength,
+};
 
 /// The loops of a robot.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,10 +100,11 @@ impl<S: Constant> DynArm<S> {
     ///
     /// # Errors
     /// When an argument does not have one element per joint.
-    pub fn closure_step<T: Scalar>(&self, q: &[T], passive: &[T]) -> Result<(Vec<T>, Vec<T>), WrongLength> {
+    pub fn closure_step<T: Scalar>(&self, q: &[T], passive: &[T]) -> Result<DynClosureStep<T>, WrongLength> {
         let equations = self.equations(q, passive, None)?;
         let changes = self.solved(&equations.rows, &equations.residuals);
-        Ok((passive.iter().zip(changes).map(|(&p, change)| p + change).collect(), equations.residuals))
+        let passive = passive.iter().zip(changes).map(|(&p, change)| p + change).collect();
+        Ok(DynClosureStep { passive, residual: equations.residuals })
     }
 
     /// As [`ClosedLoops::loop_map`](crate::ClosedLoops::loop_map): a row for each dependent joint.
@@ -204,10 +208,10 @@ impl<S: Constant> DynArm<S> {
         qdd: &[T],
         base: &BaseMotion<T>,
         wrenches: &[Wrench<T>],
-    ) -> Result<(Wrench<T>, Vec<T>), WrongLength> {
+    ) -> Result<DynFloatingTorques<T>, WrongLength> {
         let (map, [q, qd, qdd]) = self.of_open_tree(q, passive, qd, qdd)?;
-        let (wrench, of_tree) = self.inverse_dynamics_of_floating_base(&q, &qd, &qdd, base, wrenches)?;
-        Ok((wrench, self.by_coordinates(&map, &of_tree)))
+        let of_tree = self.inverse_dynamics_of_floating_base(&q, &qd, &qdd, base, wrenches)?;
+        Ok(DynFloatingTorques { tau: self.by_coordinates(&map, &of_tree.tau), ..of_tree })
     }
 
     /// As [`FloatingClosedLoops::floating_mass_matrix_of_loops`](
@@ -235,16 +239,16 @@ impl<S: Constant> DynArm<S> {
         tau: &[T],
         omega: &[T; 3],
         wrenches: &[Wrench<T>],
-    ) -> Result<(BaseAcceleration<T>, Vec<T>), WrongLength> {
+    ) -> Result<DynFloatingAccelerations<T>, WrongLength> {
         let still = vec![T::zero(); q.len()];
-        let (Wrench { force, moment }, of_joints) =
+        let DynFloatingTorques { wrench: Wrench { force, moment }, tau: of_joints } =
             self.inverse_dynamics_of_floating_loops(q, passive, qd, &still, &turning(omega), wrenches)?;
         let bias = force.into_iter().chain(moment).chain(of_joints);
         let applied = [T::zero(); BASE].into_iter().chain(self.of_closed("tau", tau)?.iter().copied());
         let mut x: Vec<T> = applied.zip(bias).map(|(applied, bias)| applied - bias).collect();
         let mut matrix = self.floating_mass_matrix_of_loops(q, passive)?;
         solve_from_the_ends(&mut matrix, &mut vec![T::zero(); x.len()], &mut x);
-        Ok((of_base(&x), x.split_off(BASE)))
+        Ok(DynFloatingAccelerations { base: of_base(&x), qdd: x.split_off(BASE) })
     }
 
     fn of_open_tree<T: Scalar>(&self, q: &[T], passive: &[T], qd: &[T], qdd: &[T]) -> Result<OfTree<T>, WrongLength> {

@@ -13,7 +13,7 @@ use crate::at_tip::AtTip;
 use crate::definition::{Definition, definitions};
 use crate::ldlt::{factor, solve};
 use crate::per_joint::PerJoint;
-use crate::{AccelerationsAndWrenches, ArmWithTips, BaseAcceleration, Constant, ContactDynamics, Scalar, Wrench};
+use crate::{ArmWithTips, BaseAcceleration, Constant, ContactDynamics, Scalar, Wrench};
 
 fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
     a.iter().zip(b).fold(T::zero(), |sum, (&a, &b)| sum + a * b)
@@ -126,5 +126,5 @@ definitions! { ContactDynamics<DOF, NV, TIPS> {
     /// As [`ContactDynamics::forward_dynamics_in_contact`]: the acceleration of the base, those of the joints, and the
     /// wrench on the robot at each of the [tips](Self::tips).
     fn forward_dynamics_in_contact(q: joints, qd: joints, tau: joints, omega: omega, base_rotation: rotation)
-        -> AccelerationsAndWrenches = |robot| robot.forward_dynamics_in_contact([q, qd, tau], omega, base_rotation);
+        -> AccelerationsAndWrenches<DOF, TIPS> = |robot| robot.forward_dynamics_in_contact([q, qd, tau], omega, base_rotation);
 } }

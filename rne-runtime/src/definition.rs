@@ -124,17 +124,19 @@ impl<'a, J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'a, J, V
 /// methods of `DynArm`.
 macro_rules! definitions {
     (@known [$($size:ident),*] $trait:path; $robot_type:ty; $(
-        $(#[$doc:meta])* fn $name:ident($($arg:ident: $kind:ident),*) -> $shape:ident = |$robot:ident| $body:expr;
+        $(#[$doc:meta])* fn $name:ident($($arg:ident: $kind:ident),*) -> $shape:ident $(<$($of:ident),*>)? =
+            |$robot:ident| $body:expr;
     )*) => {
         impl<$(const $size: usize,)* S: Constant> $trait for $robot_type {
-            $(fn $name<T: Scalar>(&self, $($arg: $crate::shapes::known!($kind)),*) -> $crate::shapes::known!($shape) {
+            $(fn $name<T: Scalar>(&self, $($arg: $crate::shapes::known!($kind)),*) -> $crate::shapes::known!($shape $(<$($of),*>)?) {
                 let $robot = self.definition();
                 From::from($body)
             })*
         }
     };
     (@counted $(
-        $(#[$doc:meta])* fn $name:ident($($arg:ident: $kind:ident),*) -> $shape:ident = |$robot:ident| $body:expr;
+        $(#[$doc:meta])* fn $name:ident($($arg:ident: $kind:ident),*) -> $shape:ident $(<$($of:ident),*>)? =
+            |$robot:ident| $body:expr;
     )*) => {
         #[cfg(feature = "std")]
         impl<S: Constant> $crate::DynArm<S> { $(
@@ -147,7 +149,7 @@ macro_rules! definitions {
             pub fn $name<T: Scalar>(
                 &self,
                 $($arg: $crate::shapes::counted!($kind)),*
-            ) -> Result<$crate::shapes::counted!($shape), $crate::WrongLength> {
+            ) -> Result<$crate::shapes::counted!($shape $(<$($of),*>)?), $crate::WrongLength> {
                 $($crate::definition::checked!(self, $arg, $kind);)*
                 let $robot = self.definition();
                 Ok(From::from($body))

@@ -10,11 +10,9 @@ use crate::mechanism::Mechanism;
 use crate::per_joint::{PerJoint, Square};
 use crate::wrench::AllStill as _;
 use crate::{
-    Arm, ArmWithTips, BaseMotion, Constant, Dual, FloatingInverseDynamicsDerivatives, FloatingTorqueDerivatives,
-    InverseDynamicsDerivatives, Scalar, TorqueDerivatives, Wrench,
+    Arm, ArmWithTips, BaseMotion, Constant, Dual, FloatingInverseDynamicsDerivatives, InverseDynamicsDerivatives,
+    Scalar, Wrench,
 };
-#[cfg(feature = "std")]
-use crate::{DynFloatingTorqueDerivatives, DynTorqueDerivatives};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     /// ∂τ/∂q and ∂τ/∂q̇ under a load that does not change.
@@ -144,7 +142,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
 
 definitions! { InverseDynamicsDerivatives<DOF> {
     /// As [`InverseDynamicsDerivatives::inverse_dynamics_derivatives`]: rows of ∂τ/∂q and ∂τ/∂q̇.
-    fn inverse_dynamics_derivatives(q: joints, qd: joints, qdd: joints) -> TorqueDerivatives =
+    fn inverse_dynamics_derivatives(q: joints, qd: joints, qdd: joints) -> TorqueDerivatives<DOF> =
         |robot| robot.torque_derivatives([q, qd, qdd], AtTip::Nothing);
 } }
 
@@ -152,6 +150,6 @@ definitions! { FloatingInverseDynamicsDerivatives<DOF, NV, TIPS> {
     /// As [`FloatingInverseDynamicsDerivatives`], with one of `wrenches` for each of the [tips](Self::tips): 6 + n
     /// rows.
     fn floating_inverse_dynamics_derivatives(q: joints, qd: joints, qdd: joints, base: motion, wrenches: wrenches)
-        -> FloatingTorqueDerivatives =
+        -> FloatingTorqueDerivatives<DOF, NV> =
         |robot| robot.floating_derivatives([q, qd, qdd], base, wrenches.all_still().as_ref());
 } }

@@ -23,8 +23,7 @@ use crate::link_state::{ForceMoment, JointMotions};
 use crate::mechanism::Mechanism;
 use crate::per_joint::{PerJoint, Square};
 use crate::{
-    ArmWithTips, BaseAcceleration, BaseMotion, BaseTwist, CentroidalMomentum, Constant, FloatingAccelerations,
-    FloatingBase, FloatingTorques, Scalar, Wrench,
+    ArmWithTips, BaseAcceleration, BaseMotion, BaseTwist, CentroidalMomentum, Constant, FloatingBase, Scalar, Wrench,
 };
 
 /// Rows of the base: x, y, z, then about x, y, z.
@@ -220,7 +219,7 @@ definitions! { FloatingBase<DOF, NV, TIPS> {
     /// As [`FloatingBase::inverse_dynamics_of_floating_base`], with one of `wrenches` for each of the
     /// [tips](Self::tips): the wrench on the base, and the torques.
     fn inverse_dynamics_of_floating_base(q: joints, qd: joints, qdd: joints, base: motion, wrenches: wrenches)
-        -> FloatingTorques = |robot| robot.torques_and_wrench([q, qd, qdd], base, AtTip::Wrenches(wrenches));
+        -> FloatingTorques<DOF> = |robot| robot.torques_and_wrench([q, qd, qdd], base, AtTip::Wrenches(wrenches));
     /// As [`FloatingBase::floating_mass_matrix`]: 6 + n rows.
     fn floating_mass_matrix(q: joints) -> velocity_matrix = |robot| robot.floating_mass_matrix(q);
     /// As [`FloatingBase::floating_bias`], with one of `wrenches` for each of the [tips](Self::tips): 6 + n numbers.
@@ -229,7 +228,7 @@ definitions! { FloatingBase<DOF, NV, TIPS> {
     /// As [`FloatingBase::floating_forward_dynamics`], with one of `wrenches` for each of the [tips](Self::tips): the
     /// acceleration of the base, and those of the joints.
     fn floating_forward_dynamics(q: joints, qd: joints, tau: joints, omega: omega, wrenches: wrenches)
-        -> FloatingAccelerations =
+        -> FloatingAccelerations<DOF> =
         |robot| robot.floating_forward_dynamics([q, qd, tau], omega, AtTip::Wrenches(wrenches));
 } }
 

@@ -3,8 +3,6 @@
 
 use core::array::from_fn;
 
-#[cfg(feature = "std")]
-use crate::DynFloatingStepDerivatives;
 use crate::at_tip::AtTip;
 use crate::definition::{Definition, definitions};
 use crate::floating_base::BASE;
@@ -16,8 +14,8 @@ use crate::pose_log::{cross, times, transposed};
 use crate::steps::moved;
 use crate::wrench::AllStill as _;
 use crate::{
-    ArmWithTips, BaseAcceleration, BaseMotion, BaseTwist, Constant, Dual, FloatingEulerStepDerivatives,
-    FloatingStepDerivatives, Pose, Scalar, Wrench,
+    ArmWithTips, BaseAcceleration, BaseMotion, BaseTwist, Constant, Dual, FloatingEulerStepDerivatives, Pose, Scalar,
+    Wrench,
 };
 
 /// The motion at which the forces are derived. It has the acceleration of the base less gravity, so its field `gravity`
@@ -170,7 +168,7 @@ definitions! { FloatingEulerStepDerivatives<DOF, NV, TIPS> {
     /// As [`FloatingEulerStepDerivatives`], with one of `wrenches` for each of the [tips](Self::tips): 6 + n rows.
     fn floating_euler_step_derivatives(
         q: joints, qd: joints, tau: joints, pose: pose, twist: twist, step: number, wrenches: wrenches
-    ) -> FloatingStepDerivatives = |robot| {
+    ) -> FloatingStepDerivatives<DOF, NV> = |robot| {
         let still = wrenches.all_still();
         robot.floating_step_derivatives([q, qd, tau], (pose, twist), step, wrenches, still.as_ref())
     };

@@ -1,29 +1,10 @@
 //! How the torques of a robot with a floating base change with its state, and the matrices of Pinocchio.
 
 use crate::pose_log::cross;
-use crate::shapes::records;
-use crate::{BaseMotion, Scalar, Wrench};
+use crate::{BaseMotion, FloatingTorqueDerivatives, Scalar, Wrench};
 
 /// Columns of the base: three linear ones, then three angular ones.
 const BASE: usize = 6;
-
-records! {
-    /// The derivatives of the wrench on a floating base and of the torques, for one state.
-    ///
-    /// `NV` = `DOF` + 6 rows: the force on the base (N), the moment about the origin of frame 0 (N m), both in axes of
-    /// frame 0, then the torques (N m, or N for a prismatic joint). Columns are per rad or m, and per rad/s or m/s.
-    ///
-    /// Elements that no state makes differ from zero are zero, and cost no operation: those of joints on different
-    /// branches.
-    FloatingTorqueDerivatives<DOF, NV>, DynFloatingTorqueDerivatives {
-        /// By the positions of the joints.
-        dq: [[T; DOF]; NV] | Vec<Vec<T>>,
-        /// By the velocities of the joints.
-        dqd: [[T; DOF]; NV] | Vec<Vec<T>>,
-        /// By the angular velocity of the base, in axes of frame 0.
-        domega: [[T; 3]; NV] | Vec<[T; 3]>,
-    }
-}
 
 /// How the torques of a robot with a floating base change with its state. The base, `NV` and the tips are those of
 /// [`FloatingBase`](crate::FloatingBase).
@@ -78,7 +59,7 @@ impl<const DOF: usize, const NV: usize, T: Scalar> FloatingTorqueDerivatives<DOF
 }
 
 #[cfg(feature = "std")]
-impl<T: Scalar> DynFloatingTorqueDerivatives<T> {
+impl<T: Scalar> crate::DynFloatingTorqueDerivatives<T> {
     /// As [`FloatingTorqueDerivatives::to_pinocchio`], of a mass matrix with 6 + n rows. Rows that `mass` lacks are
     /// left out.
     #[must_use]

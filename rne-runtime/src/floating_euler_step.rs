@@ -6,26 +6,11 @@ use core::array::from_fn;
 
 #[cfg(feature = "arm")]
 use crate::pose_log::{dot, times, transposed};
-use crate::shapes::records;
 #[cfg(feature = "arm")]
 use crate::steps::moved;
 #[cfg(feature = "arm")]
 use crate::{ArmWithTips, BaseAcceleration, Constant, at_tip::AtTip, definition::definitions};
-use crate::{BaseTwist, Pose, Scalar, Wrench};
-
-records! {
-    /// The state of a robot with a floating base, after a step.
-    FloatingNextState<DOF>, DynFloatingNextState {
-        /// The pose of frame 0 in the world.
-        pose: Pose<T> | Pose<T>,
-        /// The velocity of frame 0, in its axes, m/s and rad/s.
-        twist: BaseTwist<T> | BaseTwist<T>,
-        /// Positions of the joints, rad or m.
-        q: [T; DOF] | Vec<T>,
-        /// Velocities of the joints, rad/s or m/s.
-        qd: [T; DOF] | Vec<T>,
-    }
-}
+use crate::{BaseTwist, FloatingNextState, Pose, Scalar, Wrench};
 
 /// A step of the semi-implicit Euler method of a robot with a floating base, under torques and wrenches that do not
 /// change during the step. The base, the tips and the wrenches are those of [`FloatingBase`](crate::FloatingBase).
@@ -109,7 +94,7 @@ definitions! { FloatingEulerStep<DOF, TIPS> {
     /// As [`FloatingEulerStep::floating_euler_step`], with one of `wrenches` for each of the [tips](Self::tips).
     fn floating_euler_step(
         q: joints, qd: joints, tau: joints, pose: pose, twist: twist, step: number, wrenches: wrenches
-    ) -> FloatingNextState = |robot| {
+    ) -> FloatingNextState<DOF> = |robot| {
         let (base, qdd) = robot.floating_forward_dynamics([q, qd, tau], &twist.angular, AtTip::Wrenches(wrenches));
         let (pose, twist) = next_of_base((pose, twist), &base, &robot.mechanism.gravity.map(S::to), step);
         let [q, qd] = [q, qd].map(|x| robot.list(x));

@@ -1,7 +1,5 @@
 //! Second derivatives of weighted torques for optimisers, and those of an [`Arm`] by dual numbers of dual numbers.
 
-use crate::Scalar;
-use crate::shapes::records;
 #[cfg(feature = "arm")]
 use crate::{
     Arm, Constant, Dual,
@@ -9,25 +7,7 @@ use crate::{
     definition::{Definition, definitions},
     per_joint::{PerJoint, Square},
 };
-
-records! {
-    /// The second derivatives of λᵀτ for one state: of the torques, each times its multiplier and added up. Element (i,
-    /// j) is by the motion of joint i and by that of joint j.
-    ///
-    /// Those by q̇ and q̈ and by q̈ twice are zero: the torques are linear in q̈, with M(q).
-    ///
-    /// Units: of λᵀτ per rad or m, rad/s or m/s, rad/s² or m/s² of both joints.
-    TorqueHessian<DOF>, DynTorqueHessian {
-        /// ∂²(λᵀτ)/∂q_i∂q_j: symmetric.
-        dq_dq: [[T; DOF]; DOF] | Vec<Vec<T>>,
-        /// ∂²(λᵀτ)/∂q_i∂q̇_j.
-        dq_dqd: [[T; DOF]; DOF] | Vec<Vec<T>>,
-        /// ∂²(λᵀτ)/∂q̇_i∂q̇_j: symmetric.
-        dqd_dqd: [[T; DOF]; DOF] | Vec<Vec<T>>,
-        /// ∂²(λᵀτ)/∂q_i∂q̈_j, ∂(M(q) λ)_j/∂q_i.
-        dq_dqdd: [[T; DOF]; DOF] | Vec<Vec<T>>,
-    }
-}
+use crate::{Scalar, TorqueHessian};
 
 /// How the gradient of a weighted sum of the torques changes with the motion: what a Lagrangian with the equations of
 /// motion has in its Hessian.
@@ -73,6 +53,6 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
 #[cfg(feature = "arm")]
 definitions! { InverseDynamicsHessian<DOF> {
     /// As [`InverseDynamicsHessian::torque_hessian`].
-    fn torque_hessian(q: joints, qd: joints, qdd: joints, multipliers: joints) -> TorqueHessian =
+    fn torque_hessian(q: joints, qd: joints, qdd: joints, multipliers: joints) -> TorqueHessian<DOF> =
         |robot| robot.torque_hessian([q, qd, qdd], multipliers);
 } }

@@ -1,7 +1,5 @@
 //! The step of the semi-implicit Euler method, and its derivatives by the state and by the torques.
 
-use crate::Scalar;
-use crate::shapes::records;
 #[cfg(feature = "arm")]
 use crate::{
     Arm, Constant,
@@ -9,40 +7,7 @@ use crate::{
     definition::definitions,
     steps::{POSITION, RATE, moved, moved_by},
 };
-
-records! {
-    /// The state of a robot after a step.
-    NextState<DOF>, DynNextState {
-        /// Positions, rad or m.
-        q: [T; DOF] | Vec<T>,
-        /// Velocities, rad/s or m/s.
-        qd: [T; DOF] | Vec<T>,
-    }
-}
-
-records! {
-    /// The derivatives of `DOF` positions or velocities after a step. Row i belongs to position or velocity i of the
-    /// next state, column j to joint j.
-    StepDerivatives<DOF>, DynStepDerivatives {
-        /// By the positions, per rad or m.
-        dq: [[T; DOF]; DOF] | Vec<Vec<T>>,
-        /// By the velocities, per rad/s or m/s.
-        dqd: [[T; DOF]; DOF] | Vec<Vec<T>>,
-        /// By the torques, per N m or N.
-        dtau: [[T; DOF]; DOF] | Vec<Vec<T>>,
-    }
-}
-
-records! {
-    /// The linear model of a step: with the state x = (q, q̇), the changes δx' = A δx + B δτ. The rows of A are `dq`
-    /// beside `dqd`, those of B are `dtau`, of the positions above the velocities.
-    NextStateDerivatives<DOF>, DynNextStateDerivatives {
-        /// Derivatives of the next positions.
-        q: StepDerivatives<DOF, T> | DynStepDerivatives<T>,
-        /// Derivatives of the next velocities.
-        qd: StepDerivatives<DOF, T> | DynStepDerivatives<T>,
-    }
-}
+use crate::{NextState, NextStateDerivatives, Scalar};
 
 /// A step of the semi-implicit Euler method under torques that do not change during the step.
 pub trait EulerStep<const DOF: usize> {
@@ -76,7 +41,7 @@ pub trait EulerStepDerivatives<const DOF: usize> {
 #[cfg(feature = "arm")]
 definitions! { EulerStep<DOF> {
     /// As [`EulerStep::euler_step`].
-    fn euler_step(q: joints, qd: joints, tau: joints, step: number) -> NextState = |robot| {
+    fn euler_step(q: joints, qd: joints, tau: joints, step: number) -> NextState<DOF> = |robot| {
         let [position, rate] = [q, qd].map(|x| robot.list(x));
         let next = moved(&rate, &robot.forward_dynamics([q, qd, tau], AtTip::Nothing), step);
         (moved(&position, &next, step), next)
@@ -86,7 +51,7 @@ definitions! { EulerStep<DOF> {
 #[cfg(feature = "arm")]
 definitions! { EulerStepDerivatives<DOF> {
     /// As [`EulerStepDerivatives::euler_step_derivatives`].
-    fn euler_step_derivatives(q: joints, qd: joints, tau: joints, step: number) -> NextStateDerivatives = |robot| {
+    fn euler_step_derivatives(q: joints, qd: joints, tau: joints, step: number) -> NextStateDerivatives<DOF> = |robot| {
         let (dq, dqd, dtau) = robot.acceleration_derivatives([q, qd, tau], AtTip::Nothing, AtTip::Nothing);
         let rates = moved_by(RATE, &[dq, dqd, dtau], step);
         let [by_q, by_qd, by_tau] = moved_by(POSITION, &rates, step);

@@ -83,6 +83,7 @@ mod link_state;
 #[cfg(all(feature = "arm", feature = "std"))]
 mod load;
 #[cfg(feature = "machine")]
+#[doc(hidden)]
 pub mod machine;
 #[cfg(feature = "arm")]
 mod mass_matrix;
@@ -95,6 +96,7 @@ mod motors;
 #[cfg(feature = "arm")]
 mod mount;
 mod names;
+mod numbers;
 mod observer;
 mod operational_space;
 mod operations;
@@ -109,6 +111,7 @@ mod pose_log;
 #[doc(hidden)]
 pub mod processor;
 mod quaternion;
+mod records;
 mod registers;
 #[cfg(feature = "arm")]
 mod regressor;
@@ -143,15 +146,7 @@ pub use batch::{
     BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives,
     BatchMassMatrix, BatchScalar, LengthMismatch, VectorUnit,
 };
-#[cfg(feature = "std")]
-pub use capability::DynTorqueDerivatives;
-pub use capability::{
-    AccelerationsAndWrenches, Actuation, AtFrame, BaseAcceleration, CentreOfMass, CentroidalMomentum, ClosedLoops,
-    ClosureStep, ContactDynamics, CoriolisMatrix, Energy, FloatingAccelerations, FloatingBase, FloatingClosedLoops,
-    FloatingEnergy, FloatingKinematics, FloatingRegressor, FloatingTorques, ForwardDynamics, FrameKinematics,
-    InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumAndRate,
-    MomentumObserver, MovingBase, PayloadDynamics, Regressor, TipWrenches, TorqueDerivatives, frame_index,
-};
+pub use capability::*;
 pub use computed_torque::{ComputedTorque, Desired};
 pub use dual::Dual;
 #[cfg(all(feature = "arm", feature = "std"))]
@@ -160,27 +155,22 @@ pub use dyn_arm::{DynArm, DynTrace};
 pub use error::{LoadError, WrongJointCount, WrongLength};
 #[cfg(feature = "evaluate")]
 pub use evaluate::Inputs;
-#[cfg(feature = "std")]
-pub use floating_derivatives::DynFloatingTorqueDerivatives;
-pub use floating_derivatives::{FloatingInverseDynamicsDerivatives, FloatingTorqueDerivatives};
-#[cfg(feature = "std")]
-pub use floating_euler_step::DynFloatingNextState;
-pub use floating_euler_step::{FloatingEulerStep, FloatingNextState};
+pub use floating_derivatives::FloatingInverseDynamicsDerivatives;
+pub use floating_euler_step::FloatingEulerStep;
 pub use floating_integrator::{FloatingIntegratorStep, FloatingState};
 pub use floating_runge_kutta::FloatingRungeKuttaStepDerivatives;
-#[cfg(feature = "std")]
-pub use floating_step_derivatives::DynFloatingStepDerivatives;
-pub use floating_step_derivatives::{FloatingEulerStepDerivatives, FloatingStepDerivatives};
-#[cfg(feature = "std")]
-pub use hessian::DynTorqueHessian;
-pub use hessian::{InverseDynamicsHessian, TorqueHessian};
-#[cfg(feature = "std")]
-pub use integrator::{DynNextState, DynNextStateDerivatives, DynStepDerivatives};
-pub use integrator::{EulerStep, EulerStepDerivatives, NextState, NextStateDerivatives, StepDerivatives};
+pub use floating_step_derivatives::FloatingEulerStepDerivatives;
+pub use hessian::InverseDynamicsHessian;
+pub use integrator::{EulerStep, EulerStepDerivatives};
 pub use jacobian_derivatives::JacobianDerivatives;
 pub use joint_order::{JointOrderError, joint_order};
 #[doc(hidden)]
 pub use names::unknown_frame;
+#[doc(hidden)]
+pub use numbers::Numbers;
+#[cfg(any(feature = "evaluate", feature = "machine"))]
+#[doc(hidden)]
+pub use numbers::Shaped;
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use observer::DynObserverState;
 pub use observer::ObserverState;
@@ -188,12 +178,11 @@ pub use observer::ObserverState;
 pub use operational_space::operational_space;
 pub use operational_space::{dynamically_consistent_inverse, operational_space_inertia};
 pub use operations::Operations;
-pub use optimisation::{AccelerationDerivatives, ForwardDynamicsDerivatives, InverseDynamicsGradient, TorqueGradient};
-#[cfg(feature = "std")]
-pub use optimisation::{DynAccelerationDerivatives, DynTorqueGradient};
+pub use optimisation::{ForwardDynamicsDerivatives, InverseDynamicsGradient};
 pub use payload::{NegativeMass, Payload};
 pub use pose::Pose;
 pub use quaternion::Quaternion;
+pub use records::*;
 pub use runge_kutta::{RungeKuttaStep, RungeKuttaStepDerivatives};
 pub use scalar::{Constant, RunTimeParameter, Scalar};
 #[cfg(feature = "arm")]

@@ -34,7 +34,7 @@ use crate::mechanism::Mechanism;
 use crate::mount::Mount;
 use crate::per_joint::PerJoint;
 use crate::seven_steps;
-use crate::{Arm, BaseMotion, BaseTwist, Constant, MomentumAndRate, MomentumObserver, Payload, Scalar};
+use crate::{Arm, BaseMotion, BaseTwist, Constant, MomentumObserver, Payload, Scalar};
 
 /// Link i and all that it carries, as one body.
 #[derive(Clone, Copy, Debug)]
@@ -208,14 +208,15 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         self,
         [q, qd, tau]: [&[T]; 3],
         payload: Option<&Payload<T>>,
-    ) -> [J::Of<T>; 2] {
+    ) -> (J::Of<T>, J::Of<T>) {
         let ([q, qd], tau) = ([q, qd].map(|values| self.of_joints(values)), self.coordinates.applied(tau));
-        self.coordinates.rows(self.mechanism.momentum_and_rate(q.as_ref(), qd.as_ref(), tau.as_ref(), payload))
+        let both = self.mechanism.momentum_and_rate(q.as_ref(), qd.as_ref(), tau.as_ref(), payload);
+        self.coordinates.rows(both).into()
     }
 }
 
 definitions! { MomentumObserver<DOF> {
     /// As [`MomentumObserver::momentum_and_rate`]: the momentum of every joint, and its rate without external torques.
-    fn momentum_and_rate(q: joints, qd: joints, tau: joints) -> MomentumAndRate =
+    fn momentum_and_rate(q: joints, qd: joints, tau: joints) -> MomentumAndRate<DOF> =
         |robot| robot.momentum_and_rate([q, qd, tau], None);
 } }

@@ -167,8 +167,8 @@ impl<T: Scalar> DynObserverState<T> {
         qd: &[T],
         tau: &[T],
     ) -> Result<Vec<T>, WrongLength> {
-        let [momentum, rate] = arm.momentum_and_rate(q, qd, tau)?;
-        self.advance(self.period, momentum, rate)
+        let now = arm.momentum_and_rate(q, qd, tau)?;
+        self.advance(self.period, now.momentum, now.rate)
     }
 
     /// One tick of any length, `period` s after the tick before: as [`update`](Self::update), with what

@@ -3,7 +3,7 @@
 
 use core::array::from_fn;
 
-use crate::shapes::records;
+use crate::{AccelerationDerivatives, Dual, Scalar, TorqueGradient};
 #[cfg(feature = "arm")]
 use crate::{
     Arm, Constant,
@@ -12,21 +12,6 @@ use crate::{
     definition::{Definition, definitions},
     per_joint::{PerJoint, Square},
 };
-use crate::{Dual, Scalar};
-
-records! {
-    /// The derivatives of λᵀτ for one state: of the torques, each times its multiplier and added up.
-    ///
-    /// Units: of λᵀτ per rad or m, per rad/s or m/s, and per rad/s² or m/s².
-    TorqueGradient<DOF>, DynTorqueGradient {
-        /// ∂(λᵀτ)/∂q_j, λᵀ ∂τ/∂q.
-        dq: [T; DOF] | Vec<T>,
-        /// ∂(λᵀτ)/∂q̇_j, λᵀ ∂τ/∂q̇.
-        dqd: [T; DOF] | Vec<T>,
-        /// ∂(λᵀτ)/∂q̈_j, M(q) λ.
-        dqdd: [T; DOF] | Vec<T>,
-    }
-}
 
 /// How a weighted sum of the torques changes with the motion: the product of a vector and the Jacobian of the inverse
 /// dynamics, as the gradient of a Lagrangian has it.
@@ -45,21 +30,6 @@ pub trait InverseDynamicsGradient<const DOF: usize> {
         qdd: &[T; DOF],
         multipliers: &[T; DOF],
     ) -> TorqueGradient<DOF, T>;
-}
-
-records! {
-    /// The derivatives of the accelerations for one state. Row i is acceleration i, column j is joint j.
-    ///
-    /// Units: of an acceleration (rad/s², or m/s² for a prismatic joint) per rad or m, per rad/s or m/s, and per N m or
-    /// N.
-    AccelerationDerivatives<DOF>, DynAccelerationDerivatives {
-        /// ∂q̈_i/∂q_j.
-        dq: [[T; DOF]; DOF] | Vec<Vec<T>>,
-        /// ∂q̈_i/∂q̇_j.
-        dqd: [[T; DOF]; DOF] | Vec<Vec<T>>,
-        /// ∂q̈_i/∂τ_j, M(q)⁻¹: symmetric.
-        dtau: [[T; DOF]; DOF] | Vec<Vec<T>>,
-    }
 }
 
 /// How the accelerations change with the state and with the torques: the linear model that shooting methods and linear
@@ -160,13 +130,13 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
 #[cfg(feature = "arm")]
 definitions! { InverseDynamicsGradient<DOF> {
     /// As [`InverseDynamicsGradient::torque_gradient`].
-    fn torque_gradient(q: joints, qd: joints, qdd: joints, multipliers: joints) -> TorqueGradient =
+    fn torque_gradient(q: joints, qd: joints, qdd: joints, multipliers: joints) -> TorqueGradient<DOF> =
         |robot| robot.torque_gradient([q, qd, qdd], multipliers);
 } }
 
 #[cfg(feature = "arm")]
 definitions! { ForwardDynamicsDerivatives<DOF> {
     /// As [`ForwardDynamicsDerivatives::forward_dynamics_derivatives`].
-    fn forward_dynamics_derivatives(q: joints, qd: joints, tau: joints) -> AccelerationDerivatives =
+    fn forward_dynamics_derivatives(q: joints, qd: joints, tau: joints) -> AccelerationDerivatives<DOF> =
         |robot| robot.acceleration_derivatives([q, qd, tau], AtTip::Nothing, AtTip::Nothing);
 } }

@@ -2,11 +2,7 @@
 
 use crate::at_tip::AtTip;
 use crate::definition::definitions;
-use crate::{
-    AccelerationDerivatives, Arm, Constant, MomentumAndRate, Payload, PayloadDynamics, Scalar, TorqueDerivatives,
-};
-#[cfg(feature = "std")]
-use crate::{DynAccelerationDerivatives, DynTorqueDerivatives};
+use crate::{Arm, Constant, Payload, PayloadDynamics, Scalar};
 
 definitions! { PayloadDynamics<DOF> {
     /// As [`PayloadDynamics::gravity_torques_with_payload`].
@@ -23,12 +19,12 @@ definitions! { PayloadDynamics<DOF> {
         |robot| robot.forward_dynamics([q, qd, tau], AtTip::Payload(payload));
     /// As [`PayloadDynamics::inverse_dynamics_derivatives_with_payload`]: rows of ∂τ/∂q and ∂τ/∂q̇.
     fn inverse_dynamics_derivatives_with_payload(q: joints, qd: joints, qdd: joints, payload: payload)
-        -> TorqueDerivatives = |robot| robot.torque_derivatives([q, qd, qdd], AtTip::Payload(&payload.still()));
+        -> TorqueDerivatives<DOF> = |robot| robot.torque_derivatives([q, qd, qdd], AtTip::Payload(&payload.still()));
     /// As [`PayloadDynamics::momentum_and_rate_with_payload`]: the momenta, then their rates.
-    fn momentum_and_rate_with_payload(q: joints, qd: joints, tau: joints, payload: payload) -> MomentumAndRate =
+    fn momentum_and_rate_with_payload(q: joints, qd: joints, tau: joints, payload: payload) -> MomentumAndRate<DOF> =
         |robot| robot.momentum_and_rate([q, qd, tau], Some(payload));
     /// As [`PayloadDynamics::forward_dynamics_derivatives_with_payload`].
     fn forward_dynamics_derivatives_with_payload(q: joints, qd: joints, tau: joints, payload: payload)
-        -> AccelerationDerivatives =
+        -> AccelerationDerivatives<DOF> =
         |robot| robot.acceleration_derivatives([q, qd, tau], AtTip::Payload(payload), AtTip::Payload(&payload.still()));
 } }

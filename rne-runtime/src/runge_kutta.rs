@@ -4,7 +4,7 @@
 use core::convert::Infallible;
 
 #[cfg(all(feature = "arm", feature = "std"))]
-use crate::{Constant, DynNextState, DynNextStateDerivatives, at_tip::AtTip, definition::definitions};
+use crate::{Constant, at_tip::AtTip, definition::definitions};
 use crate::{
     ForwardDynamics, ForwardDynamicsDerivatives, NextState, NextStateDerivatives, Scalar, StepDerivatives, steps,
 };
@@ -80,7 +80,7 @@ impl<const DOF: usize, R> RungeKuttaStepDerivatives<DOF> for R where
 #[cfg(all(feature = "arm", feature = "std"))]
 definitions! { @counted
     /// As [`RungeKuttaStep::runge_kutta_step`].
-    fn runge_kutta_step(q: joints, qd: joints, tau: joints, step: number) -> NextState = |robot| {
+    fn runge_kutta_step(q: joints, qd: joints, tau: joints, step: number) -> NextState<DOF> = |robot| {
         let accelerations =
             |q: &Vec<T>, qd: &Vec<T>| Ok::<_, Infallible>(robot.forward_dynamics([q, qd, tau], AtTip::Nothing));
         let Ok([q, qd]) = steps::runge_kutta_step(accelerations, [&q.to_vec(), &qd.to_vec()], |_| step);
@@ -88,7 +88,7 @@ definitions! { @counted
     };
     /// As [`RungeKuttaStepDerivatives::runge_kutta_step_derivatives`].
     fn runge_kutta_step_derivatives(q: joints, qd: joints, tau: joints, step: number)
-        -> NextStateDerivatives = |robot| {
+        -> NextStateDerivatives<DOF> = |robot| {
         let accelerations =
             |q: &Vec<T>, qd: &Vec<T>| Ok::<_, Infallible>(robot.forward_dynamics([q, qd, tau], AtTip::Nothing));
         let derivatives = |q: &Vec<T>, qd: &Vec<T>| {

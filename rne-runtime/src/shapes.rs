@@ -1,6 +1,6 @@
-//! The types of arguments, results and records, where the number of joints is known and where it is not.
+//! The types of arguments and results, where the number of joints is known and where it is not.
 
-/// The type of an argument, of a result or of a field of a record where the number of joints is known.
+/// Where the number of joints is known.
 #[cfg(feature = "arm")]
 macro_rules! known {
     (joints) => { &[T; DOF] };
@@ -18,19 +18,7 @@ macro_rules! known {
     (tip_rows) => { [[[T; NV]; 6]; TIPS] };
     (tip_vectors) => { [[T; 6]; TIPS] };
     (regressor) => { [[[T; 10]; DOF]; DOF] };
-    (TorqueDerivatives) => { TorqueDerivatives<DOF, T> };
-    (MomentumAndRate) => { MomentumAndRate<DOF, T> };
-    (TorqueGradient) => { TorqueGradient<DOF, T> };
-    (TorqueHessian) => { TorqueHessian<DOF, T> };
-    (AccelerationDerivatives) => { AccelerationDerivatives<DOF, T> };
-    (NextState) => { NextState<DOF, T> };
-    (NextStateDerivatives) => { NextStateDerivatives<DOF, T> };
-    (FloatingTorques) => { FloatingTorques<DOF, T> };
-    (FloatingAccelerations) => { FloatingAccelerations<DOF, T> };
-    (AccelerationsAndWrenches) => { AccelerationsAndWrenches<DOF, TIPS, T> };
-    (FloatingTorqueDerivatives) => { FloatingTorqueDerivatives<DOF, NV, T> };
-    (FloatingNextState) => { FloatingNextState<DOF, T> };
-    (FloatingStepDerivatives) => { FloatingStepDerivatives<DOF, NV, T> };
+    ($record:ident<$($size:ident),*>) => { $crate::records::$record<$($size,)* T> };
     ($of_every_robot:ident) => { $crate::shapes::every!($of_every_robot) };
 }
 #[cfg(feature = "arm")]
@@ -54,19 +42,7 @@ macro_rules! counted {
     (tip_rows) => { Vec<[Vec<T>; 6]> };
     (tip_vectors) => { Vec<[T; 6]> };
     (regressor) => { Vec<Vec<[T; 10]>> };
-    (TorqueDerivatives) => { DynTorqueDerivatives<T> };
-    (MomentumAndRate) => { [Vec<T>; 2] };
-    (TorqueGradient) => { DynTorqueGradient<T> };
-    (TorqueHessian) => { DynTorqueHessian<T> };
-    (AccelerationDerivatives) => { DynAccelerationDerivatives<T> };
-    (NextState) => { DynNextState<T> };
-    (NextStateDerivatives) => { DynNextStateDerivatives<T> };
-    (FloatingTorques) => { (Wrench<T>, Vec<T>) };
-    (FloatingAccelerations) => { (BaseAcceleration<T>, Vec<T>) };
-    (AccelerationsAndWrenches) => { (BaseAcceleration<T>, Vec<T>, Vec<Wrench<T>>) };
-    (FloatingTorqueDerivatives) => { DynFloatingTorqueDerivatives<T> };
-    (FloatingNextState) => { DynFloatingNextState<T> };
-    (FloatingStepDerivatives) => { DynFloatingStepDerivatives<T> };
+    ($record:ident<$($size:ident),*>) => { $crate::records::of_lists::$record<T> };
     ($of_every_robot:ident) => { $crate::shapes::every!($of_every_robot) };
 }
 #[cfg(all(feature = "arm", feature = "std"))]
@@ -89,37 +65,3 @@ macro_rules! every {
 }
 #[cfg(feature = "arm")]
 pub(crate) use every;
-
-/// Records that functions return: with arrays, and with lists for `DynArm`.
-macro_rules! records {
-    ($(
-        $(#[$doc:meta])*
-        $name:ident<$($size:ident),*>, $counted:ident {
-            $($(#[$field_doc:meta])* $field:ident: $known:ty | $lists:ty,)*
-        }
-    )*) => { $(
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct $name<$(const $size: usize,)* T> { $($(#[$field_doc])* pub $field: $known),* }
-
-        #[doc = concat!("[`", stringify!($name), "`] of a robot with a number of joints known at run time.")]
-        #[cfg(feature = "std")]
-        #[derive(Clone, Debug, PartialEq)]
-        pub struct $counted<T> { $($(#[$field_doc])* pub $field: $lists),* }
-
-        #[cfg(feature = "arm")]
-        impl<$(const $size: usize,)* T> From<($($known,)*)> for $name<$($size,)* T> {
-            fn from(($($field,)*): ($($known,)*)) -> Self {
-                Self { $($field),* }
-            }
-        }
-
-        #[cfg(all(feature = "arm", feature = "std"))]
-        impl<T> From<($($lists,)*)> for $counted<T> {
-            fn from(($($field,)*): ($($lists,)*)) -> Self {
-                Self { $($field),* }
-            }
-        }
-    )* };
-}
-pub(crate) use records;

@@ -3,9 +3,7 @@
 use crate::at_tip::AtTip;
 use crate::definition::definitions;
 use crate::wrench::AllStill as _;
-use crate::{AccelerationDerivatives, ArmWithTips, Constant, Scalar, TipWrenches, TorqueDerivatives, Wrench};
-#[cfg(feature = "std")]
-use crate::{DynAccelerationDerivatives, DynTorqueDerivatives};
+use crate::{ArmWithTips, Constant, Scalar, TipWrenches, Wrench};
 
 definitions! { TipWrenches<DOF, TIPS> {
     /// As [`TipWrenches::inverse_dynamics_with_wrenches`]: torques when the robot exerts `wrenches`, one at each of its
@@ -19,12 +17,12 @@ definitions! { TipWrenches<DOF, TIPS> {
     /// As [`TipWrenches::inverse_dynamics_derivatives_with_wrenches`], with one of `wrenches` for each of the
     /// [tips](Self::tips).
     fn inverse_dynamics_derivatives_with_wrenches(q: joints, qd: joints, qdd: joints, wrenches: wrenches)
-        -> TorqueDerivatives =
+        -> TorqueDerivatives<DOF> =
         |robot| robot.torque_derivatives([q, qd, qdd], AtTip::Wrenches(wrenches.all_still().as_ref()));
     /// As [`TipWrenches::forward_dynamics_derivatives_with_wrenches`], with one of `wrenches` for each of the
     /// [tips](Self::tips).
     fn forward_dynamics_derivatives_with_wrenches(q: joints, qd: joints, tau: joints, wrenches: wrenches)
-        -> AccelerationDerivatives = |robot| {
+        -> AccelerationDerivatives<DOF> = |robot| {
             let still = wrenches.all_still();
             robot.acceleration_derivatives(
                 [q, qd, tau],

@@ -4,7 +4,8 @@
 
 use rne_model::{ContactKind, FixedFrame, Transform};
 use rne_runtime::{
-    AccelerationsAndWrenches, Arm, ContactDynamics, DynArm, FloatingBase, FloatingKinematics, ForwardDynamics, Wrench,
+    AccelerationsAndWrenches, Arm, ContactDynamics, DynAccelerationsAndWrenches, DynArm, DynFloatingAccelerations,
+    FloatingBase, FloatingKinematics, ForwardDynamics, Wrench,
 };
 
 const JOINTS: usize = 3;
@@ -69,8 +70,10 @@ fn both_kinds_of_arm_give_the_solution_of_the_equations() {
         let (arm, of_file) = robot(contacts);
         let tips = of_file.tips().first_chunk::<TIPS>().expect("three tips");
         let found = held(&arm, &of_file);
-        let (base, qdd, wrenches) =
-            of_file.forward_dynamics_in_contact(&Q, &QD, &TAU, &OMEGA, &TURNED).expect("their lengths");
+        let DynAccelerationsAndWrenches {
+            accelerations: DynFloatingAccelerations { base, qdd },
+            wrenches_on_robot: wrenches,
+        } = of_file.forward_dynamics_in_contact(&Q, &QD, &TAU, &OMEGA, &TURNED).expect("their lengths");
         assert_eq!(found.accelerations.base, base, "{contacts}");
         assert_eq!(found.accelerations.qdd.as_slice(), qdd, "{contacts}");
         assert_eq!(found.wrenches_on_robot.as_slice(), wrenches, "{contacts}");

@@ -7,9 +7,9 @@ use num_dual::Dual64;
 use rne_model::Convention::{Modified, Standard};
 use rne_model::Model;
 use rne_runtime::{
-    Arm, CentreOfMass, Constant, CoriolisMatrix, Dual, DynArm, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, Pose, Regressor,
-    Scalar, Wrench, WrongLength,
+    Arm, CentreOfMass, Constant, CoriolisMatrix, Dual, DynArm, DynMomentumAndRate, Energy, ForwardDynamics,
+    InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase,
+    Pose, Regressor, Scalar, Wrench, WrongLength,
 };
 use simba::simd::{AutoF32x4, AutoF64x4, SimdValue, WideF64x4};
 
@@ -66,6 +66,7 @@ fn all<T: Scalar>(arm: &Arm<6, impl Constant>, [q, qd, qdd]: &[[T; 6]; 3]) -> Ve
 
 fn all_of_dyn(arm: &DynArm, [q, qd, qdd]: &[[f64; 6]; 3]) -> Result<Vec<Vec<f64>>, WrongLength> {
     let derivatives = arm.inverse_dynamics_derivatives(q, qd, qdd)?;
+    let DynMomentumAndRate { momentum, rate } = arm.momentum_and_rate(q, qd, qdd)?;
     Ok(vec![
         arm.mass_matrix(q)?.concat(),
         arm.coriolis_matrix(q, qd)?.concat(),
@@ -84,7 +85,7 @@ fn all_of_dyn(arm: &DynArm, [q, qd, qdd]: &[[f64; 6]; 3]) -> Result<Vec<Vec<f64>
         derivatives.dqd.concat(),
         arm.joint_wrenches(q, qd, qdd)?.iter().flat_map(of_wrench).collect(),
         arm.inverse_dynamics_on_moving_base(q, qd, qdd, &SIX_BASE)?,
-        arm.momentum_and_rate(q, qd, qdd)?.concat(),
+        [momentum, rate].concat(),
     ])
 }
 

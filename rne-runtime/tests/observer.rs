@@ -74,8 +74,8 @@ fn a_tick_may_have_any_length() {
     let mut observer = DynObserverState::new(1, gain, f64::NAN);
     let mut time = 0.0;
     for (k, period) in [0.0, 1e-3, 0.02, 3e-4, 0.1, 0.0, 1e-6].into_iter().enumerate() {
-        let [momentum, rate] = tick();
-        let seen = observer.advance(period, momentum, rate).expect("one joint")[0];
+        let now = tick();
+        let seen = observer.advance(period, now.momentum, now.rate).expect("one joint")[0];
         time += if k == 0 { 0.0 } else { period };
         let expected = -external * (-TAU * gain * time).exp_m1();
         assert!((seen - expected).abs() < 1e-13 * external, "{time} s: {seen} is not {expected}");
@@ -83,8 +83,8 @@ fn a_tick_may_have_any_length() {
     let [mut equal, mut fixed] = [0.0, 1e-3].map(|period| DynObserverState::new(1, gain, period));
     for k in 0..50 {
         let [q, qd] = [[0.1 * f64::from(k)], [f64::from(k).sin()]];
-        let [momentum, rate] = arm.momentum_and_rate(&q, &qd, &[1.0]).expect("one joint");
-        let seen = equal.advance(1e-3, momentum, rate);
+        let now = arm.momentum_and_rate(&q, &qd, &[1.0]).expect("one joint");
+        let seen = equal.advance(1e-3, now.momentum, now.rate);
         assert_eq!(seen, fixed.update(&arm, &q, &qd, &[1.0]));
     }
     let wrong = observer.advance(1e-3, vec![0.0; 2], vec![0.0; 2]).expect_err("two joints");

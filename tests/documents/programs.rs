@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use rne_codegen::{Argument, Capability, Compiler, Form, Function, Returned, Step};
+use rne_codegen::{Argument, Capability, Compiler, Form, Function, Length, Record, Shape, Step};
 use rne_emit::{Selection, listing};
 
 use crate::tables::plans;
@@ -74,45 +74,27 @@ pub(crate) fn stubs() -> String {
         base_acceleration: ArrayLike | None = ..., base_gravity: ArrayLike | None = ...,
         ";
     let mut text = String::new();
-    let mut stub = |function: Function, arguments: &[(&str, Argument)], returned: Returned, summary: &str| {
+    for function in Function::ALL {
         let frame = if function.of_frame().is_some() { "frame: str | None = ..., " } else { "" };
         let payload = if function.with_payload().is_some() { "payload: ArrayLike | None = ..., " } else { "" };
-        let joints = arguments.iter().filter(|(_, kind)| *kind != Argument::Base);
-        let joints: Vec<String> = joints
-            .map(|(name, kind)| match kind {
-                Argument::Wrench
-                | Argument::Payload
-                | Argument::BaseVelocity
-                | Argument::BaseTwist
-                | Argument::BasePose
-                | Argument::BaseRotation
-                | Argument::Step => format!("{name}: ArrayLike, "),
-                Argument::Wrenches if function.is_of_floating_base() => {
+        let arguments = function.arguments().iter().filter(|argument| **argument != Argument::Base);
+        let joints: String = arguments
+            .map(|argument| match (argument.name(), argument.shape()) {
+                (name, Shape::Array(Length::Joints | Length::Passive, _)) => format!("{name}: Joints, "),
+                (name, Shape::Array(Length::Tips, _)) if function.is_of_floating_base() => {
                     format!("{name}: ArrayLike | dict[str, ArrayLike] | None = ..., ")
                 }
-                Argument::Wrenches => format!("{name}: ArrayLike | dict[str, ArrayLike], "),
-                _ => format!("{name}: Joints, "),
+                (name, Shape::Array(Length::Tips, _)) => format!("{name}: ArrayLike | dict[str, ArrayLike], "),
+                (name, _) => format!("{name}: ArrayLike, "),
             })
             .collect();
-        let joints = joints.concat();
-        let base = if arguments.iter().any(|(_, kind)| *kind == Argument::Base) { BASE } else { "" };
-        let returned = match returned {
-            Returned::Number => "Floats | float",
-            Returned::TorqueDerivatives
-            | Returned::MomentumAndRate
-            | Returned::FloatingTorques
-            | Returned::FloatingAccelerations
-            | Returned::NextState
-            | Returned::NextStateDerivatives
-            | Returned::FloatingStepDerivatives
-            | Returned::ClosureStep => "tuple[Floats, Floats]",
-            Returned::AccelerationsAndWrenches
-            | Returned::FloatingTorqueDerivatives
-            | Returned::TorqueGradient
-            | Returned::AccelerationDerivatives => "tuple[Floats, Floats, Floats]",
-            Returned::TorqueHessian | Returned::FloatingNextState => "tuple[Floats, Floats, Floats, Floats]",
-            _ => "Floats",
+        let base = if function.takes(Argument::Base) { BASE } else { "" };
+        let returned = match arrays(function.shape()) {
+            0 => "Floats | float".to_owned(),
+            1 => "Floats".to_owned(),
+            count => format!("tuple[{}]", vec!["Floats"; count].join(", ")),
         };
+        let summary = function.summary();
         // a pose of the tip has the name that it has at a frame, too
         let other = function.of_frame().filter(|_| function == Function::ForwardKinematics);
         for name in [Some(function.name()), other].into_iter().flatten() {
@@ -123,23 +105,20 @@ pub(crate) fn stubs() -> String {
                  ) -> {returned}:\n        \"\"\"{summary}\"\"\""
             );
         }
-    };
-    macro_rules! methods {
-        ($(
-            $variant:ident $axes:tt =
-                $name:ident($($argument:ident: $kind:ident),*) -> $returned:ident $(at $of_frame:ident)?:
-                $summary:literal $(, $details:literal)?;
-        )*) => {
-            $(stub(
-                Function::$variant,
-                &[$((stringify!($argument), Argument::$kind)),*],
-                Returned::$returned,
-                $summary,
-            );)*
-        };
     }
-    rne_codegen::functions!(methods);
     text
+}
+
+/// How many arrays Python returns: none for a number, one for a matrix of rows or of a record of one frame.
+fn arrays(shape: &Shape) -> usize {
+    match shape {
+        Shape::Number => 0,
+        Shape::Array(..) => 1,
+        // the matrices A and B of a step
+        Shape::Record(Record::NextStateDerivatives | Record::FloatingStepDerivatives, _) => 2,
+        Shape::Record(record, parts) if record.sizes().is_empty() => parts.len().min(1),
+        Shape::Record(_, parts) => parts.iter().map(arrays).sum(),
+    }
 }
 
 /// What every function of the PUMA 560 costs in both forms.

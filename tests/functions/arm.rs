@@ -5,7 +5,7 @@ use std::fmt;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::{Mutex, OnceLock};
 
-use rne::{BaseMotion, BaseTwist, DynArm, DynTorqueDerivatives, Payload, Pose, Scalar, Wrench};
+use rne::{BaseMotion, BaseTwist, DynArm, DynTorqueDerivatives, Numbers, Payload, Pose, Scalar, Wrench};
 use rne_codegen::plan::PlanSet;
 use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter, Program, Real};
 use rne_model::{Reader, Robot};
@@ -195,8 +195,13 @@ impl Arm {
     }
 
     /// All numbers that a function returns, in the order of its layout.
-    pub(crate) fn numbers<T: Scalar>(&self, function: Function, given: &Given<'_, T>) -> Vec<T> {
-        let Some(code) = &self.code else { return of_runtime(&self.runtime, function, given) };
+    pub(crate) fn numbers<T: Scalar + Numbers<T>>(&self, function: Function, given: &Given<'_, T>) -> Vec<T> {
+        self.of_code(function, given).unwrap_or_else(|| of_runtime(&self.runtime, function, given))
+    }
+
+    /// All numbers that the code of a function returns, if this arm has code.
+    pub(crate) fn of_code<T: Scalar>(&self, function: Function, given: &Given<'_, T>) -> Option<Vec<T>> {
+        let code = self.code.as_ref()?;
         let [q, qd, qdd, tau] = [given.q, given.qd, given.qdd, given.tau]
             .map(|array| array.iter().copied().map(Number).collect::<Vec<_>>());
         let BaseMotion { omega, omega_dot, velocity, acceleration, gravity } = given.base;
@@ -226,18 +231,18 @@ impl Arm {
         let numbers = interpreter.run(&arguments, |constant| Number(T::from_f64(constant)), sin_cos);
         let numbers: Vec<T> = numbers.expect("one per joint").into_iter().map(|Number(x)| x).collect();
         assert_eq!(numbers.len(), function.layout(rne_codegen::sizes_of(&self.robot)).len());
-        numbers
+        Some(numbers)
     }
 
     fn rows<T: Copy>(&self, numbers: &[T]) -> Vec<Vec<T>> {
         numbers.chunks(self.robot.dof()).map(<[T]>::to_vec).collect()
     }
 
-    pub(crate) fn inverse_dynamics<T: Scalar>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Vec<T> {
+    pub(crate) fn inverse_dynamics<T: Scalar + Numbers<T>>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Vec<T> {
         self.numbers(Function::InverseDynamics, &Given::of_joints(q, qd, qdd))
     }
 
-    pub(crate) fn inverse_dynamics_with_wrench<T: Scalar>(
+    pub(crate) fn inverse_dynamics_with_wrench<T: Scalar + Numbers<T>>(
         &self,
         q: &[T],
         qd: &[T],
@@ -248,7 +253,7 @@ impl Arm {
         self.numbers(Function::InverseDynamicsWithWrench, &given)
     }
 
-    pub(crate) fn inverse_dynamics_with_payload<T: Scalar>(
+    pub(crate) fn inverse_dynamics_with_payload<T: Scalar + Numbers<T>>(
         &self,
         q: &[T],
         qd: &[T],
@@ -259,7 +264,7 @@ impl Arm {
         self.numbers(Function::InverseDynamicsWithPayload, &given)
     }
 
-    pub(crate) fn inverse_dynamics_on_moving_base<T: Scalar>(
+    pub(crate) fn inverse_dynamics_on_moving_base<T: Scalar + Numbers<T>>(
         &self,
         q: &[T],
         qd: &[T],
@@ -270,74 +275,74 @@ impl Arm {
         self.numbers(Function::InverseDynamicsOnMovingBase, &given)
     }
 
-    pub(crate) fn gravity_torques<T: Scalar>(&self, q: &[T]) -> Vec<T> {
+    pub(crate) fn gravity_torques<T: Scalar + Numbers<T>>(&self, q: &[T]) -> Vec<T> {
         self.numbers(Function::GravityTorques, &Given::of_joints(q, &[], &[]))
     }
 
-    pub(crate) fn bias_torques<T: Scalar>(&self, q: &[T], qd: &[T]) -> Vec<T> {
+    pub(crate) fn bias_torques<T: Scalar + Numbers<T>>(&self, q: &[T], qd: &[T]) -> Vec<T> {
         self.numbers(Function::BiasTorques, &Given::of_joints(q, qd, &[]))
     }
 
-    pub(crate) fn mass_matrix<T: Scalar>(&self, q: &[T]) -> Vec<Vec<T>> {
+    pub(crate) fn mass_matrix<T: Scalar + Numbers<T>>(&self, q: &[T]) -> Vec<Vec<T>> {
         self.rows(&self.numbers(Function::MassMatrix, &Given::of_joints(q, &[], &[])))
     }
 
-    pub(crate) fn inverse_mass_matrix<T: Scalar>(&self, q: &[T]) -> Vec<Vec<T>> {
+    pub(crate) fn inverse_mass_matrix<T: Scalar + Numbers<T>>(&self, q: &[T]) -> Vec<Vec<T>> {
         self.rows(&self.numbers(Function::InverseMassMatrix, &Given::of_joints(q, &[], &[])))
     }
 
-    pub(crate) fn coriolis_matrix<T: Scalar>(&self, q: &[T], qd: &[T]) -> Vec<Vec<T>> {
+    pub(crate) fn coriolis_matrix<T: Scalar + Numbers<T>>(&self, q: &[T], qd: &[T]) -> Vec<Vec<T>> {
         self.rows(&self.numbers(Function::CoriolisMatrix, &Given::of_joints(q, qd, &[])))
     }
 
-    pub(crate) fn coriolis_torques<T: Scalar>(&self, q: &[T], qd: &[T]) -> Vec<T> {
+    pub(crate) fn coriolis_torques<T: Scalar + Numbers<T>>(&self, q: &[T], qd: &[T]) -> Vec<T> {
         self.numbers(Function::CoriolisTorques, &Given::of_joints(q, qd, &[]))
     }
 
-    pub(crate) fn forward_dynamics<T: Scalar>(&self, q: &[T], qd: &[T], tau: &[T]) -> Vec<T> {
+    pub(crate) fn forward_dynamics<T: Scalar + Numbers<T>>(&self, q: &[T], qd: &[T], tau: &[T]) -> Vec<T> {
         self.numbers(Function::ForwardDynamics, &Given { tau, ..Given::of_joints(q, qd, &[]) })
     }
 
-    pub(crate) fn forward_kinematics<T: Scalar>(&self, q: &[T]) -> Pose<T> {
+    pub(crate) fn forward_kinematics<T: Scalar + Numbers<T>>(&self, q: &[T]) -> Pose<T> {
         pose(&self.numbers(Function::ForwardKinematics, &Given::of_joints(q, &[], &[])))
     }
 
-    pub(crate) fn link_poses<T: Scalar>(&self, q: &[T]) -> Vec<Pose<T>> {
+    pub(crate) fn link_poses<T: Scalar + Numbers<T>>(&self, q: &[T]) -> Vec<Pose<T>> {
         self.numbers(Function::LinkPoses, &Given::of_joints(q, &[], &[])).chunks(12).map(pose).collect()
     }
 
-    pub(crate) fn jacobian<T: Scalar>(&self, q: &[T]) -> [Vec<T>; 6] {
+    pub(crate) fn jacobian<T: Scalar + Numbers<T>>(&self, q: &[T]) -> [Vec<T>; 6] {
         let rows = self.rows(&self.numbers(Function::Jacobian, &Given::of_joints(q, &[], &[])));
         rows.try_into().unwrap_or_else(|_| unreachable!("six rows"))
     }
 
-    pub(crate) fn jacobian_rate_times_velocity<T: Scalar>(&self, q: &[T], qd: &[T]) -> Vec<T> {
+    pub(crate) fn jacobian_rate_times_velocity<T: Scalar + Numbers<T>>(&self, q: &[T], qd: &[T]) -> Vec<T> {
         self.numbers(Function::JacobianRateTimesVelocity, &Given::of_joints(q, qd, &[]))
     }
 
-    pub(crate) fn kinetic_energy<T: Scalar>(&self, q: &[T], qd: &[T]) -> T {
+    pub(crate) fn kinetic_energy<T: Scalar + Numbers<T>>(&self, q: &[T], qd: &[T]) -> T {
         self.numbers(Function::KineticEnergy, &Given::of_joints(q, qd, &[]))[0]
     }
 
-    pub(crate) fn potential_energy<T: Scalar>(&self, q: &[T]) -> T {
+    pub(crate) fn potential_energy<T: Scalar + Numbers<T>>(&self, q: &[T]) -> T {
         self.numbers(Function::PotentialEnergy, &Given::of_joints(q, &[], &[]))[0]
     }
 
-    pub(crate) fn centre_of_mass<T: Scalar>(&self, q: &[T]) -> Vec<T> {
+    pub(crate) fn centre_of_mass<T: Scalar + Numbers<T>>(&self, q: &[T]) -> Vec<T> {
         self.numbers(Function::CentreOfMass, &Given::of_joints(q, &[], &[]))
     }
 
-    pub(crate) fn centre_of_mass_jacobian<T: Scalar>(&self, q: &[T]) -> Vec<Vec<T>> {
+    pub(crate) fn centre_of_mass_jacobian<T: Scalar + Numbers<T>>(&self, q: &[T]) -> Vec<Vec<T>> {
         self.rows(&self.numbers(Function::CentreOfMassJacobian, &Given::of_joints(q, &[], &[])))
     }
 
     /// By torque: a row of ten parameters of each link.
-    pub(crate) fn regressor<T: Scalar>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Vec<Vec<T>> {
+    pub(crate) fn regressor<T: Scalar + Numbers<T>>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Vec<Vec<T>> {
         let numbers = self.numbers(Function::Regressor, &Given::of_joints(q, qd, qdd));
         numbers.chunks(10 * self.robot.dof()).map(<[T]>::to_vec).collect()
     }
 
-    pub(crate) fn inverse_dynamics_derivatives<T: Scalar>(
+    pub(crate) fn inverse_dynamics_derivatives<T: Scalar + Numbers<T>>(
         &self,
         q: &[T],
         qd: &[T],
@@ -348,7 +353,7 @@ impl Arm {
         DynTorqueDerivatives { dq, dqd }
     }
 
-    pub(crate) fn joint_wrenches<T: Scalar>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Vec<Wrench<T>> {
+    pub(crate) fn joint_wrenches<T: Scalar + Numbers<T>>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Vec<Wrench<T>> {
         let numbers = self.numbers(Function::JointWrenches, &Given::of_joints(q, qd, qdd));
         let wrench = |numbers: &[T]| {
             let [force, moment] = [0, 3].map(|part| std::array::from_fn(|axis| numbers[part + axis]));
@@ -358,14 +363,14 @@ impl Arm {
     }
 
     /// M q̇, and its rate without external torques.
-    pub(crate) fn momentum_and_rate<T: Scalar>(&self, q: &[T], qd: &[T], tau: &[T]) -> [Vec<T>; 2] {
+    pub(crate) fn momentum_and_rate<T: Scalar + Numbers<T>>(&self, q: &[T], qd: &[T], tau: &[T]) -> [Vec<T>; 2] {
         let given = Given { tau, ..Given::of_joints(q, qd, &[]) };
         let mut momentum = self.numbers(Function::MomentumAndRate, &given);
         let rate = momentum.split_off(self.robot.dof());
         [momentum, rate]
     }
 
-    pub(crate) fn actuator_torques<T: Scalar>(&self, qd: &[T], qdd: &[T]) -> Vec<T> {
+    pub(crate) fn actuator_torques<T: Scalar + Numbers<T>>(&self, qd: &[T], qdd: &[T]) -> Vec<T> {
         self.numbers(Function::ActuatorTorques, &Given::of_joints(&[], qd, qdd))
     }
 }
@@ -383,7 +388,7 @@ pub(crate) fn at_tips<T: Copy>(tips: usize, wrench: &Wrench<T>) -> Vec<Wrench<T>
 }
 
 /// What the runtime returns, as a row of numbers.
-pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Given<'_, T>) -> Vec<T> {
+pub(crate) fn of_runtime<T: Scalar + Numbers<T>>(arm: &DynArm, function: Function, given: &Given<'_, T>) -> Vec<T> {
     let Given { q, qd, qdd, tau, ref wrench, ref payload, ref base, ref base_rotation, step } = *given;
     let (sin, cos): (Vec<T>, Vec<T>) = q.iter().map(|&q| Scalar::sin_cos(q)).unzip();
     let inputs = Inputs {

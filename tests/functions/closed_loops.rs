@@ -341,7 +341,7 @@ fn a_closed_motion_takes_no_work() {
             let [q, qd, qdd] =
                 [0, 1, 2].map(|order| (0..middle.len()).map(|joint| motion(joint)[order]).collect::<Vec<f64>>());
             for _ in 0..4 {
-                passive = arm.closure_step(&q, &passive).expect("one number per joint").0;
+                passive = arm.closure_step(&q, &passive).expect("one number per joint").passive;
             }
             let arguments = Arguments { passive: &passive, ..Arguments::of_joints(&q, &qd, &qdd, 0.0) };
             let tau = interpreter.run(&arguments, |x| x, f64::sin_cos).expect("all arguments");

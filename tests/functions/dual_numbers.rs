@@ -1,7 +1,7 @@
 //! Derivatives by dual numbers through the functions of the runtime: exact up to rounding, and from no formula of a
 //! derivative. Second derivatives by dual numbers of dual numbers.
 
-use rne::{BaseMotion, Dual, Payload, Scalar, Wrench};
+use rne::{BaseMotion, Dual, Numbers, Payload, Scalar, Wrench};
 use rne_codegen::Function;
 
 use crate::arm::{Arm, Given, STEP, base_rotation, of_runtime};
@@ -57,7 +57,12 @@ pub(crate) struct Derivative {
 }
 
 /// The numbers of a function, each argument a scalar made of its kind, its place and its value.
-fn numbers<T: Scalar>(arm: &Arm, function: Function, state: &State, scalar: impl Fn(By, usize, f64) -> T) -> Vec<T> {
+fn numbers<T: Scalar + Numbers<T>>(
+    arm: &Arm,
+    function: Function,
+    state: &State,
+    scalar: impl Fn(By, usize, f64) -> T,
+) -> Vec<T> {
     let list = |by: By, x: &[f64]| -> Vec<T> { x.iter().enumerate().map(|(i, &x)| scalar(by, i, x)).collect() };
     let (q, qd, qdd, tau) = (list(Q, &state.q), list(Qd, &state.qd), list(Qdd, &state.qdd), list(Tau, &state.tau));
     let still = |x: [f64; 3]| x.map(T::from_f64);

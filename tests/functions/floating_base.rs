@@ -5,8 +5,8 @@
 
 use nalgebra::Vector3;
 use rne::{
-    BaseMotion, BaseTwist, FloatingEulerStep, FloatingEulerStepDerivatives, FloatingIntegratorStep, FloatingNextState,
-    FloatingState, Pose, Quaternion, Wrench,
+    BaseMotion, BaseTwist, DynFloatingTorques, FloatingEulerStep, FloatingEulerStepDerivatives, FloatingIntegratorStep,
+    FloatingNextState, FloatingState, Pose, Quaternion, Wrench,
 };
 use rne_codegen::{Argument, Compiler, Factorization, Form, Function, Output, Value};
 use rne_model::{Contact, Reader, Robot};
@@ -501,7 +501,7 @@ fn the_base_of_a_robot_at_rest_bears_its_weight() {
         let (arm, dof) = (Arm::new(&robot, Maker::Runtime), robot.dof());
         let (q, zeros) = (State::random(4, dof).q, vec![0.0; dof]);
         let base = BaseMotion::fixed(robot.gravity);
-        let (wrench, tau) = arm
+        let DynFloatingTorques { wrench, tau } = arm
             .runtime
             .inverse_dynamics_of_floating_base(&q, &zeros, &zeros, &base, &vec![Wrench::zero(); robot.tip_count()])
             .expect("arrays of the right length");

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 
-use rne::DynArm;
+use rne::{DynArm, DynClosureStep};
 use rne_convert::{Imported, Options, Selection, Urdf};
 use rne_model::{Convention, Reader, Robot};
 use serde_json::Value;
@@ -64,7 +64,8 @@ fn close(arm: &DynArm, robot: &Robot, q: &[f64], positions: &Named) -> Vec<f64> 
         let mut passive = start.clone();
         let mut residual = vec![f64::NAN];
         for _ in 0..25 {
-            let (next, left) = arm.closure_step(q, &passive).expect("as many joints");
+            let DynClosureStep { passive: next, residual: left } =
+                arm.closure_step(q, &passive).expect("as many joints");
             residual = left;
             if residual.iter().all(|left| left.abs() < 1e-14) {
                 break;

@@ -2,7 +2,7 @@
 //! and dual numbers through that. The compiled Euler step is among the functions of the other tests.
 
 use rne::{
-    AccelerationDerivatives, Dual, ForwardDynamics, ForwardDynamicsDerivatives, RungeKuttaStep,
+    AccelerationDerivatives, Dual, ForwardDynamics, ForwardDynamicsDerivatives, Numbers, RungeKuttaStep,
     RungeKuttaStepDerivatives, Scalar,
 };
 use rne_codegen::Function;
@@ -24,7 +24,8 @@ fn given<T: Scalar>([q, qd, tau]: [&[T]; 3]) -> Given<'_, T> {
 
 impl<const DOF: usize> ForwardDynamics<DOF> for Joints<'_, DOF> {
     fn forward_dynamics<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], tau: &[T; DOF]) -> [T; DOF] {
-        let found = self.0.numbers(Function::ForwardDynamics, &given([q, qd, tau]));
+        let of_code = self.0.of_code(Function::ForwardDynamics, &given([q, qd, tau]));
+        let found = of_code.unwrap_or_else(|| self.0.runtime.forward_dynamics(q, qd, tau).expect("one per joint"));
         found.try_into().expect("one per joint")
     }
 }
@@ -36,7 +37,12 @@ impl<const DOF: usize> ForwardDynamicsDerivatives<DOF> for Joints<'_, DOF> {
         qd: &[T; DOF],
         tau: &[T; DOF],
     ) -> AccelerationDerivatives<DOF, T> {
-        let found = self.0.numbers(Function::ForwardDynamicsDerivatives, &given([q, qd, tau]));
+        let of_runtime = || {
+            let found = self.0.runtime.forward_dynamics_derivatives(q, qd, tau).expect("one per joint");
+            [found.dq, found.dqd, found.dtau].concat().concat()
+        };
+        let of_code = self.0.of_code(Function::ForwardDynamicsDerivatives, &given([q, qd, tau]));
+        let found = of_code.unwrap_or_else(of_runtime);
         let block = |kind: usize| std::array::from_fn(|i| std::array::from_fn(|j| found[(kind * DOF + i) * DOF + j]));
         AccelerationDerivatives { dq: block(0), dqd: block(1), dtau: block(2) }
     }
@@ -48,7 +54,7 @@ fn moved<T: Scalar>(x: &[T], y: &[T], step: T) -> Vec<T> {
 }
 
 /// The next positions and velocities by slopes of the whole state.
-fn textbook<T: Scalar>(arm: &Arm, [q, qd, tau]: [&[T]; 3], step: T) -> Vec<T> {
+fn textbook<T: Scalar + Numbers<T>>(arm: &Arm, [q, qd, tau]: [&[T]; 3], step: T) -> Vec<T> {
     let state = [q, qd].concat();
     let slope = |x: &[T]| {
         let (q, qd) = x.split_at(q.len());

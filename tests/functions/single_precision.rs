@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use fastrand::Rng;
-use rne::{BaseMotion, Scalar, Wrench};
+use rne::{BaseMotion, Numbers, Scalar, Wrench};
 use rne_codegen::Function;
 use rne_model::Robot;
 
@@ -42,7 +42,7 @@ impl State {
     }
 
     /// All numbers of a function, in a precision.
-    pub(crate) fn ask<T: Scalar>(&self, arm: &Arm, function: Function, read: impl Fn(f32) -> T) -> Vec<T> {
+    pub(crate) fn ask<T: Scalar + Numbers<T>>(&self, arm: &Arm, function: Function, read: impl Fn(f32) -> T) -> Vec<T> {
         let [q, qd, qdd, tau] = self.joints.each_ref().map(|array| array.iter().map(|&x| read(x)).collect::<Vec<_>>());
         let [force, moment, omega, omega_dot, velocity, acceleration, gravity, ref payload @ ..] =
             self.vectors.map(|vector| vector.map(&read));

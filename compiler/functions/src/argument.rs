@@ -1,44 +1,93 @@
 //! The arguments of functions, and the arrays that they are passed in.
 
-use crate::{Length, Sizes};
+use crate::layout::returned;
+use crate::{Length, Shape, Sizes};
 
-/// An argument of a function.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Argument {
+/// The arguments: variant, name, type where the number of joints is known at run time, and shape.
+macro_rules! arguments {
+    ($($(#[$doc:meta])* $argument:ident = $name:literal, ($($type:tt)*): $shape:ident;)*) => {
+        /// An argument of a function.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Argument { $($(#[$doc])* $argument),* }
+
+        impl Argument {
+            /// Its name in Rust, in Python and on the command line.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$argument => $name),* }
+            }
+
+            /// The shape of its numbers.
+            #[must_use]
+            pub const fn shape(self) -> &'static Shape {
+                match self { $(Self::$argument => &returned::$shape),* }
+            }
+        }
+
+        of_types! { ($) $($argument ($($type)*))* }
+    };
+}
+
+/// The macro with the types: `$` is handed down, because a macro inside another one has none of its own.
+macro_rules! of_types {
+    (($dollar:tt) $($argument:ident ($($type:tt)*))*) => {
+        /// The type of an argument where the number of joints is known at run time; `T` is the number.
+        #[doc(hidden)]
+        #[macro_export]
+        macro_rules! argument_type { $(($argument) => { $($type)* };)* }
+    };
+}
+
+arguments! {
     /// Sines of the joint positions.
-    Sines,
+    Sines = "sin", (&[T]): Vector;
     /// Cosines of the joint positions.
-    Cosines,
+    Cosines = "cos", (&[T]): Vector;
     /// Joint positions.
-    Positions,
+    Positions = "q", (&[T]): Vector;
     /// Joint rates.
-    Rates,
+    Rates = "qd", (&[T]): Vector;
     /// Joint accelerations.
-    Accelerations,
+    Accelerations = "qdd", (&[T]): Vector;
     /// Joint torques.
-    Torques,
+    Torques = "tau", (&[T]): Vector;
     /// Force and moment at the tip.
-    Wrench,
+    Wrench = "wrench", (&Wrench<T>): Wrench;
     /// Mass, centre of mass and inertia of what is fixed to the tip.
-    Payload,
+    Payload = "payload", (&Payload<T>): Payload;
     /// Motion of the base, and gravity.
-    Base,
+    Base = "base", (&BaseMotion<T>): BaseMotion;
     /// Force and moment at each tip.
-    Wrenches,
+    Wrenches = "wrenches", (&[Wrench<T>]): TipWrenches;
     /// Angular velocity of a base whose accelerations are no argument.
-    BaseVelocity,
+    BaseVelocity = "omega", (&[T; 3]): Point;
     /// Linear and angular velocity of a floating base.
-    BaseTwist,
+    BaseTwist = "twist", (&BaseTwist<T>): BaseTwist;
     /// Where such a base stands in the world.
-    BasePose,
+    BasePose = "pose", (&Pose<T>): Pose;
     /// Axes of the base in the world.
-    BaseRotation,
+    BaseRotation = "base_rotation", (&[[T; 3]; 3]): Rotation;
     /// Positions of the dependent joints of closed loops.
-    Passive,
+    Passive = "passive", (&[T]): PassiveVector;
     /// Multipliers of the joint torques.
-    Multipliers,
+    Multipliers = "multipliers", (&[T]): Vector;
     /// Duration of a step: one number, which is passed by value.
-    Step,
+    Step = "step", (T): Number;
+}
+
+/// The part of a robot that the numbers of an array belong to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Owner {
+    /// Each joint.
+    Joints,
+    /// Each dependent joint of the closed loops.
+    Passive,
+    /// The base, or the robot as a whole.
+    Base,
+    /// The tip.
+    Tip,
+    /// Each tip.
+    EachTip,
 }
 
 /// An array that an argument, or a part of it, is passed in.
@@ -48,68 +97,81 @@ pub struct ArgumentPart {
     pub argument: Argument,
     /// The name of the array in emitted code and at run time: `q`, `qd`, `force`, ….
     pub name: &'static str,
+    /// What its numbers belong to.
+    pub owner: Owner,
     /// How many numbers it has for a state, or for a tip.
     pub length: Length,
 }
 
-/// Every array: its name, its argument, its length, its quantity, and what it is with its unit. `$callback!` is given
-/// the list.
+/// Every array: its name, its argument, the place that its numbers belong to, their quantities with how many numbers
+/// each has, and what it is with its unit. `$callback!` is given the list.
 #[macro_export]
 macro_rules! argument_parts {
     ($callback:ident) => { $callback! {
-        q: Positions, Joints, Position, "Joint positions, rad or m.";
-        qd: Rates, Joints, Rate, "Joint velocities, rad/s or m/s.";
-        qdd: Accelerations, Joints, RateDot, "Joint accelerations, rad/s² or m/s².";
-        passive: Passive, Passive, Position,
+        q: Positions, Joints [Position * 1], "Joint positions, rad or m.";
+        qd: Rates, Joints [Rate * 1], "Joint velocities, rad/s or m/s.";
+        qdd: Accelerations, Joints [RateDot * 1], "Joint accelerations, rad/s² or m/s².";
+        passive: Passive, Passive [Position * 1],
             "Positions of the dependent joints of the closed loops, rad or m, in the order of the joints.";
-        tau: Torques, Joints, AppliedTorque, "Joint torques, N m or N.";
-        multipliers: Multipliers, Joints, Multiplier, "Multipliers of the joint torques, in any unit.";
-        step: Step, Fixed(1), Duration, "Duration of the step, s: one number.";
-        sin: Sines, Joints, Sine, "Sines of the joint positions.";
-        cos: Cosines, Joints, Cosine, "Cosines of the joint positions.";
-        force: Wrench, Fixed(3), JointForce,
+        tau: Torques, Joints [AppliedTorque * 1], "Joint torques, N m or N.";
+        multipliers: Multipliers, Joints [Multiplier * 1], "Multipliers of the joint torques, in any unit.";
+        step: Step, Base [Duration * 1], "Duration of the step, s: one number.";
+        sin: Sines, Joints [Sine * 1], "Sines of the joint positions.";
+        cos: Cosines, Joints [Cosine * 1], "Cosines of the joint positions.";
+        force: Wrench, Tip [JointForce * 3],
             "Force that the last link exerts at the tip, in tip axes, N: three elements.";
-        moment: Wrench, Fixed(3), JointMoment,
+        moment: Wrench, Tip [JointMoment * 3],
             "Moment that it exerts about the origin of the tip frame, N m: three elements.";
-        payload: Payload, Fixed(10), Mass,
+        payload: Payload, Tip [Mass * 1, Com * 3, Inertia * 6],
             "What is fixed to the tip: mass, kg; centre of mass x, y, z, m; inertia about it xx, yy, zz, xy, xz, yz, \
              kg m²: ten elements, in tip axes.";
-        base_omega: Base, Fixed(3), Omega,
+        base_omega: Base, Base [Omega * 3],
             "Angular velocity of the base, rad/s, in the axes of frame 0: three elements.";
-        base_omega_dot: Base, Fixed(3), OmegaDot, "Angular acceleration of the base, rad/s²: three elements.";
-        base_acceleration: Base, Fixed(3), Acceleration,
+        base_omega_dot: Base, Base [OmegaDot * 3], "Angular acceleration of the base, rad/s²: three elements.";
+        base_acceleration: Base, Base [Acceleration * 3],
             "Acceleration of the base, gravity not included, m/s²: three elements.";
-        base_gravity: Base, Fixed(3), Gravity,
+        base_gravity: Base, Base [Gravity * 3],
             "Acceleration of gravity, m/s², pointing down: three elements.";
-        wrenches: Wrenches, Fixed(6), TipForce,
+        wrenches: Wrenches, EachTip [TipForce * 3, TipMoment * 3],
             "Force, N, and moment, N m, that the robot exerts at each tip, in axes of the tip: six elements for each \
              tip.";
-        omega: BaseVelocity, Fixed(3), Omega,
+        omega: BaseVelocity, Base [Omega * 3],
             "Angular velocity of a base that nothing holds, rad/s, in the axes of frame 0: three elements.";
-        twist: BaseTwist, Fixed(6), OriginVelocity,
+        twist: BaseTwist, Base [OriginVelocity * 3, Omega * 3],
             "Velocity of the origin of frame 0, m/s, and angular velocity of a base that nothing holds, rad/s, in the \
              axes of frame 0: six elements.";
-        pose: BasePose, Fixed(12), FrameOrigin,
+        pose: BasePose, Base [FrameRotation * 9, FrameOrigin * 3],
             "Pose of frame 0 in the world: rows of the rotation, then the origin, m: twelve elements.";
-        base_rotation: BaseRotation, Fixed(9), BaseRotation,
+        base_rotation: BaseRotation, Base [BaseRotation * 9],
             "Rotation of the base: its columns are the axes of frame 0 in the world; three rows of three elements.";
     } };
 }
 
 macro_rules! parts {
-    ($(
-        $name:ident: $argument:ident, $length:ident $(($elements:literal))?, $quantity:ident, $about:literal;
-    )*) => {
+    ($($name:ident: $argument:ident, $owner:ident [$($quantity:ident * $count:literal),*], $about:literal;)*) => {
         /// All of them, those of an argument beside each other.
         const PARTS: &[ArgumentPart] = &[$(ArgumentPart {
             argument: Argument::$argument,
             name: stringify!($name),
-            length: Length::$length $(($elements))?,
+            owner: Owner::$owner,
+            length: match Owner::$owner {
+                Owner::Joints => Length::Joints,
+                Owner::Passive => Length::Passive,
+                Owner::Base | Owner::Tip | Owner::EachTip => Length::Fixed(0 $(+ $count)*),
+            },
         }),*];
     };
 }
 
 argument_parts!(parts);
+
+impl ArgumentPart {
+    /// Its place among all.
+    #[must_use]
+    pub fn place(&self) -> usize {
+        PARTS.iter().position(|part| part.name == self.name).unwrap_or(PARTS.len())
+    }
+}
 
 impl Argument {
     /// The arrays that it is passed in, in order.
@@ -120,21 +182,21 @@ impl Argument {
     /// Whether it has a row of numbers for each tip.
     #[must_use]
     pub const fn is_of_each_tip(self) -> bool {
-        matches!(self, Self::Wrenches)
+        matches!(self.shape(), Shape::Array(Length::Tips, _))
     }
 
     /// Whether it is one number, which is passed by itself and not in an array.
     #[must_use]
     pub const fn is_number(self) -> bool {
-        matches!(self, Self::Step)
+        matches!(self.shape(), Shape::Number)
     }
 
     /// How many elements each row of its array has, if that is an array of rows.
     #[must_use]
     pub const fn row(self) -> Option<usize> {
-        match self {
-            Self::Wrenches => Some(6),
-            Self::BaseRotation => Some(3),
+        match self.shape() {
+            Shape::Array(_, Shape::Array(Length::Fixed(row), _)) => Some(*row),
+            Shape::Array(_, Shape::Record(..)) => Some(6),
             _ => None,
         }
     }
@@ -142,7 +204,6 @@ impl Argument {
     /// Numbers that it has for a state of a robot.
     #[must_use]
     pub fn elements(self, sizes: Sizes) -> usize {
-        let of_one: usize = self.parts().map(|part| part.length.of(sizes)).sum();
-        if self.is_of_each_tip() { sizes.tips * of_one } else { of_one }
+        self.shape().len(sizes)
     }
 }

@@ -1,7 +1,7 @@
 //! The capabilities of a robot: each is a trait that a struct derives.
 
-use crate::Function;
 use crate::named;
+use crate::{Function, Length};
 
 named! {
     /// A capability of a robot, named as the trait that a struct derives.
@@ -79,25 +79,13 @@ impl Capability {
         Function::ALL.into_iter().filter(move |function| function.capability() == self)
     }
 
-    /// Whether its trait has the number of velocities of a robot with a floating base.
-    #[must_use]
-    pub const fn has_velocities(self) -> bool {
-        matches!(
-            self,
-            Self::FloatingBase
-                | Self::CentroidalMomentum
-                | Self::FloatingRegressor
-                | Self::FloatingKinematics
-                | Self::ContactDynamics
-                | Self::FloatingInverseDynamicsDerivatives
-                | Self::FloatingClosedLoops
-                | Self::FloatingEulerStepDerivatives
-        )
-    }
-
-    /// Whether its methods take or return something for each tip.
-    #[must_use]
-    pub fn has_tips(self) -> bool {
-        self.functions().any(Function::has_tips)
+    /// The lengths of arrays that its trait has as parameters, in their order.
+    pub fn lengths(self) -> impl Iterator<Item = Length> {
+        use Length::{Bodies, Equations, Joints, Passive, Tips, Velocities};
+        let has = move |length| self.functions().any(|function| function.has(length));
+        // a controller of the whole body uses these functions together
+        let is_whole = move |length| length == Velocities && self == Self::ContactDynamics;
+        let order = [Joints, Passive, Equations, Velocities, Bodies, Tips];
+        order.into_iter().filter(move |&length| length == Joints || has(length) || is_whole(length))
     }
 }

@@ -1,7 +1,7 @@
 //! Entries of the table of functions.
 
 use crate::axes::{Axes, Base, Load, What};
-use crate::{Answer, Argument, Capability, Returned};
+use crate::{Answer, Argument, Capability, Shape};
 
 /// The signature of a function, and the words for its callers.
 #[derive(Debug)]
@@ -15,7 +15,7 @@ pub(crate) struct Signature {
     /// Its arguments, in order.
     pub(crate) arguments: &'static [Argument],
     /// Its result.
-    pub(crate) returned: Returned,
+    pub(crate) returned: &'static Shape,
     /// The beginning of its name at a frame, for a function that can be taken there.
     pub(crate) of_frame: Option<&'static str>,
 }

@@ -2,7 +2,7 @@
 
 use crate::axes::{Axes, Base, Load, What};
 use crate::table::{SIGNATURES, TABLE};
-use crate::{Answer, Argument, Capability, Entry, Function, Shape};
+use crate::{Answer, Argument, Capability, Entry, Function, Length, Shape};
 #[cfg(feature = "alloc")]
 use crate::{Layout, Sizes};
 
@@ -89,10 +89,15 @@ impl Function {
         self.arguments().contains(&argument)
     }
 
+    /// Whether an argument or its result has an array of this length.
+    pub(crate) fn has(self, length: Length) -> bool {
+        self.shape().has(length) || self.arguments().iter().any(|argument| argument.shape().has(length))
+    }
+
     /// Whether it takes or returns something for each tip.
     #[must_use]
     pub fn has_tips(self) -> bool {
-        self.takes(Argument::Wrenches) || self.shape().has_tips()
+        self.has(Length::Tips)
     }
 
     /// The parts of its name.
@@ -165,7 +170,7 @@ impl Function {
     /// The shape of what it returns, for any number of joints.
     #[must_use]
     pub const fn shape(self) -> &'static Shape {
-        SIGNATURES[self as usize].returned.shape()
+        SIGNATURES[self as usize].returned
     }
 
     /// How its numbers are laid out for reading.

@@ -16,150 +16,63 @@ pub enum Shape {
     Record(Record, &'static [Self]),
 }
 
-const VECTOR: Shape = Shape::Array(Length::Joints, &Shape::Number);
-const MATRIX: Shape = Shape::Array(Length::Joints, &VECTOR);
-const TRIPLE: Shape = Shape::Array(Length::Fixed(3), &Shape::Number);
-const BY_STATE_AND_TORQUES: Shape = Shape::Record(Record::StepDerivatives, &[MATRIX, MATRIX, MATRIX]);
-const WRENCH: Shape = Shape::Record(Record::Wrench, &[TRIPLE, TRIPLE]);
-const VELOCITIES: Shape = Shape::Array(Length::Velocities, &Shape::Number);
-const PARAMETERS: Shape = Shape::Array(Length::Fixed(10), &Shape::Number);
-const SIX: Shape = Shape::Array(Length::Fixed(6), &Shape::Number);
-const BY_VELOCITIES: Shape = Shape::Array(Length::Velocities, &VELOCITIES);
-const ROWS: Shape = Shape::Array(Length::Fixed(6), &VELOCITIES);
-const BASE_ACCELERATION: Shape = Shape::Record(Record::BaseAcceleration, &[TRIPLE, TRIPLE]);
-const ACCELERATIONS: Shape = Shape::Record(Record::FloatingAccelerations, &[BASE_ACCELERATION, VECTOR]);
-const ROWS_BY_JOINT: Shape = Shape::Array(Length::Velocities, &VECTOR);
-const PASSIVE: Shape = Shape::Array(Length::Passive, &Shape::Number);
-const POSE: Shape = Shape::Record(Record::Pose, &[Shape::Array(Length::Fixed(3), &TRIPLE), TRIPLE]);
-const TWIST: Shape = Shape::Record(Record::BaseTwist, &[TRIPLE, TRIPLE]);
+/// The shapes of results, by the names that they have in the list of functions; those of records are there, too.
+#[allow(non_upper_case_globals)] // named as in the list
+pub(crate) mod returned {
+    use super::Length::{Bodies, Fixed, Joints, Passive, Tips, Velocities};
+    use super::Shape::{self, Array};
+    pub(crate) use crate::record::returned::*;
 
-/// The shapes of results, by the names that they have in the list of functions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Returned {
     /// One number.
-    Number,
+    pub(crate) const Number: Shape = Shape::Number;
     /// A number per joint.
-    Vector,
+    pub(crate) const Vector: Shape = Array(Joints, &Number);
     /// A row and a column per joint.
-    Matrix,
+    pub(crate) const Matrix: Shape = Array(Joints, &Vector);
     /// Three coordinates.
-    Point,
+    pub(crate) const Point: Shape = Array(Fixed(3), &Number);
     /// Three rows with a column per joint.
-    PointRows,
+    pub(crate) const PointRows: Shape = Array(Fixed(3), &Vector);
     /// Three linear coordinates, then three angular ones.
-    Spatial,
+    pub(crate) const Spatial: Shape = Array(Fixed(6), &Number);
     /// Three linear rows, then three angular ones, with a column per joint.
-    SpatialRows,
-    /// A rotation and a translation.
-    Pose,
-    /// A pose per joint.
-    Poses,
-    /// A force and a moment per joint.
-    Wrenches,
-    /// Ten numbers per torque and link.
-    Regressor,
-    /// Two matrices.
-    TorqueDerivatives,
-    /// Two vectors.
-    MomentumAndRate,
-    /// A force and a moment, and a number per joint.
-    FloatingTorques,
-    /// Six numbers of the base, and one per joint.
-    FloatingVector,
-    /// Six rows and columns of the base, and one per joint.
-    FloatingMatrix,
-    /// Three linear rows, then three angular ones, with six columns of the base and one per joint.
-    FloatingRows,
-    /// These rows for each tip.
-    TipRows,
-    /// Three linear coordinates, then three angular ones, for each tip.
-    TipVectors,
-    /// A linear and an angular acceleration, and a number per joint.
-    FloatingAccelerations,
-    /// Six rows of the base and one per joint, with ten numbers of the base and of each link.
-    FloatingRegressor,
-    /// These, and a force and a moment for each tip.
-    AccelerationsAndWrenches,
-    /// Six rows of the base and one per joint, in three matrices: with a column per joint, the same, and three columns.
-    FloatingTorqueDerivatives,
-    /// A number per dependent joint of the loops.
-    PassiveVector,
-    /// A row per dependent joint, with a column per joint.
-    PassiveRows,
-    /// A number per dependent joint, and one per equation of the loops.
-    ClosureStep,
-    /// Three vectors.
-    TorqueGradient,
-    /// Three matrices.
-    AccelerationDerivatives,
+    pub(crate) const SpatialRows: Shape = Array(Fixed(6), &Vector);
     /// A matrix for each of three linear coordinates, then of three angular ones.
-    SpatialMatrices,
-    /// Four matrices.
-    TorqueHessian,
-    /// Two vectors.
-    NextState,
-    /// Twice three matrices.
-    NextStateDerivatives,
-    /// A pose, a linear and an angular velocity, and two vectors.
-    FloatingNextState,
-    /// Six rows of the base and one per joint, in six matrices: twice two with as many columns, and one with a column
-    /// per joint.
-    FloatingStepDerivatives,
-}
-
-impl Returned {
-    /// The shape.
-    #[must_use]
-    pub const fn shape(self) -> &'static Shape {
-        match self {
-            Self::Number => &Shape::Number,
-            Self::Vector => &VECTOR,
-            Self::Matrix => &MATRIX,
-            Self::Point => &TRIPLE,
-            Self::PointRows => &Shape::Array(Length::Fixed(3), &VECTOR),
-            Self::Spatial => &SIX,
-            Self::SpatialRows => &Shape::Array(Length::Fixed(6), &VECTOR),
-            Self::Pose => &POSE,
-            Self::Poses => &Shape::Array(Length::Joints, &POSE),
-            Self::Wrenches => &Shape::Array(Length::Joints, &WRENCH),
-            Self::Regressor => &Shape::Array(Length::Joints, &Shape::Array(Length::Joints, &PARAMETERS)),
-            Self::TorqueDerivatives => &Shape::Record(Record::TorqueDerivatives, &[MATRIX, MATRIX]),
-            Self::MomentumAndRate => &Shape::Record(Record::MomentumAndRate, &[VECTOR, VECTOR]),
-            Self::FloatingTorques => &Shape::Record(Record::FloatingTorques, &[WRENCH, VECTOR]),
-            Self::FloatingVector => &VELOCITIES,
-            Self::FloatingMatrix => &BY_VELOCITIES,
-            Self::FloatingRows => &ROWS,
-            Self::TipRows => &Shape::Array(Length::Tips, &ROWS),
-            Self::TipVectors => &Shape::Array(Length::Tips, &SIX),
-            Self::FloatingAccelerations => &ACCELERATIONS,
-            Self::FloatingRegressor => &Shape::Array(Length::Velocities, &Shape::Array(Length::Bodies, &PARAMETERS)),
-            Self::FloatingTorqueDerivatives => &Shape::Record(
-                Record::FloatingTorqueDerivatives,
-                &[ROWS_BY_JOINT, ROWS_BY_JOINT, Shape::Array(Length::Velocities, &TRIPLE)],
-            ),
-            Self::PassiveVector => &PASSIVE,
-            Self::PassiveRows => &Shape::Array(Length::Passive, &VECTOR),
-            Self::ClosureStep => {
-                &Shape::Record(Record::ClosureStep, &[PASSIVE, Shape::Array(Length::Equations, &Shape::Number)])
-            }
-            Self::TorqueGradient => &Shape::Record(Record::TorqueGradient, &[VECTOR, VECTOR, VECTOR]),
-            Self::AccelerationDerivatives => &Shape::Record(Record::AccelerationDerivatives, &[MATRIX, MATRIX, MATRIX]),
-            Self::SpatialMatrices => &Shape::Array(Length::Fixed(6), &MATRIX),
-            Self::TorqueHessian => &Shape::Record(Record::TorqueHessian, &[MATRIX, MATRIX, MATRIX, MATRIX]),
-            Self::NextState => &Shape::Record(Record::NextState, &[VECTOR, VECTOR]),
-            Self::NextStateDerivatives => {
-                &Shape::Record(Record::NextStateDerivatives, &[BY_STATE_AND_TORQUES, BY_STATE_AND_TORQUES])
-            }
-            Self::FloatingNextState => &Shape::Record(Record::FloatingNextState, &[POSE, TWIST, VECTOR, VECTOR]),
-            Self::FloatingStepDerivatives => &Shape::Record(
-                Record::FloatingStepDerivatives,
-                &[BY_VELOCITIES, BY_VELOCITIES, ROWS_BY_JOINT, BY_VELOCITIES, BY_VELOCITIES, ROWS_BY_JOINT],
-            ),
-            Self::AccelerationsAndWrenches => {
-                &Shape::Record(Record::AccelerationsAndWrenches, &[ACCELERATIONS, Shape::Array(Length::Tips, &WRENCH)])
-            }
-        }
-    }
+    pub(crate) const SpatialMatrices: Shape = Array(Fixed(6), &Matrix);
+    /// A pose per joint.
+    pub(crate) const Poses: Shape = Array(Joints, &Pose);
+    /// A force and a moment per joint.
+    pub(crate) const Wrenches: Shape = Array(Joints, &Wrench);
+    /// A force and a moment per tip.
+    pub(crate) const TipWrenches: Shape = Array(Tips, &Wrench);
+    /// The ten inertial parameters of a body.
+    const PARAMETERS: Shape = Array(Fixed(10), &Number);
+    /// Ten numbers per torque and link.
+    pub(crate) const Regressor: Shape = Array(Joints, &Array(Joints, &PARAMETERS));
+    /// Six rows of the base and one per joint, with ten numbers of the base and of each link.
+    pub(crate) const FloatingRegressor: Shape = Array(Velocities, &Array(Bodies, &PARAMETERS));
+    /// Six numbers of the base, and one per joint.
+    pub(crate) const FloatingVector: Shape = Array(Velocities, &Number);
+    /// Six rows and columns of the base, and one per joint.
+    pub(crate) const FloatingMatrix: Shape = Array(Velocities, &FloatingVector);
+    /// Six rows of the base and one per joint, with a column per joint.
+    pub(crate) const RowsByJoint: Shape = Array(Velocities, &Vector);
+    /// Six rows of the base and one per joint, with three columns.
+    pub(crate) const RowsByAxis: Shape = Array(Velocities, &Point);
+    /// Three linear rows, then three angular ones, with six columns of the base and one per joint.
+    pub(crate) const FloatingRows: Shape = Array(Fixed(6), &FloatingVector);
+    /// These rows for each tip.
+    pub(crate) const TipRows: Shape = Array(Tips, &FloatingRows);
+    /// Three linear coordinates, then three angular ones, for each tip.
+    pub(crate) const TipVectors: Shape = Array(Tips, &Spatial);
+    /// Three rows of three coordinates.
+    pub(crate) const Rotation: Shape = Array(Fixed(3), &Point);
+    /// A number per dependent joint of the loops.
+    pub(crate) const PassiveVector: Shape = Array(Passive, &Number);
+    /// A row per dependent joint, with a column per joint.
+    pub(crate) const PassiveRows: Shape = Array(Passive, &Vector);
+    /// A number per equation of the loops.
+    pub(crate) const Residual: Shape = Array(super::Length::Equations, &Number);
 }
 
 /// The length of an array.
@@ -214,12 +127,22 @@ impl Length {
 }
 
 impl Shape {
-    /// Whether a part of it has an element per tip.
-    pub(crate) fn has_tips(&self) -> bool {
+    /// Whether a part of it has this length.
+    pub(crate) fn has(&self, length: Length) -> bool {
         match self {
             Self::Number => false,
-            Self::Array(length, of) => *length == Length::Tips || of.has_tips(),
-            Self::Record(_, parts) => parts.iter().any(Self::has_tips),
+            Self::Array(own, of) => *own == length || of.has(length),
+            Self::Record(_, parts) => parts.iter().any(|part| part.has(length)),
+        }
+    }
+
+    /// How many numbers there are for a robot.
+    #[must_use]
+    pub fn len(&self, sizes: Sizes) -> usize {
+        match self {
+            Self::Number => 1,
+            Self::Array(length, of) => length.of(sizes) * of.len(sizes),
+            Self::Record(_, parts) => parts.iter().map(|part| part.len(sizes)).sum(),
         }
     }
 
@@ -265,6 +188,16 @@ impl Layout {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Its elements or parts, in order.
+    pub fn parts(&self) -> impl Iterator<Item = &Self> {
+        let (count, of, parts) = match self {
+            Self::Number => (0, None, [].as_slice()),
+            Self::Array(length, of) => (*length, Some(&**of), [].as_slice()),
+            Self::Record(_, parts) => (0, None, parts.as_slice()),
+        };
+        core::iter::repeat_n(of, count).flatten().chain(parts)
     }
 
     /// Puts numbers, in their order, into the shape: `array` and `record` join what their elements and parts became.

@@ -20,12 +20,12 @@ mod record;
 mod table;
 
 pub use answer::{Answer, AnswerTable, Labels, MatrixUnit};
-pub use argument::{Argument, ArgumentPart};
+pub use argument::{Argument, ArgumentPart, Owner};
 pub use axes::{Axes, Base, Load, What};
 pub use capability::Capability;
 pub use entry::Entry;
 #[cfg(feature = "alloc")]
 pub use layout::Layout;
-pub use layout::{Length, Returned, Shape, Sizes};
+pub use layout::{Length, Shape, Sizes};
 pub use record::Record;
 pub use table::Function;

@@ -4,12 +4,13 @@
 //! computes has an entry in the table of its kind of base and formulas in `formulate`, too. A new function is the last
 //! line, whatever its capability, so that the others keep their places, which are the ids of the C library.
 
+use crate::Argument;
 use crate::axes::{Axes, Base, What};
 use crate::entry::{Entry, Signature};
 use crate::fixed_base::FIXED_BASE;
 use crate::floating_base::FLOATING_BASE;
+use crate::layout::returned;
 use crate::named;
-use crate::{Argument, Returned};
 
 /// Every function in the order of [`Function`]: its variant, its [`Axes`], its method with the arguments by their names
 /// and kinds, its result, and the sentences about it. `at NAME` follows the result where the function of the tip can be
@@ -423,7 +424,7 @@ macro_rules! signatures {
             summary: $summary,
             details: concat!("" $(, $details)?),
             arguments: &[$(Argument::$kind),*],
-            returned: Returned::$returned,
+            returned: &returned::$returned,
             of_frame: [$(Some(stringify!($of_frame)),)? None][0],
         }),*];
     };

@@ -80,7 +80,7 @@ fn ticks<const DOF: usize>(function: Torques<DOF>, state: &State<DOF>) -> u32 {
 }
 
 /// The rest of a line.
-fn print(numbers: &impl Numbers) {
+fn print(numbers: &impl Numbers<f32>) {
     numbers.each(&mut |number| hprint!(" {:08x}", number.to_bits()));
     hprintln!();
 }
@@ -100,7 +100,7 @@ impl robots::Visitor for Board {
 
 #[cfg(feature = "methods")]
 impl puma560::Visitor for Board {
-    fn visit<N: Numbers>(&mut self, form: &'static str, function: &'static str, call: impl Fn(&Arguments) -> N) {
+    fn visit<N: Numbers<f32>>(&mut self, form: &'static str, function: &'static str, call: impl Fn(&Arguments) -> N) {
         for number in 0..STATES {
             hprint!("method {} {} {}", form, function, number);
             print(&call(&Arguments::at(State::new(number))));

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, anyhow, ensure};
 use rne_certify::board;
 use rne_certify::cycles::Core;
 use rne_codegen::plan::PlanSet;
-use rne_codegen::{Argument, Compiler, Form, Function, Layout, Sizes};
+use rne_codegen::{Compiler, Form, Function, Layout, Sizes};
 use rne_emit::{Precision, Prefix, c_code};
 use rne_model::Robot;
 use rne_search::PlanFile;
@@ -142,9 +142,7 @@ fn cases(sources: &[Source]) -> Result<String> {
     text.push_str(&constant("sines", arguments.iter().map(|arguments| arguments.sin)));
     text.push_str(&constant("cosines", arguments.iter().map(|arguments| arguments.cos)));
     text.push_str("\nvoid run_cases(uint32_t number)\n{\n    struct state s;\n");
-    for argument in ARGUMENTS {
-        let _ = writeln!(text, "    {argument}");
-    }
+    text.push_str(ARGUMENTS);
     for Source { prefix, dof, functions } in sources {
         let _ = writeln!(text, "    s = state_of(number, {dof}u);");
         for &function in functions {
@@ -158,14 +156,20 @@ fn cases(sources: &[Source]) -> Result<String> {
     Ok(text)
 }
 
-/// As in ../robots/src/puma560.rs.
-const ARGUMENTS: [&str; 5] = [
-    "const float force[3] = {1.0f, -2.0f, 3.0f}, moment[3] = {0.5f, 0.25f, -0.125f};",
-    "const float payload[10] = {0.5f, 0.01f, -0.02f, 0.1f, 0.002f, 0.003f, 0.001f, 0.0001f, -0.0002f, 0.0003f};",
-    "const float base_omega[3] = {0.1f, -0.2f, 0.3f}, base_zero[3] = {0.0f, 0.0f, 0.0f};",
-    "const float base_rotation[3][3] = {{0.36f, 0.48f, -0.8f}, {-0.8f, 0.6f, 0.0f}, {0.48f, 0.64f, 0.6f}};",
-    "const float base_gravity[3] = {0.0f, 0.0f, -9.81f};",
-];
+/// An argument of every name, as in ../robots/src/puma560.rs. Their names begin with `a_`: `sin` is a function of C.
+const ARGUMENTS: &str = "\
+    const float *const a_q = s.q, *const a_qd = s.qd, *const a_qdd = s.qdd, *const a_tau = s.qdd;
+    const float *const a_multipliers = s.qdd, *const a_sin = sines[number], *const a_cos = cosines[number];
+    const float a_step = 0.01f, a_force[3] = {1.0f, -2.0f, 3.0f}, a_moment[3] = {0.5f, 0.25f, -0.125f};
+    const float a_payload[10] =
+        {0.5f, 0.01f, -0.02f, 0.1f, 0.002f, 0.003f, 0.001f, 0.0001f, -0.0002f, 0.0003f};
+    const float a_base_omega[3] = {0.1f, -0.2f, 0.3f}, a_base_omega_dot[3] = {0.0f, 0.0f, 0.0f};
+    const float a_base_acceleration[3] = {0.0f, 0.0f, 0.0f}, a_base_gravity[3] = {0.0f, 0.0f, -9.81f};
+    const float a_base_rotation[3][3] = {{0.36f, 0.48f, -0.8f}, {-0.8f, 0.6f, 0.0f}, {0.48f, 0.64f, 0.6f}};
+    const float a_omega[3] = {0.1f, -0.2f, 0.3f}, a_twist[6] = {0.0f, 0.0f, 0.0f, 0.1f, -0.2f, 0.3f};
+    const float a_pose[12] = {1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f};
+    const float a_wrenches[1][6] = {{1.0f, -2.0f, 3.0f, 0.5f, 0.25f, -0.125f}};
+";
 
 /// As `Arguments::observed` of ../robots/src/puma560.rs: the third tick of an observer. Its weight and its frequency
 /// are Rust's, which are computed in double precision and rounded.
@@ -195,24 +199,9 @@ fn case(prefix: &str, dof: usize, function: Function) -> Result<String> {
         Function::InverseDynamics => format!("torques {robot} {form}"),
         _ => format!("method {form} {function}"),
     };
-    let arguments = function.arguments().iter().map(|argument| match argument {
-        Argument::Sines => "sines[number]",
-        Argument::Cosines => "cosines[number]",
-        Argument::Positions => "s.q",
-        Argument::Passive => "passive",
-        Argument::Rates => "s.qd",
-        Argument::Accelerations | Argument::Torques | Argument::Multipliers => "s.qdd",
-        Argument::Step => "0.01f",
-        Argument::Wrench => "force, moment",
-        Argument::Payload => "payload",
-        Argument::BaseVelocity => "base_omega",
-        Argument::BaseTwist => "(const float[6]){0.0f, 0.0f, 0.0f, base_omega[0], base_omega[1], base_omega[2]}",
-        Argument::BasePose => "(const float[12]){1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f}",
-        Argument::BaseRotation => "base_rotation",
-        Argument::Base => "base_omega, base_zero, base_zero, base_gravity",
-        Argument::Wrenches => "(const float[1][6]){{force[0], force[1], force[2], moment[0], moment[1], moment[2]}}",
-    });
-    let arguments = arguments.collect::<Vec<_>>().join(", ");
+    let parts = function.arguments().iter().flat_map(|argument| argument.parts());
+    let arguments: Vec<String> = parts.map(|part| format!("a_{}", part.name)).collect();
+    let arguments = arguments.join(", ");
     let layout = function.layout(Sizes { dof, tips: 1, passive: 0, equations: 0 });
     let count = layout.len();
     Ok(match &layout {

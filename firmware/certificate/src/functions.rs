@@ -44,7 +44,7 @@ pub(crate) fn controllers() -> Vec<Robot> {
 pub(crate) fn methods() -> Vec<Method> {
     struct Names(Vec<Method>);
     impl puma560::Visitor for Names {
-        fn visit<N: Numbers>(&mut self, form: &'static str, name: &'static str, _: impl Fn(&Arguments) -> N) {
+        fn visit<N: Numbers<f32>>(&mut self, form: &'static str, name: &'static str, _: impl Fn(&Arguments) -> N) {
             self.0.push(Method { name, form });
         }
     }

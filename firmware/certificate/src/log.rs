@@ -109,9 +109,9 @@ impl Log {
         Self { results: results.into_iter().collect(), ticks: BTreeMap::new() }
     }
 
-    fn insert(&mut self, key: String, numbers: &impl Numbers) {
+    fn insert(&mut self, key: String, numbers: &impl Numbers<f32>) {
         let mut list = Vec::new();
-        numbers.each(&mut |number| list.push(Number::Single(number)));
+        numbers.each(&mut |number| list.push(Number::Single(*number)));
         self.results.insert(key, list);
     }
 }
@@ -179,7 +179,7 @@ impl robots::Visitor<f64> for Log {
 }
 
 impl puma560::Visitor for Log {
-    fn visit<N: Numbers>(&mut self, form: &'static str, function: &'static str, call: impl Fn(&Arguments) -> N) {
+    fn visit<N: Numbers<f32>>(&mut self, form: &'static str, function: &'static str, call: impl Fn(&Arguments) -> N) {
         for number in 0..STATES {
             let numbers = call(&Arguments::at(State::new(number)));
             self.insert(format!("method {form} {function} {number}"), &numbers);

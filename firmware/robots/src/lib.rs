@@ -3,15 +3,15 @@
 //! Each is a function of its own, never inlined, so that its instructions can be read and counted:
 //! `robots::NAME::FORM::FUNCTION`, in `f32`.
 #![no_std]
+#![recursion_limit = "256"]
 
-mod numbers;
 #[cfg(feature = "methods")]
 pub mod puma560;
 pub mod runtime;
 mod states;
 pub mod torques;
 
-pub use numbers::Numbers;
+pub use rne::Numbers;
 pub use states::{STATES, State};
 #[cfg(feature = "methods")]
 pub use torques::each_controller;

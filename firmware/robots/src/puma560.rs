@@ -1,17 +1,13 @@
 //! All that the PUMA 560 can compute besides `inverse_dynamics`.
 
-use rne::{
-    AccelerationDerivatives, BaseMotion, MomentumAndRate, NextState, NextStateDerivatives, ObserverState, Payload,
-    Pose, Scalar, TorqueDerivatives, TorqueGradient, TorqueHessian, Wrench,
-};
+use rne::{BaseMotion, Numbers, ObserverState, Payload, Scalar, Wrench};
 
-use crate::numbers::Numbers;
 use crate::states::State;
 
 /// What is done with each function.
 pub trait Visitor {
     /// `form` and `function` name the function of [`each`] that is called.
-    fn visit<N: Numbers>(&mut self, form: &'static str, function: &'static str, call: impl Fn(&Arguments) -> N);
+    fn visit<N: Numbers<f32>>(&mut self, form: &'static str, function: &'static str, call: impl Fn(&Arguments) -> N);
 }
 
 /// An argument of every name.
@@ -56,21 +52,30 @@ impl Arguments {
     }
 }
 
+/// The type of an argument.
+macro_rules! taken {
+    (Step) => { f32 };
+    (Wrench) => { Wrench<f32> };
+    (Payload) => { Payload<f32> };
+    (Base) => { BaseMotion<f32> };
+    ($of_joints:ident) => { [f32; 6] };
+}
+
 /// An argument as a method takes it: a number by its value.
 macro_rules! passed {
-    (step of $argument:ident) => {
+    (Step of $argument:ident) => {
         *$argument
     };
-    ($name:ident of $argument:ident) => {
+    ($kind:ident of $argument:ident) => {
         $argument
     };
 }
 
-/// A module per form with a function per method, and [`each`].
-macro_rules! methods {
-    ($($capability:ident: $function:ident($($argument:ident: $type:ty),*) -> $returned:ty;)*) => {
-        methods!(seven_steps, "seven_steps": $($capability $function($($argument: $type),*) $returned)*);
-        methods!(reduced, "reduced": $($capability $function($($argument: $type),*) $returned)*);
+/// A module per form with a function per method of a list, and [`each`].
+macro_rules! modules {
+    ($($function:ident($($argument:ident: $kind:ident),*))*) => {
+        modules!(seven_steps, "seven_steps": $($function($($argument: $kind),*))*);
+        modules!(reduced, "reduced": $($function($($argument: $kind),*))*);
 
         /// Shows every function to a visitor.
         pub fn each(visitor: &mut impl Visitor) {
@@ -82,25 +87,16 @@ macro_rules! methods {
             visitor.visit("reduced", "observer_update", |a| a.observed(reduced::observer_update));
         }
     };
-    (
-        $form:ident, $name:literal:
-        $($capability:ident $function:ident($($argument:ident: $type:ty),*) $returned:ty)*
-    ) => {
+    ($form:ident, $name:literal: $($function:ident($($argument:ident: $kind:ident),*))*) => {
         #[doc = concat!("The form `", $name, "`.")]
         pub mod $form {
-            use super::{
-                AccelerationDerivatives, BaseMotion, MomentumAndRate, NextState, NextStateDerivatives, ObserverState,
-                Payload, Pose, TorqueDerivatives,
-                TorqueGradient, TorqueHessian, Wrench,
-            };
+            use rne::*;
 
             #[derive(
-                rne::InverseDynamics, rne::MassMatrix, rne::CoriolisMatrix, rne::ForwardDynamics, rne::Kinematics,
-                rne::Energy, rne::CentreOfMass, rne::Regressor, rne::InverseDynamicsDerivatives, rne::JointWrenches,
-                rne::MomentumObserver, rne::MovingBase, rne::Actuation, rne::PayloadDynamics,
-                rne::InverseDynamicsGradient, rne::ForwardDynamicsDerivatives, rne::JacobianDerivatives,
-                rne::InverseDynamicsHessian, rne::EulerStep,
-                rne::EulerStepDerivatives,
+                InverseDynamics, MassMatrix, CoriolisMatrix, ForwardDynamics, Kinematics, Energy, CentreOfMass,
+                Regressor, InverseDynamicsDerivatives, JointWrenches, MomentumObserver, MovingBase, Actuation,
+                PayloadDynamics, InverseDynamicsGradient, ForwardDynamicsDerivatives, JacobianDerivatives,
+                InverseDynamicsHessian, EulerStep, EulerStepDerivatives,
             )]
             #[robot(path = "../../../robots/puma560.yaml", form = $name)]
             struct Robot;
@@ -109,13 +105,13 @@ macro_rules! methods {
                 /// The method of this name.
                 #[inline(never)]
                 #[must_use]
-                pub fn $function($($argument: &$type),*) -> $returned {
-                    rne::$capability::$function(&Robot, $(passed!($argument of $argument)),*)
+                pub fn $function($($argument: &taken!($kind)),*) -> impl Numbers<f32> + use<> {
+                    Robot.$function($(passed!($kind of $argument)),*)
                 }
             )*
 
             /// Its code is in the update alone, which can be read there.
-            #[derive(rne::MomentumObserver)]
+            #[derive(MomentumObserver)]
             #[robot(path = "../../../robots/puma560.yaml", form = $name)]
             struct Observed;
 
@@ -134,65 +130,28 @@ macro_rules! methods {
     };
 }
 
-methods! {
-    InverseDynamics: inverse_dynamics_with_wrench(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], wrench: Wrench<f32>)
-        -> [f32; 6];
-    InverseDynamics: inverse_dynamics_with_payload(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], payload: Payload<f32>)
-        -> [f32; 6];
-    InverseDynamics: inverse_dynamics_from_sin_cos(
-        sin: [f32; 6], cos: [f32; 6], q: [f32; 6], qd: [f32; 6], qdd: [f32; 6]
-    ) -> [f32; 6];
-    InverseDynamics: gravity_torques(q: [f32; 6]) -> [f32; 6];
-    InverseDynamics: bias_torques(q: [f32; 6], qd: [f32; 6]) -> [f32; 6];
-    MassMatrix: mass_matrix(q: [f32; 6]) -> [[f32; 6]; 6];
-    MassMatrix: inverse_mass_matrix(q: [f32; 6]) -> [[f32; 6]; 6];
-    CoriolisMatrix: coriolis_matrix(q: [f32; 6], qd: [f32; 6]) -> [[f32; 6]; 6];
-    CoriolisMatrix: coriolis_torques(q: [f32; 6], qd: [f32; 6]) -> [f32; 6];
-    ForwardDynamics: forward_dynamics(q: [f32; 6], qd: [f32; 6], tau: [f32; 6]) -> [f32; 6];
-    Kinematics: forward_kinematics(q: [f32; 6]) -> Pose<f32>;
-    Kinematics: link_poses(q: [f32; 6]) -> [Pose<f32>; 6];
-    Kinematics: jacobian(q: [f32; 6]) -> [[f32; 6]; 6];
-    Kinematics: jacobian_rate_times_velocity(q: [f32; 6], qd: [f32; 6]) -> [f32; 6];
-    Kinematics: wrench_torques(q: [f32; 6], wrench: Wrench<f32>) -> [f32; 6];
-    Energy: kinetic_energy(q: [f32; 6], qd: [f32; 6]) -> f32;
-    Energy: potential_energy(q: [f32; 6]) -> f32;
-    CentreOfMass: centre_of_mass(q: [f32; 6]) -> [f32; 3];
-    CentreOfMass: centre_of_mass_jacobian(q: [f32; 6]) -> [[f32; 6]; 3];
-    Regressor: regressor(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6]) -> [[[f32; 10]; 6]; 6];
-    InverseDynamicsDerivatives: inverse_dynamics_derivatives(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6])
-        -> TorqueDerivatives<6, f32>;
-    JointWrenches: joint_wrenches(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6]) -> [Wrench<f32>; 6];
-    MomentumObserver: momentum_and_rate(q: [f32; 6], qd: [f32; 6], tau: [f32; 6]) -> MomentumAndRate<6, f32>;
-    MovingBase: inverse_dynamics_on_moving_base(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], base: BaseMotion<f32>)
-        -> [f32; 6];
-    Actuation: actuator_torques(qd: [f32; 6], qdd: [f32; 6]) -> [f32; 6];
-    PayloadDynamics: gravity_torques_with_payload(q: [f32; 6], payload: Payload<f32>) -> [f32; 6];
-    PayloadDynamics: bias_torques_with_payload(q: [f32; 6], qd: [f32; 6], payload: Payload<f32>) -> [f32; 6];
-    PayloadDynamics: mass_matrix_with_payload(q: [f32; 6], payload: Payload<f32>) -> [[f32; 6]; 6];
-    PayloadDynamics: forward_dynamics_with_payload(
-        q: [f32; 6], qd: [f32; 6], tau: [f32; 6], payload: Payload<f32>
-    ) -> [f32; 6];
-    PayloadDynamics: inverse_dynamics_derivatives_with_payload(
-        q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], payload: Payload<f32>
-    ) -> TorqueDerivatives<6, f32>;
-    PayloadDynamics: momentum_and_rate_with_payload(
-        q: [f32; 6], qd: [f32; 6], tau: [f32; 6], payload: Payload<f32>
-    ) -> MomentumAndRate<6, f32>;
-    MassMatrix: inverse_mass_matrix_times_torques(q: [f32; 6], tau: [f32; 6]) -> [f32; 6];
-    PayloadDynamics: forward_dynamics_derivatives_with_payload(
-        q: [f32; 6], qd: [f32; 6], tau: [f32; 6], payload: Payload<f32>
-    ) -> AccelerationDerivatives<6, f32>;
-    JacobianDerivatives: jacobian_rate(q: [f32; 6], qd: [f32; 6]) -> [[f32; 6]; 6];
-    JacobianDerivatives: jacobian_derivatives(q: [f32; 6]) -> [[[f32; 6]; 6]; 6];
-    InverseDynamicsGradient: torque_gradient(
-        q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], multipliers: [f32; 6]
-    ) -> TorqueGradient<6, f32>;
-    ForwardDynamicsDerivatives: forward_dynamics_derivatives(q: [f32; 6], qd: [f32; 6], tau: [f32; 6])
-        -> AccelerationDerivatives<6, f32>;
-    InverseDynamicsHessian: torque_hessian(
-        q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], multipliers: [f32; 6]
-    ) -> TorqueHessian<6, f32>;
-    EulerStep: euler_step(q: [f32; 6], qd: [f32; 6], tau: [f32; 6], step: f32) -> NextState<6, f32>;
-    EulerStepDerivatives: euler_step_derivatives(q: [f32; 6], qd: [f32; 6], tau: [f32; 6], step: f32)
-        -> NextStateDerivatives<6, f32>;
+/// The functions of an arm with one tip, on a base that stands still or that something moves, but its torques.
+macro_rules! of_arm {
+    ([$($found:tt)*]) => { modules! { $($found)* } };
+    ($found:tt InverseDynamics $axes:tt = $name:ident $arguments:tt -> $returned:ident:
+        $summary:literal $(, $details:literal)?; $($rest:tt)*) => {
+        of_arm! { $found $($rest)* }
+    };
+    ([$($found:tt)*] $variant:ident [$what:ident $(. $load:tt)?] = $name:ident $arguments:tt
+        -> $returned:ident $(at $of_frame:ident)?: $summary:literal $(, $details:literal)?; $($rest:tt)*) => {
+        of_arm! { @ $($load)? [$($found)*] $name $arguments $($rest)* }
+    };
+    ($found:tt $variant:ident $axes:tt = $name:ident $arguments:tt
+        -> $returned:ident: $summary:literal $(, $details:literal)?; $($rest:tt)*) => {
+        of_arm! { $found $($rest)* }
+    };
+    (@ with_wrenches $found:tt $name:ident $arguments:tt $($rest:tt)*) => { of_arm! { $found $($rest)* } };
+    (@ floating $found:tt $name:ident $arguments:tt $($rest:tt)*) => { of_arm! { $found $($rest)* } };
+    (@ of_loops $found:tt $name:ident $arguments:tt $($rest:tt)*) => { of_arm! { $found $($rest)* } };
+    (@ $($load:ident)? [$($found:tt)*] $name:ident $arguments:tt $($rest:tt)*) => {
+        of_arm! { [$($found)* $name $arguments] $($rest)* }
+    };
+    ($($all:tt)*) => { of_arm! { [] $($all)* } };
 }
+
+rne_functions::functions!(of_arm);

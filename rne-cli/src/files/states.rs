@@ -241,7 +241,7 @@ impl Remarks {
             let definition = DynArm::from_robot(arm.robot());
             self.open.see(before, rows.chunks(width), |row| {
                 let step = definition.closure_step(&row[..dof], &row[dof..dof + passive]);
-                step.is_ok_and(|(_, residual)| residual.iter().any(|left| left.abs() > CLOSED))
+                step.is_ok_and(|step| step.residual.iter().any(|left| left.abs() > CLOSED))
             });
         }
     }

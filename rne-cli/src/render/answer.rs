@@ -2,7 +2,6 @@
 
 use std::fmt::Write as _;
 
-use rne::{Payload, Wrench};
 use rne_codegen::OfRobot as _;
 use rne_codegen::{Answer, Argument, Function, Labels, MatrixUnit, Shape};
 use rne_model::{INERTIAL_PARAMETERS, Inertia, InertiaElement, JointKind, Robot, exact_digits};
@@ -87,16 +86,12 @@ pub(crate) fn text(robot: &Robot, state: &State, numbers: &[f64]) -> String {
 fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
     let forward = state.function.returns_accelerations();
     let takes = |argument| state.function.takes(argument);
-    let all = [
-        ("q", &state.q[..], takes(Argument::Positions)),
-        ("qd", &state.qd, takes(Argument::Rates)),
-        ("qdd", &state.qdd, takes(Argument::Accelerations)),
-        ("tau", &state.tau, takes(Argument::Torques)),
-        (if forward { "qdd" } else { "tau" }, result, true),
-    ];
+    let given = state.function.arguments().iter();
+    let given = given.filter_map(|argument| Some((argument.name(), state.of_joints(*argument)?)));
+    let all = given.chain([(if forward { "qdd" } else { "tau" }, result)]);
     let mut cells = vec![vec![String::new()]];
     cells.extend(robot.independent_joints().map(|joint| vec![format!("  {}", joint.name)]));
-    for (title, values, _) in all.into_iter().filter(|(.., taken)| *taken) {
+    for (title, values) in all {
         let numbers: Vec<String> = values.iter().copied().map(exact_digits).collect();
         let column = std::iter::once(title.to_owned()).chain(at_the_point(&numbers));
         cells.iter_mut().zip(column).for_each(|(line, cell)| line.push(cell));
@@ -105,21 +100,19 @@ fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
         line.push(unit(joint.row.kind, forward).to_owned());
     }
     write_lines(text, &cells);
-    if let Some(Wrench { force, moment }) = &state.wrench {
+    if let Some(wrench) = &state.wrench {
         let frame = state.function.frame(robot).map(|frame| robot.frame_name(frame));
         let link = frame.map_or_else(|| link_with_tip(robot), |frame| format!("the link of {frame}, in its axes,"));
-        let _ = writeln!(text, "{QUIET}{link} exerts ({}) N, ({}) N m{QUIET:#}", list(force), list(moment));
+        let _ = writeln!(text, "{QUIET}{link} exerts {}{QUIET:#}", exerted(&wrench.force, &wrench.moment));
     }
-    if takes(Argument::Wrenches) {
-        for (tip, Wrench { force, moment }) in robot.tip_names().iter().zip(&state.wrenches) {
-            let _ = writeln!(text, "{QUIET}tip {tip} exerts ({}) N, ({}) N m{QUIET:#}", list(force), list(moment));
-        }
+    for (tip, wrench) in robot.tip_names().iter().zip(&state.wrenches) {
+        let _ = writeln!(text, "{QUIET}tip {tip} exerts {}{QUIET:#}", exerted(&wrench.force, &wrench.moment));
     }
-    if let Some(Payload { mass, com, inertia }) = &state.payload {
-        let mass = exact_digits(*mass);
-        let _ = writeln!(text, "{QUIET}the tip carries {mass} kg with its centre at ({}) m{QUIET:#}", list(com));
-        if *inertia != Inertia::default() {
-            let elements = InertiaElement::ALL.map(|element| exact_digits(*element.of(inertia))).join(", ");
+    if let Some(payload) = &state.payload {
+        let (mass, com) = (exact_digits(payload.mass), list(&payload.com));
+        let _ = writeln!(text, "{QUIET}the tip carries {mass} kg with its centre at ({com}) m{QUIET:#}");
+        if payload.inertia != Inertia::default() {
+            let elements = InertiaElement::ALL.map(|element| exact_digits(*element.of(&payload.inertia))).join(", ");
             let _ = writeln!(text, "{QUIET}and the inertia xx, yy, zz, xy, xz, yz = {elements} kg m²{QUIET:#}");
         }
     }
@@ -147,6 +140,11 @@ fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
         let _ = writeln!(text, "{QUIET}the base turns with ({omega}) rad/s, ({omega_dot}) rad/s² and accelerates with");
         let _ = writeln!(text, "({acceleration}) m/s², gravity is ({gravity}) m/s², all in frame 0{QUIET:#}");
     }
+}
+
+/// A force and a moment with their units.
+fn exerted(force: &[f64; 3], moment: &[f64; 3]) -> String {
+    format!("({}) N, ({}) N m", list(force), list(moment))
 }
 
 /// Numbers with commas between them.

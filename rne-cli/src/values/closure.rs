@@ -107,11 +107,11 @@ fn three_digits(x: f64) -> String {
 /// The closure that Newton's method finds from a guess.
 fn newton(arm: &DynArm, q: &[f64], mut passive: Vec<f64>) -> Option<Vec<f64>> {
     for _ in 0..STEPS {
-        let (next, residual) = arm.closure_step(q, &passive).ok()?;
-        if residual.iter().all(|left| left.abs() < CLOSED) {
+        let step = arm.closure_step(q, &passive).ok()?;
+        if step.residual.iter().all(|left| left.abs() < CLOSED) {
             return Some(passive);
         }
-        passive = next;
+        passive = step.passive;
     }
     None
 }
@@ -125,7 +125,7 @@ fn pivots(robot: &Robot, arm: &DynArm, q: &[f64], passive: &[f64]) -> Vec<f64> {
         let [ahead, behind] = [STEP, -STEP].map(|step| {
             let mut moved = passive.to_vec();
             moved[joint] += step;
-            arm.closure_step(q, &moved).map(|(_, residual)| residual).unwrap_or_default()
+            arm.closure_step(q, &moved).map(|step| step.residual).unwrap_or_default()
         });
         let slope = |equation: usize| (ahead.get(equation).zip(behind.get(equation))).map_or(0.0, |(a, b)| a - b);
         order.iter().map(|row| slope(row.equation) / (2.0 * STEP)).collect::<Vec<f64>>()

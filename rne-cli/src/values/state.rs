@@ -170,6 +170,17 @@ impl State {
         })
     }
 
+    /// The numbers of an argument that says how the joints move and what drives them.
+    pub(crate) fn of_joints(&self, argument: Argument) -> Option<&[f64]> {
+        match argument {
+            Argument::Positions => Some(&self.q),
+            Argument::Rates => Some(&self.qd),
+            Argument::Accelerations => Some(&self.qdd),
+            Argument::Torques => Some(&self.tau),
+            _ => None,
+        }
+    }
+
     /// The velocity of a base that nothing holds.
     pub(crate) const fn twist(&self) -> BaseTwist<f64> {
         BaseTwist { linear: self.base.velocity, angular: self.base.omega }
@@ -299,17 +310,14 @@ impl FromStr for TipWrench {
     }
 }
 
-/// The wrench at each tip of a robot: that of the command line, or zero.
+/// The wrench at each tip of a robot, for a function that takes them: that of the command line, or zero.
 fn tip_wrenches(function: Function, given: &[TipWrench], robot: &Robot) -> Result<Vec<Wrench<f64>>, Failure> {
     let names = robot.tip_names();
-    let mut wrenches = vec![Wrench::zero(); names.len()];
     if !function.takes(Argument::Wrenches) {
-        return if given.is_empty() {
-            Ok(wrenches)
-        } else {
-            Err(not_taken(function, "--tip-wrench", Argument::Wrenches))
-        };
+        let refused = given.first().map(|_| not_taken(function, "--tip-wrench", Argument::Wrenches));
+        return refused.map_or(Ok(Vec::new()), Err);
     }
+    let mut wrenches = vec![Wrench::zero(); names.len()];
     if given.is_empty() && !function.is_of_floating_base() {
         return Err(Failure::usage(format_args!(
             "{function} needs --tip-wrench NAME=fx,fy,fz,nx,ny,nz for at least one tip of {}: `{}`",

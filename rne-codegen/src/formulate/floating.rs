@@ -1,5 +1,6 @@
 //! Results of a robot whose base nothing holds: the rows of the base stand before those of the joints.
 
+use crate::argument_array::all_names_of;
 use crate::coordinates::Coordinates;
 use crate::formulate::ldlt::{self, System};
 use crate::formulate::{Frame, Outputs, components, square};
@@ -7,12 +8,12 @@ use crate::ir::{Axis, Builder, Matrix, Name, Quantity, Symbol, Vector, WithRespe
 
 /// The rotation of the base: an argument.
 pub(crate) fn base_rotation(builder: &Builder) -> Matrix<'_> {
-    Matrix::from_elements(Name::of_base_rotation().map(|name| builder.argument(name)))
+    Matrix::from_elements(all_names_of::<9>("base_rotation", 0).map(|name| builder.argument(name)))
 }
 
 /// The pose of the base: an argument.
 pub(crate) fn pose_of_base(builder: &Builder) -> Frame<'_> {
-    let [rotation @ .., x, y, z] = Name::of_pose().map(|name| builder.argument(name));
+    let [rotation @ .., x, y, z] = all_names_of::<12>("pose", 0).map(|name| builder.argument(name));
     Frame { rotation: Matrix::from_elements(rotation), origin: Vector([x, y, z]) }
 }
 

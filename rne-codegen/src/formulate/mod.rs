@@ -41,6 +41,7 @@ use std::array::from_fn;
 
 use rne_model::{PER_LINK, Robot};
 
+use crate::argument_array::all_names_of;
 use crate::coordinates::{Coordinates, scaled};
 use crate::formulate::ldlt::System;
 use crate::formulate::mass_matrix::OfBase;
@@ -206,7 +207,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
             AtTip::Wrench(Wrench { force, moment })
         } else if function.takes(Argument::Wrenches) {
             let wrench = |tip| {
-                let [fx, fy, fz, nx, ny, nz] = Name::of_tip(tip).map(|name| builder.argument(name));
+                let [fx, fy, fz, nx, ny, nz] = all_names_of::<6>("wrenches", tip).map(|name| builder.argument(name));
                 Wrench { force: Vector([fx, fy, fz]), moment: Vector([nx, ny, nz]) }
             };
             AtTip::Wrenches((1..=arm.tips.len()).map(wrench).collect())

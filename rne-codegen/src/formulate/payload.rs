@@ -8,9 +8,10 @@
 //! f = m (c̈ - g)                   n = I ω̇ + ω × (I ω) + c × f          about the origin of the tip frame
 //! ```
 
+use crate::argument_array::all_names_of;
 use crate::formulate::{Arm, Motion, Wrench};
 use crate::function::Argument;
-use crate::ir::{Builder, Matrix, Name, Quantity, Symbol, Vector};
+use crate::ir::{Builder, Matrix, Quantity, Symbol, Vector};
 
 /// A payload, in tip axes.
 #[derive(Clone, Copy)]
@@ -28,7 +29,8 @@ impl<'s> Payload<'s> {
         if !builder.function.takes(Argument::Payload) {
             return None;
         }
-        let [mass, x, y, z, xx, yy, zz, xy, xz, yz] = Name::of_payload(dof + 1).map(|name| builder.argument(name));
+        let [mass, x, y, z, xx, yy, zz, xy, xz, yz] =
+            all_names_of::<10>("payload", dof + 1).map(|name| builder.argument(name));
         Some(Self {
             mass,
             com: Vector([x, y, z]),

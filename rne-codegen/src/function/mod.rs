@@ -4,7 +4,7 @@ mod own;
 
 pub use rne_functions::{
     Answer, AnswerTable, Argument, ArgumentPart, Axes, Base, Capability, Entry, Function, Labels, Layout, Length, Load,
-    MatrixUnit, Record, Returned, Shape, Sizes, What,
+    MatrixUnit, Owner, Record, Shape, Sizes, What,
 };
 use rne_model::{FrameId, Robot};
 

@@ -1,6 +1,6 @@
 //! The full name of a number in the code: quantity, joint, component, and of what it is the derivative.
 
-use std::{array, fmt};
+use std::fmt;
 
 use super::{Axis, Component, Indices, Quantity};
 
@@ -66,49 +66,17 @@ impl Name {
         Self { quantity, joint, component: Component::Scalar, indices: [0; 2], part: 0, by: None }
     }
 
-    /// The names of the numbers of a payload, at the tip `tip` = n + 1: mass; centre of mass x, y, z; inertia xx, yy,
-    /// zz, xy, xz, yz.
-    pub(crate) const fn of_payload(tip: usize) -> [Self; 10] {
+    /// The number at place `at` among the `count` numbers of a quantity: one number; x, y, z; an inertia xx, yy, zz, xy,
+    /// xz, yz; or a matrix by rows.
+    pub(crate) const fn nth(quantity: Quantity, joint: usize, count: usize, at: usize) -> Self {
         use Axis::{X, Y, Z};
-        let [com, inertia] = [Quantity::Com, Quantity::Inertia];
-        [
-            Self::scalar(Quantity::Mass, tip),
-            Self::vector(com, tip, X),
-            Self::vector(com, tip, Y),
-            Self::vector(com, tip, Z),
-            Self::matrix(inertia, tip, X, X),
-            Self::matrix(inertia, tip, Y, Y),
-            Self::matrix(inertia, tip, Z, Z),
-            Self::matrix(inertia, tip, X, Y),
-            Self::matrix(inertia, tip, X, Z),
-            Self::matrix(inertia, tip, Y, Z),
-        ]
-    }
-
-    /// The names of the numbers of the wrench at a tip, counted from 1: force x, y, z, moment x, y, z.
-    pub(crate) fn of_tip(tip: usize) -> [Self; 6] {
-        let [force, moment] =
-            [Quantity::TipForce, Quantity::TipMoment].map(|part| Axis::ALL.map(|axis| Self::vector(part, tip, axis)));
-        let ([fx, fy, fz], [nx, ny, nz]) = (force, moment);
-        [fx, fy, fz, nx, ny, nz]
-    }
-
-    /// The names of the velocity of a base that nothing holds: linear x, y, z, angular x, y, z.
-    pub(crate) fn of_twist() -> [Self; 6] {
-        array::from_fn(|index| Self::of_base(Quantity::OriginVelocity, Quantity::Omega, index))
-    }
-
-    /// The names of the pose of such a base in the world: the rotation by rows, then the origin.
-    pub(crate) fn of_pose() -> [Self; 12] {
-        array::from_fn(|index| match index {
-            0..9 => Self::matrix(Quantity::FrameRotation, 0, Axis::ALL[index / 3], Axis::ALL[index % 3]),
-            _ => Self::vector(Quantity::FrameOrigin, 0, Axis::ALL[index - 9]),
-        })
-    }
-
-    /// The names of the elements of the rotation of the base, by rows.
-    pub(crate) fn of_base_rotation() -> [Self; 9] {
-        std::array::from_fn(|at| Self::matrix(Quantity::BaseRotation, 0, Axis::ALL[at / 3], Axis::ALL[at % 3]))
+        const OF_INERTIA: [(Axis, Axis); 6] = [(X, X), (Y, Y), (Z, Z), (X, Y), (X, Z), (Y, Z)];
+        match count {
+            3 => Self::vector(quantity, joint, Axis::ALL[at]),
+            6 => Self::matrix(quantity, joint, OF_INERTIA[at].0, OF_INERTIA[at].1),
+            9 => Self::matrix(quantity, joint, Axis::ALL[at / 3], Axis::ALL[at % 3]),
+            _ => Self::scalar(quantity, joint),
+        }
     }
 
     /// The name of one of six numbers of the base, counted from 0: x, y, z of `linear`, then of `angular`.

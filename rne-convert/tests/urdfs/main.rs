@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use rne_convert::{Imported, Options, Selection, Urdf, robot_file};
 use rne_model::{Convention, Inertia, JointKind, Reader, Robot};
-use rne_runtime::{BaseMotion, DynArm, Wrench};
+use rne_runtime::{BaseMotion, DynArm, DynFloatingTorques, Wrench};
 
 mod bodies;
 mod chain;

@@ -143,7 +143,8 @@ fn a_floating_base_is_the_root_of_a_urdf() {
             let arm = DynArm::from_robot(robot);
             let (q, qd, qdd) = ([0.3, -0.7], [1.0, -2.0], [3.0, 2.0]);
             let tips = vec![Wrench::zero(); arm.tips().len()];
-            let (wrench, tau) = arm.inverse_dynamics_of_floating_base(&q, &qd, &qdd, &base, &tips).unwrap();
+            let DynFloatingTorques { wrench, tau } =
+                arm.inverse_dynamics_of_floating_base(&q, &qd, &qdd, &base, &tips).unwrap();
             [wrench.force.to_vec(), wrench.moment.to_vec(), tau].concat()
         };
         for (a, b) in wrench(&robot).iter().zip(wrench(&other)) {
@@ -273,7 +274,8 @@ fn the_placement_of_a_floating_joint_is_told() {
         let arm = DynArm::from_robot(&floating.robot);
         let (q, free) = ([0.4], vec![Wrench::zero(); arm.tips().len()]);
         let base = BaseMotion { gravity, ..BaseMotion::default() };
-        let (wrench, tau) = arm.inverse_dynamics_of_floating_base(&q, &[0.0], &[0.0], &base, &free).unwrap();
+        let DynFloatingTorques { wrench, tau } =
+            arm.inverse_dynamics_of_floating_base(&q, &[0.0], &[0.0], &base, &free).unwrap();
         for (force, gravity) in wrench.force.iter().zip(gravity) {
             assert!(f64::abs(force + 4.0 * gravity) < 1e-13, "the weight of 4 kg: {force} {gravity}");
         }

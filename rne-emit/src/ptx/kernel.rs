@@ -21,7 +21,7 @@ const MOST_SHARED: usize = 48 * 1024;
 const WIDE: usize = 32;
 
 macro_rules! abouts {
-    ($($name:ident: $argument:ident, $length:ident $(($elements:literal))?, $quantity:ident, $about:literal;)*) => {
+    ($($name:ident: $argument:ident, $owner:ident [$($quantity:ident * $count:literal),*], $about:literal;)*) => {
         /// The meaning of an argument array, with its unit.
         fn about(array: &str) -> &'static str {
             match array {

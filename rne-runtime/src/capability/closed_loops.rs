@@ -1,19 +1,8 @@
 //! The functions of a robot with closed loops.
 
-use super::{FloatingAccelerations, FloatingTorques};
 #[cfg(doc)]
 use super::{FloatingBase, TipWrenches};
-use crate::{BaseMotion, Scalar, Wrench};
-
-/// A Newton step towards closed loops.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ClosureStep<const PASSIVE: usize, const EQUATIONS: usize, T> {
-    /// Positions of the dependent joints, rad or m.
-    pub passive: [T; PASSIVE],
-    /// The residual of the equations of the loops, loop by loop: p₂ - p₁ of the two places, m, in the axes of the loop,
-    /// then the products of the axes that must be perpendicular.
-    pub residual: [T; EQUATIONS],
-}
+use crate::{BaseMotion, ClosureStep, FloatingAccelerations, FloatingTorques, Scalar, Wrench};
 
 /// A robot with closed loops: an ankle that two rods drive, a four-bar linkage, a delta robot.
 ///

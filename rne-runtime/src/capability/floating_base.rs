@@ -2,49 +2,9 @@
 
 #[cfg(doc)]
 use super::{Energy, InverseDynamics, MassMatrix, Regressor, TipWrenches};
-use crate::{BaseMotion, BaseTwist, Pose, Scalar, Wrench};
-
-/// The torques of a robot whose base nothing holds, and what its base needs, for one state.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FloatingTorques<const DOF: usize, T> {
-    /// Force (N) and moment (N m) about the origin of frame 0, in axes of frame 0, that must act ON the base beside
-    /// gravity so that it moves as told. They are zero in free flight.
-    pub wrench: Wrench<T>,
-    /// Torques or forces of the actuators, N m or N.
-    pub tau: [T; DOF],
-}
-
-#[cfg(feature = "arm")]
-impl<const DOF: usize, T> From<(Wrench<T>, [T; DOF])> for FloatingTorques<DOF, T> {
-    fn from((wrench, tau): (Wrench<T>, [T; DOF])) -> Self {
-        Self { wrench, tau }
-    }
-}
-
-/// The acceleration of a base that nothing holds, in axes of frame 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BaseAcceleration<T> {
-    /// Acceleration of the origin of frame 0 less gravity, m/s²: what an accelerometer reads there.
-    pub linear: [T; 3],
-    /// Angular acceleration ω̇, rad/s².
-    pub angular: [T; 3],
-}
-
-/// The motion of a robot whose base nothing holds, from torques, for one state.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FloatingAccelerations<const DOF: usize, T> {
-    /// Acceleration of the base, less gravity.
-    pub base: BaseAcceleration<T>,
-    /// Accelerations of the joints, rad/s² or m/s².
-    pub qdd: [T; DOF],
-}
-
-#[cfg(feature = "arm")]
-impl<const DOF: usize, T> From<(BaseAcceleration<T>, [T; DOF])> for FloatingAccelerations<DOF, T> {
-    fn from((base, qdd): (BaseAcceleration<T>, [T; DOF])) -> Self {
-        Self { base, qdd }
-    }
-}
+use crate::{
+    AccelerationsAndWrenches, BaseMotion, BaseTwist, FloatingAccelerations, FloatingTorques, Pose, Scalar, Wrench,
+};
 
 /// Dynamics of a robot whose base nothing holds: it walks, flies or rides. Its base is the link `floating_base` of the
 /// robot file; without that key the derive is an error, unless its attribute has `allow_lints`: then the base has no
@@ -206,24 +166,6 @@ pub trait FloatingKinematics<const DOF: usize, const NV: usize, const TIPS: usiz
         omega: &[T; 3],
         base_rotation: &[[T; 3]; 3],
     ) -> [[T; 6]; TIPS];
-}
-
-/// The accelerations of a robot on a floating base, and the wrenches of its contacts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AccelerationsAndWrenches<const DOF: usize, const TIPS: usize, T> {
-    /// Accelerations of the base and of the joints.
-    pub accelerations: FloatingAccelerations<DOF, T>,
-    /// At each tip: force, N, and moment, N m, about its origin, which its contact exerts ON the robot, in world axes.
-    pub wrenches_on_robot: [Wrench<T>; TIPS],
-}
-
-#[cfg(feature = "arm")]
-impl<const DOF: usize, const TIPS: usize, T> From<(BaseAcceleration<T>, [T; DOF], [Wrench<T>; TIPS])>
-    for AccelerationsAndWrenches<DOF, TIPS, T>
-{
-    fn from((base, qdd, wrenches_on_robot): (BaseAcceleration<T>, [T; DOF], [Wrench<T>; TIPS])) -> Self {
-        Self { accelerations: FloatingAccelerations { base, qdd }, wrenches_on_robot }
-    }
 }
 
 /// Motion of a robot whose base nothing holds while contacts hold some of its tips: a robot that stands or walks.
