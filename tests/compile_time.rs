@@ -184,6 +184,7 @@ fn all_derives_of_seven_joints_build() {
                         | Capability::EulerStepDerivatives
                         | Capability::FloatingEulerStep
                         | Capability::FloatingEulerStepDerivatives
+                        | Capability::FloatingPayloadDynamics
                 )
         };
         let functions = Function::OF_TREES.into_iter().filter(|&function| !is_left_out(function));

@@ -84,7 +84,8 @@ fn write(methods: &mut String, function: Function, name: &str) {
         methods,
         "    #[pyo3(signature = ({signature}*, {}))]\n    \
          fn {name}<'py>(&self, py: Python<'py>, {kinds}) -> PyResult<Bound<'py, PyAny>> {{\n        \
-         let ({mutable}function, {mutable}given) = (Function::{function:?}, vec![{given}]);\n        {with_payload}\n        \
+         let ({mutable}function, {mutable}given) = (Function::{function:?}, vec![{given}]);\n        \
+         {with_payload}\n        \
          self.compute_at(py, {frame}, function, given, parameters, out)\n    }}",
         named.join(", ")
     );
@@ -98,16 +99,18 @@ fn about(argument: Argument) -> String {
         Shape::Array(Length::Joints, _) => return String::new(),
         Shape::Number => "a number, or shape (N,).".to_owned(),
         Shape::Array(Length::Passive, _) => {
-            format!("{numbers}, the positions of the dependent joints in their order, or a dict by their names; `close` \
-                     finds them.")
+            format!(
+                "{numbers}, the positions of the dependent joints in their order, or a dict by their names; \
+                 `close` finds them."
+            )
         }
         Shape::Array(Length::Tips, _) => format!(
             "force, then moment, of each tip; a dict from names of tips to six numbers, or to arrays of shape (N, 6), \
              where a tip without an entry exerts nothing; or an array of {numbers}."
         ),
         Shape::Record(Record::Payload, _) => {
-            "shape (10,) or (N, 10); `rne.payload` makes one. A point mass has the first four numbers alone: shape (4,) \
-             or (N, 4)."
+            "shape (10,) or (N, 10); `rne.payload` makes one. A point mass has the first four numbers alone: \
+             shape (4,) or (N, 4)."
                 .to_owned()
         }
         Shape::Record(Record::BaseMotion, _) => {
@@ -134,8 +137,8 @@ fn returned(function: Function) -> String {
             let (first, columns) = (&dimensions(shape)[0], format!("10 ({})", rows[0]));
             let floating = if function.is_of_floating_base() { "floating_" } else { "" };
             format!(
-                "the matrix whose product with the `{floating}inertial_parameters`, body by body, are the torques, with \
-                 force and moment before them for a floating base: {}.",
+                "the matrix whose product with the `{floating}inertial_parameters`, body by body, are the torques, \
+                 with force and moment before them for a floating base: {}.",
                 in_words(&[first.clone(), columns])
             )
         }
@@ -146,13 +149,13 @@ fn returned(function: Function) -> String {
         Shape::Array(..) => format!("{numbers}."),
         Shape::Record(Record::Pose, _) => format!("a homogeneous matrix: {numbers}."),
         Shape::Record(Record::NextStateDerivatives, _) => {
-            "A and B, of shape (2 n, 2 n) and (2 n, n), or (N, 2 n, 2 n) and (N, 2 n, n). `out` has their blocks: shape \
-             (2, 3, n, n) or (N, 2, 3, n, n), of the positions and of the velocities, by q, by qd and by tau."
+            "A and B, of shape (2 n, 2 n) and (2 n, n), or (N, 2 n, 2 n) and (N, 2 n, n). `out` has their blocks: \
+             shape (2, 3, n, n) or (N, 2, 3, n, n), of the positions and of the velocities, by q, by qd and by tau."
                 .to_owned()
         }
         Shape::Record(Record::FloatingStepDerivatives, _) => {
-            "A and B, of shape (12 + 2 n, 12 + 2 n) and (12 + 2 n, n), or (N, 12 + 2 n, 12 + 2 n) and (N, 12 + 2 n, n); \
-             rows and columns are the positions, then the velocities, each of the base before the joints. `out` is one \
+            "A and B, of shape (12 + 2 n, 12 + 2 n) and (12 + 2 n, n), or (N, 12 + 2 n, 12 + 2 n) and \
+             (N, 12 + 2 n, n); rows and columns are the positions, then the velocities, each of the base before the joints. `out` is one \
              array with the rows of q_dq, q_dv, q_dtau, v_dq, v_dv and v_dtau, one after the other."
                 .to_owned()
         }

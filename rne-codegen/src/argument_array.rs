@@ -1,9 +1,7 @@
 //! The arguments of a generated function.
 
-use std::array::from_fn;
-
 use crate::function::{ArgumentPart, Owner};
-use crate::ir::{Name, Quantity};
+use crate::ir::{Name, Quantity, names_of};
 use crate::program::Program;
 
 /// An argument array and the names of its elements; `None` for an element that is not used.
@@ -91,29 +89,4 @@ fn parameters(program: &Program) -> Option<ArgumentArray> {
     let names = (1..=program.parameters).map(|index| Name::scalar(Quantity::Parameter, index));
     let elements = names.map(|name| program.arguments().any(|used| used == name).then_some(name)).collect();
     (program.parameters > 0).then_some(ArgumentArray { name: "parameters", elements, row: None, is_number: false })
-}
-
-/// The names of the numbers of an array that belong to a joint, to the base (0) or to a tip, in order.
-fn names_of(array: &str, joint: usize) -> impl Iterator<Item = Name> {
-    let quantities = quantities(array).iter();
-    quantities.flat_map(move |&(quantity, count)| (0..count).map(move |at| Name::nth(quantity, joint, count, at)))
-}
-
-/// The names of all numbers of an array that does not depend on the robot, as the table of arguments has them.
-pub(crate) fn all_names_of<const COUNT: usize>(array: &str, joint: usize) -> [Name; COUNT] {
-    let names: Vec<Name> = names_of(array, joint).collect();
-    from_fn(|at| names[at])
-}
-
-/// The quantities of the numbers of an array, and how many numbers each has.
-fn quantities(array: &str) -> &'static [(Quantity, usize)] {
-    macro_rules! quantities {
-        ($($name:ident: $argument:ident, $owner:ident [$($quantity:ident * $count:literal),*], $about:literal;)*) => {
-            match array {
-                $(stringify!($name) => &[$((Quantity::$quantity, $count)),*],)*
-                name => unreachable!("no argument is passed in {name}"),
-            }
-        };
-    }
-    rne_functions::argument_parts!(quantities)
 }

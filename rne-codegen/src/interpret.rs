@@ -2,8 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::argument_array::all_names_of;
-use crate::ir::{Component, Name, Operator, Quantity};
+use crate::ir::{Component, Name, Operator, Quantity, all_names_of};
 use crate::program::Program;
 use crate::values::{Contraction, Negated, Value, ValueId, Values};
 

@@ -198,9 +198,13 @@ impl Target<'_> {
                     let field = format_ident!("{field}");
                     if field == *part { quote!(#field) } else { quote!(#field: #part) }
                 });
-                let record = format_ident!("{}", record.name());
-                // the velocity of a base has no influence
-                Some(quote!(let #krate::#record { #(#fields,)* .. } = #name;))
+                let type_name = format_ident!("{}", record.name());
+                let fields = match record {
+                    // its velocity has no influence
+                    Record::BaseMotion => quote!(#(#fields,)* ..),
+                    _ => quote!(#(#fields),*),
+                };
+                Some(quote!(let #krate::#type_name { #fields } = #name;))
             }
             // named as its array, too
             shape => {

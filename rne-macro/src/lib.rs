@@ -293,6 +293,20 @@ pub fn derive_floating_energy(input: TokenStream) -> TokenStream {
     expand::capability(Capability::FloatingEnergy, input.into()).into()
 }
 
+/// Implements the trait `FloatingPayloadDynamics` for a struct: torques, mass matrix, bias and accelerations of a robot
+/// with a floating base and a payload that is known when the program runs.
+///
+/// The base is the link `floating_base` of the robot file; a file without that key is an error, unless the attribute
+/// has `allow_lints`: then the base has no mass.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations of each function, such as
+/// `FLOATING_MASS_MATRIX_WITH_PAYLOAD_OPERATIONS`; `DOF`, names and limits come with `InverseDynamics`.
+#[proc_macro_derive(FloatingPayloadDynamics, attributes(robot))]
+pub fn derive_floating_payload_dynamics(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::FloatingPayloadDynamics, input.into()).into()
+}
+
 /// Implements the trait `FloatingRegressor` for a struct: the wrench on a base that nothing holds and the torques per
 /// inertial parameter of the base and of each link.
 ///

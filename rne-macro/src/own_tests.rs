@@ -45,6 +45,7 @@ pub(crate) fn of_capability(capability: Capability) -> &'static [&'static str] {
         // an `Arm` does not know the tips of a file
         Capability::TipWrenches
         | Capability::FloatingBase
+        | Capability::FloatingPayloadDynamics
         | Capability::CentroidalMomentum
         | Capability::FloatingRegressor
         | Capability::FloatingEnergy

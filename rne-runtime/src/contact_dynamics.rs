@@ -104,7 +104,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
             count += 1;
         }
         Held {
-            mass: self.floating_mass_matrix(q).as_mut(),
+            mass: self.floating_mass_matrix(q, AtTip::Nothing).as_mut(),
             inverse_of_mass: self.velocities.all(&T::zero()).as_mut(),
             columns: &mut columns[..count],
             a: &mut a.as_mut().as_flattened_mut()[..count],
@@ -126,5 +126,6 @@ definitions! { ContactDynamics<DOF, NV, TIPS> {
     /// As [`ContactDynamics::forward_dynamics_in_contact`]: the acceleration of the base, those of the joints, and the
     /// wrench on the robot at each of the [tips](Self::tips).
     fn forward_dynamics_in_contact(q: joints, qd: joints, tau: joints, omega: omega, base_rotation: rotation)
-        -> AccelerationsAndWrenches<DOF, TIPS> = |robot| robot.forward_dynamics_in_contact([q, qd, tau], omega, base_rotation);
+        -> AccelerationsAndWrenches<DOF, TIPS> =
+        |robot| robot.forward_dynamics_in_contact([q, qd, tau], omega, base_rotation);
 } }

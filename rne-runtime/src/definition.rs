@@ -128,7 +128,10 @@ macro_rules! definitions {
             |$robot:ident| $body:expr;
     )*) => {
         impl<$(const $size: usize,)* S: Constant> $trait for $robot_type {
-            $(fn $name<T: Scalar>(&self, $($arg: $crate::shapes::known!($kind)),*) -> $crate::shapes::known!($shape $(<$($of),*>)?) {
+            $(fn $name<T: Scalar>(
+                &self,
+                $($arg: $crate::shapes::known!($kind)),*
+            ) -> $crate::shapes::known!($shape $(<$($of),*>)?) {
                 let $robot = self.definition();
                 From::from($body)
             })*

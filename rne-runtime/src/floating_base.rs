@@ -23,7 +23,8 @@ use crate::link_state::{ForceMoment, JointMotions};
 use crate::mechanism::Mechanism;
 use crate::per_joint::{PerJoint, Square};
 use crate::{
-    ArmWithTips, BaseAcceleration, BaseMotion, BaseTwist, CentroidalMomentum, Constant, FloatingBase, Scalar, Wrench,
+    ArmWithTips, BaseAcceleration, BaseMotion, BaseTwist, CentroidalMomentum, Constant, FloatingBase,
+    FloatingPayloadDynamics, Payload, Scalar, Wrench,
 };
 
 /// Rows of the base: x, y, z, then about x, y, z.
@@ -43,10 +44,11 @@ pub(crate) fn turning<T: Scalar>(omega: &[T; 3]) -> BaseMotion<T> {
 }
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    fn floating_mass<T: Scalar>(self, q: &[T]) -> FloatingMass<J, T> {
+    fn floating_mass<T: Scalar>(self, q: &[T], load: AtTip<'_, T>) -> FloatingMass<J, T> {
+        let load = load.matter();
         let zeros = self.zeros();
         let mut rows: [J::Of<T>; BASE] = core::array::from_fn(|_| zeros.clone());
-        let joints = self.mass_matrix_beside(q, AtTip::Nothing, |column, ForceMoment { force, moment }| {
+        let joints = self.mass_matrix_beside(q, load, |column, ForceMoment { force, moment }| {
             for (row, element) in rows.iter_mut().zip(force.iter().chain(moment.iter())) {
                 row.as_mut()[column] = *element;
             }
@@ -54,10 +56,11 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let still = JointMotions::new(q, zeros.as_ref(), zeros.as_ref());
         let columns = [Vector3::x(), Vector3::y(), Vector3::z()].map(|unit: Vector3<T>| {
             let base = BaseMotion { omega_dot: unit.into(), ..BaseMotion::fixed([T::zero(); 3]) };
-            self.of_floating_base(still, &base, AtTip::Nothing).0
+            self.of_floating_base(still, &base, load).0
         });
         let chain = self.chain;
         let mass = chain.links::<T>().fold(chain.base::<T>().mass, |mass, link| mass + link.mass);
+        let mass = if let AtTip::Payload(payload) = load { mass + payload.mass } else { mass };
         let [x, y, z] = columns.map(|column| column.moment);
         let h = Vector3::new(-columns[1].force.z, -columns[2].force.x, columns[1].force.x);
         let zero = T::zero();
@@ -139,8 +142,8 @@ pub(crate) fn of_base<T: Scalar>(x: &[T]) -> BaseAcceleration<T> {
 
 impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
     /// Six rows and columns of the base, and those of the coordinates.
-    pub(crate) fn floating_mass_matrix<T: Scalar>(self, q: &[T]) -> Square<V, T> {
-        let FloatingMass { base, rows, joints } = self.mechanism.floating_mass(self.of_joints(q).as_ref());
+    pub(crate) fn floating_mass_matrix<T: Scalar>(self, q: &[T], load: AtTip<'_, T>) -> Square<V, T> {
+        let FloatingMass { base, rows, joints } = self.mechanism.floating_mass(self.of_joints(q).as_ref(), load);
         let (rows, joints) = (self.coordinates.rows(rows), self.coordinates.symmetric(joints));
         self.velocities.of(|row| {
             self.velocities.of(|column| match (row.checked_sub(BASE), column.checked_sub(BASE)) {
@@ -174,7 +177,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         let applied = |row: usize| row.checked_sub(BASE).map_or_else(T::zero, |joint| tau[joint]);
         let mut x = self.velocities.of(|row| applied(row) - bias.as_ref()[row]);
         let mut inverse = self.velocities.all(&T::zero());
-        solve_from_the_ends(self.floating_mass_matrix(q).as_mut(), inverse.as_mut(), x.as_mut());
+        solve_from_the_ends(self.floating_mass_matrix(q, load).as_mut(), inverse.as_mut(), x.as_mut());
         x
     }
 
@@ -194,7 +197,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
     }
 
     fn centroidal_momentum_matrix<T: Scalar>(self, q: &[T]) -> [V::Of<T>; BASE] {
-        let mass = self.mechanism.floating_mass(self.of_joints(q).as_ref());
+        let mass = self.mechanism.floating_mass(self.of_joints(q).as_ref(), AtTip::Nothing);
         let (centre, FloatingMass { mut base, rows, .. }) = (mass.centre(), mass);
         let mut rows = self.coordinates.rows(rows);
         centre.take_base(&mut base);
@@ -211,7 +214,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         let zeros = self.zeros();
         let motion = [q, qd, zeros.as_ref()];
         let (Wrench { force, moment }, _) = self.torques_and_wrench(motion, &turning(omega), AtTip::Wrenches(&[]));
-        self.mechanism.floating_mass(self.of_joints(q).as_ref()).centre().rate(force, moment)
+        self.mechanism.floating_mass(self.of_joints(q).as_ref(), AtTip::Nothing).centre().rate(force, moment)
     }
 }
 
@@ -221,7 +224,7 @@ definitions! { FloatingBase<DOF, NV, TIPS> {
     fn inverse_dynamics_of_floating_base(q: joints, qd: joints, qdd: joints, base: motion, wrenches: wrenches)
         -> FloatingTorques<DOF> = |robot| robot.torques_and_wrench([q, qd, qdd], base, AtTip::Wrenches(wrenches));
     /// As [`FloatingBase::floating_mass_matrix`]: 6 + n rows.
-    fn floating_mass_matrix(q: joints) -> velocity_matrix = |robot| robot.floating_mass_matrix(q);
+    fn floating_mass_matrix(q: joints) -> velocity_matrix = |robot| robot.floating_mass_matrix(q, AtTip::Nothing);
     /// As [`FloatingBase::floating_bias`], with one of `wrenches` for each of the [tips](Self::tips): 6 + n numbers.
     fn floating_bias(q: joints, qd: joints, omega: omega, wrenches: wrenches) -> velocities =
         |robot| robot.floating_bias([q, qd], omega, AtTip::Wrenches(wrenches));
@@ -230,6 +233,23 @@ definitions! { FloatingBase<DOF, NV, TIPS> {
     fn floating_forward_dynamics(q: joints, qd: joints, tau: joints, omega: omega, wrenches: wrenches)
         -> FloatingAccelerations<DOF> =
         |robot| robot.floating_forward_dynamics([q, qd, tau], omega, AtTip::Wrenches(wrenches));
+} }
+
+definitions! { FloatingPayloadDynamics<DOF, NV> {
+    /// As [`FloatingPayloadDynamics::floating_inverse_dynamics_with_payload`]: the wrench on the base, and the torques.
+    fn floating_inverse_dynamics_with_payload(q: joints, qd: joints, qdd: joints, base: motion, payload: payload)
+        -> FloatingTorques<DOF> = |robot| robot.torques_and_wrench([q, qd, qdd], base, AtTip::Payload(payload));
+    /// As [`FloatingPayloadDynamics::floating_mass_matrix_with_payload`]: 6 + n rows.
+    fn floating_mass_matrix_with_payload(q: joints, payload: payload) -> velocity_matrix =
+        |robot| robot.floating_mass_matrix(q, AtTip::Payload(payload));
+    /// As [`FloatingPayloadDynamics::floating_bias_torques_with_payload`]: 6 + n numbers.
+    fn floating_bias_torques_with_payload(q: joints, qd: joints, omega: omega, payload: payload) -> velocities =
+        |robot| robot.floating_bias([q, qd], omega, AtTip::Payload(payload));
+    /// As [`FloatingPayloadDynamics::floating_forward_dynamics_with_payload`]: the acceleration of the base, and those
+    /// of the joints.
+    fn floating_forward_dynamics_with_payload(q: joints, qd: joints, tau: joints, omega: omega, payload: payload)
+        -> FloatingAccelerations<DOF> =
+        |robot| robot.floating_forward_dynamics([q, qd, tau], omega, AtTip::Payload(payload));
 } }
 
 definitions! { CentroidalMomentum<DOF, NV> {

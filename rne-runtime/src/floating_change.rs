@@ -148,7 +148,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         let (mut by_state, mut by_torques) =
             ([[square(), square()], [square(), square()]], [(); 2].map(|()| self.velocities.all(&self.zeros())));
         let mut lists = [(); 4].map(|()| zeros.clone());
-        let mut mass = self.floating_mass_matrix(q);
+        let mut mass = self.floating_mass_matrix(q, AtTip::Nothing);
         let forces = Forces { mass: mass.as_mut(), dq: dq.as_ref(), dqd: dqd.as_ref(), domega: domega.as_ref() };
         let change = Change::new(twist, &next, &found.linear, step);
         forces.derivatives(

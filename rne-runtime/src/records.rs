@@ -184,7 +184,8 @@ records! {
     AccelerationsAndWrenches<DOF, TIPS>, DynAccelerationsAndWrenches {
         /// Accelerations of the base and of the joints.
         accelerations: FloatingAccelerations<DOF, T> | DynFloatingAccelerations<T>,
-        /// At each tip: force, N, and moment, N m, about its origin, which its contact exerts ON the robot, in world axes.
+        /// At each tip: force, N, and moment, N m, about its origin, which its contact exerts ON the robot, in world
+        /// axes.
         wrenches_on_robot: [Wrench<T>; TIPS] | Vec<Wrench<T>>,
     }
 
@@ -242,8 +243,8 @@ records! {
     ClosureStep<PASSIVE, EQUATIONS>, DynClosureStep {
         /// Positions of the dependent joints, rad or m.
         passive: [T; PASSIVE] | Vec<T>,
-        /// The residual of the equations of the loops, loop by loop: p₂ - p₁ of the two places, m, in the axes of the loop,
-        /// then the products of the axes that must be perpendicular.
+        /// The residual of the equations of the loops, loop by loop: p₂ - p₁ of the two places, m, in the axes of the
+        /// loop, then the products of the axes that must be perpendicular.
         residual: [T; EQUATIONS] | Vec<T>,
     }
 }

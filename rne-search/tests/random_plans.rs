@@ -228,9 +228,11 @@ fn random_plans_with_rotors_are_the_seven_steps() {
 fn random_plans_of_floating_bases_are_the_seven_steps() {
     const FUNCTION: Function = Function::InverseDynamicsOfFloatingBase;
     // the bias is a part of the others
-    const SOLVED: [Function; 8] = [
+    const SOLVED: [Function; 10] = [
         Function::FloatingMassMatrix,
         Function::FloatingForwardDynamics,
+        Function::FloatingMassMatrixWithPayload,
+        Function::FloatingForwardDynamicsWithPayload,
         Function::FloatingEulerStep,
         Function::FloatingEulerStepDerivatives,
         Function::CentroidalBias,

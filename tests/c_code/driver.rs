@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use rne_codegen::{Function, Program};
+use rne_codegen::{Function, Layout, Length, Program, Shape, Sizes};
 use rne_emit::Precision;
 use rne_model::Robot;
 
@@ -109,7 +109,6 @@ impl Driver<'_> {
     }
 
     /// A function that calls all functions of a unit and prints what they return.
-    #[allow(clippy::too_many_lines)] // a line for each function
     fn calls(&self, unit: &Unit) -> String {
         let (Unit { prefix, precision, functions, .. }, n) = (unit, self.dof);
         let real = precision.c_type();
@@ -132,130 +131,33 @@ impl Driver<'_> {
         for name in joints.iter().chain(&vectors).chain(&["payload", "base_rotation", "pose"]) {
             let _ = writeln!(text, "    (void){name};");
         }
+        let wrenches = format!("(const {real} (*)[6])force");
         for function in functions {
-            let arguments = match function {
-                Function::InverseDynamics
-                | Function::Regressor
-                | Function::InverseDynamicsDerivatives
-                | Function::JointWrenches => "q, qd, qdd",
-                Function::InverseDynamicsWithWrench => "q, qd, qdd, force, moment",
-                // the moment stands behind the force
-                Function::InverseDynamicsWithWrenches | Function::InverseDynamicsDerivativesWithWrenches => {
-                    &format!("q, qd, qdd, (const {real} (*)[6])force")
-                }
-                Function::ForwardDynamicsWithWrenches | Function::ForwardDynamicsDerivativesWithWrenches => {
-                    &format!("q, qd, tau, (const {real} (*)[6])force")
-                }
-                Function::InverseDynamicsWithPayload | Function::InverseDynamicsDerivativesWithPayload => {
-                    "q, qd, qdd, payload"
-                }
-                Function::GravityTorquesWithPayload | Function::MassMatrixWithPayload => "q, payload",
-                Function::BiasTorquesWithPayload => "q, qd, payload",
-                Function::ForwardDynamicsWithPayload
-                | Function::MomentumAndRateWithPayload
-                | Function::ForwardDynamicsDerivativesWithPayload => "q, qd, tau, payload",
-                Function::InverseMassMatrixTimesTorques => "q, tau",
-                Function::InverseDynamicsFromSinCos => "sine, cosine, q, qd, qdd",
-                Function::GravityTorques
-                | Function::MassMatrix
-                | Function::InverseMassMatrix
-                | Function::ForwardKinematics
-                | Function::LinkPoses
-                | Function::Jacobian
-                | Function::JacobianDerivatives
-                | Function::PotentialEnergy
-                | Function::CentreOfMass
-                | Function::CentreOfMassJacobian
-                | Function::FloatingMassMatrix
-                | Function::CentroidalMomentumMatrix => "q",
-                Function::WrenchTorques => "q, force, moment",
-                Function::BiasTorques
-                | Function::CoriolisMatrix
-                | Function::CoriolisTorques
-                | Function::JacobianRateTimesVelocity
-                | Function::JacobianRate
-                | Function::KineticEnergy => "q, qd",
-                Function::ForwardDynamics | Function::MomentumAndRate | Function::ForwardDynamicsDerivatives => {
-                    "q, qd, tau"
-                }
-                Function::EulerStep | Function::EulerStepDerivatives => "q, qd, tau, 0.03125f",
-                // omega stands behind the moment
-                Function::FloatingEulerStep | Function::FloatingEulerStepDerivatives => {
-                    &format!("q, qd, tau, pose, moment, 0.03125f, (const {real} (*)[6])force")
-                }
-                Function::TorqueGradient | Function::TorqueHessian => "q, qd, qdd, tau",
-                Function::InverseDynamicsOnMovingBase | Function::FloatingRegressor => {
-                    "q, qd, qdd, omega, omega_dot, acceleration, gravity"
-                }
-                Function::InverseDynamicsOfFloatingBase | Function::FloatingInverseDynamicsDerivatives => {
-                    &format!("q, qd, qdd, omega, omega_dot, acceleration, gravity, (const {real} (*)[6])force")
-                }
-                Function::CentroidalBias => "q, qd, omega",
-                // omega stands behind the moment
-                Function::FloatingKineticEnergy | Function::CentroidalMomentum => "q, qd, moment",
-                Function::FloatingPotentialEnergy => "q, pose",
-                Function::ForwardDynamicsInContact => "q, qd, tau, omega, base_rotation",
-                Function::TipJacobians => "q, base_rotation",
-                Function::TipAccelerations => "q, qd, omega, base_rotation",
-                Function::FloatingBias => &format!("q, qd, omega, (const {real} (*)[6])force"),
-                Function::FloatingForwardDynamics => &format!("q, qd, tau, omega, (const {real} (*)[6])force"),
-                Function::ActuatorTorques => "qd, qdd",
-                other => unreachable!("{other} is of closed loops, which have tests of their own"),
-            };
-            let (result, address) = match function {
-                Function::KineticEnergy
-                | Function::PotentialEnergy
-                | Function::FloatingKineticEnergy
-                | Function::FloatingPotentialEnergy => {
+            let parts = function.arguments().iter().flat_map(|argument| argument.parts());
+            let arguments = parts.map(|part| match part.name {
+                "sin" => "sine",
+                "cos" => "cosine",
+                "multipliers" => "tau",
+                "step" => "0.03125f",
+                // numbers that stand one after the other: the moment after the force, omega after the moment
+                "wrenches" => wrenches.as_str(),
+                "twist" => "moment",
+                name => name.strip_prefix("base_").filter(|name| *name != "rotation").unwrap_or(name),
+            });
+            let arguments = arguments.collect::<Vec<_>>().join(", ");
+            let layout = function.layout(Sizes { dof: n, tips: 1, passive: 0, equations: 0 });
+            let (kind, lengths) = declaration(prefix, real, &layout);
+            let (result, address) = match (&layout, function.shape()) {
+                (Layout::Number, _) => {
                     let _ =
                         writeln!(text, "    {{ {real} x = {prefix}_{function}({arguments}); print_{real}(&x, 1u); }}");
                     continue;
                 }
-                Function::MassMatrix
-                | Function::MassMatrixWithPayload
-                | Function::InverseMassMatrix
-                | Function::CoriolisMatrix => (format!("{real} x[{n}][{n}]"), "x"),
-                Function::ForwardKinematics => (format!("{prefix}_pose x"), "&x"),
-                Function::LinkPoses => (format!("{prefix}_pose x[{n}]"), "x"),
-                Function::Jacobian | Function::JacobianRate => (format!("{real} x[6][{n}]"), "x"),
-                Function::JacobianDerivatives => (format!("{real} x[6][{n}][{n}]"), "x"),
-                Function::CentreOfMass => (format!("{real} x[3]"), "x"),
-                Function::CentreOfMassJacobian => (format!("{real} x[3][{n}]"), "x"),
-                Function::JacobianRateTimesVelocity | Function::CentroidalBias | Function::CentroidalMomentum => {
-                    (format!("{real} x[6]"), "x")
+                (Layout::Record(..), _) => (format!("{kind} x"), "&x"),
+                (_, Shape::Array(Length::Joints, Shape::Number)) => {
+                    (format!("{real} x[{}_DOF]", prefix.to_ascii_uppercase()), "x")
                 }
-                Function::Regressor => (format!("{real} x[{n}][{n}][10]"), "x"),
-                Function::InverseDynamicsDerivatives
-                | Function::InverseDynamicsDerivativesWithPayload
-                | Function::InverseDynamicsDerivativesWithWrenches => (format!("{prefix}_torque_derivatives x"), "&x"),
-                Function::TorqueGradient => (format!("{prefix}_gradient x"), "&x"),
-                Function::TorqueHessian => (format!("{prefix}_hessian x"), "&x"),
-                Function::EulerStep => (format!("{prefix}_next_state x"), "&x"),
-                Function::EulerStepDerivatives => (format!("{prefix}_next_state_derivatives x"), "&x"),
-                Function::FloatingEulerStep => (format!("{prefix}_floating_next_state x"), "&x"),
-                Function::FloatingEulerStepDerivatives => (format!("{prefix}_floating_step_derivatives x"), "&x"),
-                Function::ForwardDynamicsDerivatives
-                | Function::ForwardDynamicsDerivativesWithWrenches
-                | Function::ForwardDynamicsDerivativesWithPayload => {
-                    (format!("{prefix}_acceleration_derivatives x"), "&x")
-                }
-                Function::MomentumAndRate | Function::MomentumAndRateWithPayload => {
-                    (format!("{prefix}_momentum x"), "&x")
-                }
-                Function::JointWrenches => (format!("{prefix}_wrench x[{n}]"), "x"),
-                Function::InverseDynamicsOfFloatingBase => (format!("{prefix}_floating_torques x"), "&x"),
-                Function::FloatingInverseDynamicsDerivatives => {
-                    (format!("{prefix}_floating_torque_derivatives x"), "&x")
-                }
-                Function::FloatingMassMatrix => (format!("{real} x[{0}][{0}]", 6 + n), "x"),
-                Function::FloatingBias => (format!("{real} x[{}]", 6 + n), "x"),
-                Function::FloatingRegressor => (format!("{real} x[{}][{}][10]", 6 + n, 1 + n), "x"),
-                Function::CentroidalMomentumMatrix => (format!("{real} x[6][{}]", 6 + n), "x"),
-                Function::ForwardDynamicsInContact => (format!("{prefix}_accelerations_and_wrenches x"), "&x"),
-                Function::TipJacobians => (format!("{real} x[1][6][{}]", 6 + n), "x"),
-                Function::TipAccelerations => (format!("{real} x[1][6]"), "x"),
-                Function::FloatingForwardDynamics => (format!("{prefix}_floating_accelerations x"), "&x"),
-                _ => (format!("{real} x[{}]", format_args!("{}_DOF", prefix.to_ascii_uppercase())), "x"),
+                _ => (format!("{kind} x{lengths}"), "x"),
             };
             let _ = writeln!(
                 text,
@@ -265,6 +167,18 @@ impl Driver<'_> {
         }
         text.push_str("}\n");
         text
+    }
+}
+
+/// The type of a result, and the lengths of its arrays.
+fn declaration(prefix: &str, real: &str, layout: &Layout) -> (String, String) {
+    match layout {
+        Layout::Number => (real.to_owned(), String::new()),
+        Layout::Array(length, of) => {
+            let (kind, lengths) = declaration(prefix, real, of);
+            (kind, format!("[{length}]{lengths}"))
+        }
+        Layout::Record(record, _) => (rne_emit::record_name(prefix, *record), String::new()),
     }
 }
 

@@ -114,7 +114,7 @@ fn projected(function: Function, ratios: &[Vec<f64>], is_coordinate: &[bool], nu
         | Function::TorqueGradient
         | Function::WrenchTorques => rows().concat(),
         _ if function.returns_torques() => rows().concat(),
-        Function::FloatingMassMatrix => {
+        Function::FloatingMassMatrix | Function::FloatingMassMatrixWithPayload => {
             // Gᵀ M G with six coordinates of the base
             let size = 6 + dof;
             let rows =
@@ -131,7 +131,10 @@ fn projected(function: Function, ratios: &[Vec<f64>], is_coordinate: &[bool], nu
             let rows = numbers.chunks(6 + dof);
             rows.flat_map(|row| [&row[..6], &times(&back, &row[6..])].concat()).collect()
         }
-        Function::InverseDynamicsOfFloatingBase | Function::FloatingBias => {
+        Function::InverseDynamicsOfFloatingBase
+        | Function::FloatingInverseDynamicsWithPayload
+        | Function::FloatingBias
+        | Function::FloatingBiasTorquesWithPayload => {
             let (on_base, torques) = numbers.split_at(6);
             [on_base, &times(&back, torques)].concat()
         }

@@ -15,7 +15,7 @@ use crate::golden::ROBOTS;
 use crate::tree_functions::contact_condition;
 
 /// Functions whose seven steps are the runtime's operations, in its order.
-const SAME_BITS: [Function; 38] = [
+const SAME_BITS: [Function; 42] = [
     Function::InverseDynamics,
     Function::InverseDynamicsWithWrench,
     Function::InverseDynamicsWithPayload,
@@ -46,6 +46,10 @@ const SAME_BITS: [Function; 38] = [
     Function::FloatingMassMatrix,
     Function::FloatingBias,
     Function::FloatingForwardDynamics,
+    Function::FloatingInverseDynamicsWithPayload,
+    Function::FloatingMassMatrixWithPayload,
+    Function::FloatingBiasTorquesWithPayload,
+    Function::FloatingForwardDynamicsWithPayload,
     Function::FloatingEulerStep,
     Function::CentroidalMomentumMatrix,
     Function::CentroidalBias,
@@ -92,11 +96,14 @@ pub(crate) fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f6
         // the joints carry the payload, too
         Function::GravityTorquesWithPayload
         | Function::BiasTorquesWithPayload
+        | Function::FloatingInverseDynamicsWithPayload
+        | Function::FloatingBiasTorquesWithPayload
         | Function::InverseDynamicsDerivativesWithPayload => {
             LEAST * of(Function::JointWrenches).max(of(Function::InverseDynamicsWithPayload))
         }
         // differences of torques at unit rates, and torques of unit accelerations
         Function::CoriolisMatrix | Function::FloatingMassMatrix => of(Function::MassMatrix),
+        Function::FloatingMassMatrixWithPayload => of(Function::MassMatrixWithPayload),
         // a sum of products of masses and heights
         Function::PotentialEnergy | Function::FloatingPotentialEnergy => {
             let mass = arm.robot.rows().map(|row| row.link.mass).sum::<f64>();
@@ -316,10 +323,11 @@ pub(crate) fn error(
         | Function::InverseMassMatrixTimesTorques
         | Function::ForwardDynamicsWithPayload
         | Function::ForwardDynamicsWithWrenches
-        | Function::FloatingForwardDynamics => {
+        | Function::FloatingForwardDynamics
+        | Function::FloatingForwardDynamicsWithPayload => {
             let payload = if function.takes(Argument::Payload) { given.payload } else { Payload::none() };
             let matrix = match function {
-                Function::FloatingForwardDynamics => arm.runtime.floating_mass_matrix(given.q),
+                _ if function.is_of_floating_base() => arm.runtime.floating_mass_matrix_with_payload(given.q, &payload),
                 _ => arm.runtime.mass_matrix_with_payload(given.q, &payload),
             };
             let matrix = matrix.expect("one per joint");

@@ -66,6 +66,7 @@ fn rotors_of_floating_bases_have_a_reduced_form() {
     for function in [
         Function::InverseDynamicsOfFloatingBase,
         Function::FloatingMassMatrix,
+        Function::FloatingForwardDynamicsWithPayload,
         Function::FloatingInverseDynamicsDerivatives,
     ] {
         let mut reduced = 0;

@@ -3,8 +3,8 @@
 
 use fastrand::Rng;
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use rne::{DynArm, Payload};
-use rne_codegen::Function;
+use rne::{DynArm, Payload, Wrench};
+use rne_codegen::{Argument, Axes, Function, Load};
 use rne_model::{Inertia, Link, Robot};
 
 use crate::arm::{Arm, Given, Maker, of_runtime};
@@ -110,44 +110,59 @@ fn of_torques(arm: &DynArm, given: &Given<'_, f64>) -> f64 {
     of(Function::InverseDynamicsDerivatives).max(1e-2 * of(Function::JointWrenches))
 }
 
-/// The functions that have one with a payload, and those with it.
+/// The functions that have one with a payload, and those with it: with free tips, or with wrenches of zero.
 fn pairs() -> impl Iterator<Item = (Function, Function)> {
-    Function::OF_TREES.into_iter().filter_map(|function| Some((function, function.with_payload()?)))
+    let with = Function::OF_TREES.into_iter().filter(|function| function.takes(Argument::Payload));
+    with.map(|with| {
+        let of_load = |load| Function::find(Axes { load, ..with.axes() });
+        (of_load(Load::Free).or_else(|| of_load(Load::Wrenches)).expect("a function without a payload"), with)
+    })
+}
+
+/// Whether a function solves by the mass matrix.
+const fn is_solved(function: Function) -> bool {
+    matches!(function, Function::ForwardDynamics | Function::FloatingForwardDynamics)
+}
+
+/// The condition of the matrix that a function solves by.
+fn condition_of(arm: &DynArm, function: Function, q: &[f64]) -> Option<Conditioning> {
+    let matrix = if function.is_of_floating_base() { arm.floating_mass_matrix(q) } else { arm.mass_matrix(q) };
+    conditioning(&matrix.expect("one per joint")).filter(|condition| condition.number < 1e8)
 }
 
 /// Every function with a payload is the function without one of the arm whose last link has the payload.
 #[test]
 fn every_function_is_that_of_the_lumped_arm() {
-    assert_eq!(pairs().count(), 8);
+    assert_eq!(pairs().count(), 12);
     for maker in Maker::ALL {
         let mut worst = Worst::default();
         for case in case::cases(maker) {
             let lumped = carrying(&case.arm.robot, &case.payload);
-            let given = case.given();
+            let given = Given { wrench: Wrench::zero(), ..case.given() };
             let of = |function| largest(&of_runtime(&lumped, function, &given));
-            let matrix = lumped.mass_matrix(&case.q).expect("one per joint");
-            let condition = conditioning(&matrix);
             for (without, with) in pairs() {
                 let found = case.arm.numbers(with, &given);
                 let expected = of_runtime(&lumped, without, &given);
+                let condition = condition_of(&lumped, without, &case.q);
                 let scale = match without {
-                    Function::ForwardDynamics => {
+                    _ if is_solved(without) => {
                         // as in the comparison with the runtime
                         let Some(Conditioning { number, largest: of_matrix }) = condition else { continue };
-                        if number >= 1e8 {
-                            continue;
-                        }
-                        let scale = largest(given.tau).max(of(Function::BiasTorques)) / of_matrix;
+                        let bias = match without {
+                            Function::ForwardDynamics => Function::BiasTorques,
+                            _ => Function::FloatingBias,
+                        };
+                        let scale = largest(given.tau).max(of(bias)) / of_matrix;
                         worst.see(with.name(), error_on_scale(&found, &expected, scale) / number.max(1.0));
                         continue;
                     }
                     Function::ForwardDynamicsDerivatives => {
-                        let Some(of_mass) = condition.as_ref().filter(|of_mass| of_mass.number < 1e8) else { continue };
-                        let error = error_of_accelerations(&found, &expected, of_torques(&lumped, &given), of_mass);
+                        let Some(of_mass) = condition else { continue };
+                        let error = error_of_accelerations(&found, &expected, of_torques(&lumped, &given), &of_mass);
                         worst.see(with.name(), error);
                         continue;
                     }
-                    Function::MassMatrix => of(Function::MassMatrix),
+                    Function::MassMatrix | Function::FloatingMassMatrix => of(Function::MassMatrix),
                     Function::MomentumAndRate => 0.0,
                     _ => 1e-2 * of(Function::JointWrenches),
                 };
@@ -164,8 +179,7 @@ fn without_mass_and_inertia_every_function_is_that_of_the_arm_alone() {
     for maker in Maker::ALL {
         let mut worst = Worst::default();
         for case in case::cases(maker) {
-            let given = Given { payload: Payload::none(), ..case.given() };
-            let condition = conditioning(&case.arm.runtime.mass_matrix(&case.q).expect("one per joint"));
+            let given = Given { payload: Payload::none(), wrench: Wrench::zero(), ..case.given() };
             for (without, with) in pairs() {
                 let (found, expected) = (case.arm.numbers(with, &given), case.arm.numbers(without, &given));
                 if maker != Maker::Code(rne_codegen::Form::Reduced) {
@@ -175,16 +189,17 @@ fn without_mass_and_inertia_every_function_is_that_of_the_arm_alone() {
                     }
                     continue;
                 }
+                let condition = condition_of(&case.arm.runtime, without, &case.q);
                 if without == Function::ForwardDynamicsDerivatives {
-                    let Some(of_mass) = condition.as_ref().filter(|of_mass| of_mass.number < 1e8) else { continue };
+                    let Some(of_mass) = condition else { continue };
                     let of_torques = of_torques(&case.arm.runtime, &given);
-                    worst.see(with.name(), error_of_accelerations(&found, &expected, of_torques, of_mass));
+                    worst.see(with.name(), error_of_accelerations(&found, &expected, of_torques, &of_mass));
                     continue;
                 }
-                let number = match (without, condition) {
-                    (Function::ForwardDynamics, Some(condition)) if condition.number < 1e8 => condition.number,
-                    (Function::ForwardDynamics, _) => continue,
-                    _ => 1.0,
+                let number = match (is_solved(without), condition) {
+                    (true, Some(condition)) => condition.number,
+                    (true, None) => continue,
+                    (false, _) => 1.0,
                 };
                 let scale = largest(&of_runtime(&case.arm.runtime, Function::JointWrenches, &given));
                 worst.see(with.name(), error_on_scale(&found, &expected, 1e-2 * scale) / number);
@@ -213,7 +228,7 @@ fn a_kilogram_at_rest_weighs_as_its_wrench() {
         let axes = case.arm.forward_kinematics(q).rotation_matrix();
         let up = axes.transpose() * -case.gravity();
         let moment = Vector3::from(bob.com).cross(&up);
-        let wrench = rne::Wrench { force: up.into(), moment: moment.into() };
+        let wrench = Wrench { force: up.into(), moment: moment.into() };
         let expected = case.arm.inverse_dynamics_with_wrench(q, &rest, &rest, &wrench);
         let found = case.arm.inverse_dynamics_with_payload(q, &rest, &rest, &bob);
         // a joint that bears none of it has the rounding of its sine

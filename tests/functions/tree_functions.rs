@@ -88,20 +88,20 @@ fn of_wrench_at(robot: &Robot, frame: &FixedFrame, q: &[f64], wrench: &Wrench<f6
 }
 
 /// The wrench that must act on a base that nothing holds, and the torques, with nothing at the tips.
-fn of_floating_base(robot: &Robot, motion: &Motion<'_>) -> Vec<f64> {
-    let [force, moment] = oracle::base_wrench(robot, motion);
-    [force.as_slice(), moment.as_slice(), &oracle::torques(robot, motion, None)].concat()
+fn of_floating_base(robot: &Robot, motion: &Motion<'_>, payload: Option<&Payload<f64>>) -> Vec<f64> {
+    let [force, moment] = oracle::base_wrench(robot, motion, payload);
+    [force.as_slice(), moment.as_slice(), &oracle::torques(robot, motion, payload)].concat()
 }
 
 /// The columns of the mass matrix of a robot whose base nothing holds: wrenches and torques of unit accelerations.
-pub(crate) fn floating_mass_matrix(robot: &Robot, q: &[f64]) -> Vec<Vec<f64>> {
+pub(crate) fn floating_mass_matrix(robot: &Robot, q: &[f64], payload: Option<&Payload<f64>>) -> Vec<Vec<f64>> {
     let zeros = vec![0.0; q.len()];
     let column = |column: usize| {
         let unit = |place: usize| f64::from(u8::from(place == column));
         let (linear, angular) = ([0, 1, 2].map(unit), [3, 4, 5].map(unit));
         let qdd: Vec<f64> = (0..q.len()).map(|joint| unit(6 + joint)).collect();
         let base = BaseMotion { acceleration: linear, omega_dot: angular, ..BaseMotion::fixed([0.0; 3]) };
-        of_floating_base(robot, &Motion { joints: [q, &zeros, &qdd], base })
+        of_floating_base(robot, &Motion { joints: [q, &zeros, &qdd], base }, payload)
     };
     (0..6 + q.len()).map(column).collect()
 }
@@ -151,8 +151,8 @@ fn in_contact(robot: &Robot, state: &State) -> Vec<f64> {
         [Function::TipJacobians, Function::TipAccelerations].map(|function| expected(robot, function, state));
     let zeros = vec![0.0; state.q.len()];
     let base = BaseMotion { omega: state.base.omega, ..BaseMotion::fixed([0.0; 3]) };
-    let bias = of_floating_base(robot, &Motion { joints: [&state.q, &state.qd, &zeros], base });
-    let (matrix, held) = contact_system(robot, &flat(floating_mass_matrix(robot, &state.q)), &jacobians);
+    let bias = of_floating_base(robot, &Motion { joints: [&state.q, &state.qd, &zeros], base }, None);
+    let (matrix, held) = contact_system(robot, &flat(floating_mass_matrix(robot, &state.q, None)), &jacobians);
     let right = DMatrix::from_fn(size + held.len(), 1, |row, _| match row.checked_sub(size) {
         None if row < 6 => -bias[row],
         None => state.tau[row - 6] - bias[row],
@@ -200,7 +200,7 @@ fn derivatives_of_floating_step(robot: &Robot, state: &State) -> Vec<f64> {
     let [by_q, by_qd] =
         [0, 1].map(|kind| DMatrix::from_row_slice(size, dof, &by_joints[kind * size * dof..][..size * dof]));
     let by_omega = DMatrix::from_row_slice(size, 3, by_omega);
-    let mass = DMatrix::from_row_slice(size, size, &flat(floating_mass_matrix(robot, q))).lu();
+    let mass = DMatrix::from_row_slice(size, size, &flat(floating_mass_matrix(robot, q, None))).lu();
     let solution = |right: DMatrix<f64>| {
         mass.solve(&right).unwrap_or_else(|| DMatrix::from_element(size, right.ncols(), f64::NAN))
     };
@@ -271,7 +271,10 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
     let of_wrench = || of_wrench_at(robot, &tip, q, wrench);
     let floating_at = |q: &[f64], qd: &[f64], qdd: &[f64], base: BaseMotion<f64>| {
         let tips = robot.wrench_frames();
-        let mut numbers = of_floating_base(robot, &Motion { joints: [q, qd, qdd], base });
+        let mut numbers = of_floating_base(robot, &Motion { joints: [q, qd, qdd], base }, loaded);
+        if !function.takes(Argument::Wrenches) {
+            return numbers;
+        }
         let still = Motion { joints: [q, &zeros, &zeros], base: BaseMotion::fixed([0.0; 3]) };
         for (tip, wrench) in tips.iter().zip(at_tips(tips.len(), wrench)) {
             let (r, p) = oracle::parts(&oracle::frame(robot, tip, &still)[0]);
@@ -326,7 +329,7 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
             solved(DMatrix::from_fn(dof, 1, |joint, _| tau[joint] - bias[joint]))
         }
         Function::InverseDynamicsOnMovingBase => torques(q, qd, qdd, *base),
-        Function::InverseDynamicsOfFloatingBase => floating(qdd, *base),
+        Function::InverseDynamicsOfFloatingBase | Function::FloatingInverseDynamicsWithPayload => floating(qdd, *base),
         Function::FloatingInverseDynamicsDerivatives => {
             let by_q = |joint| oracle::by_position(robot, q, joint, |q| floating_at(q, qd, qdd, *base));
             let by_qd = |joint| oracle::by_rate(qd, joint, |qd| floating_at(q, qd, qdd, *base));
@@ -335,12 +338,16 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
             let by_joints = [(0..dof).map(by_q).collect(), (0..dof).map(by_qd).collect()].map(transposed);
             [by_joints.concat(), transposed((0..3).map(by_omega).collect())].concat()
         }
-        Function::FloatingMassMatrix => flat(floating_mass_matrix(robot, q)),
-        Function::FloatingBias => floating(&zeros, BaseMotion { omega: base.omega, ..BaseMotion::fixed([0.0; 3]) }),
-        Function::FloatingForwardDynamics => {
+        Function::FloatingMassMatrix | Function::FloatingMassMatrixWithPayload => {
+            flat(floating_mass_matrix(robot, q, loaded))
+        }
+        Function::FloatingBias | Function::FloatingBiasTorquesWithPayload => {
+            floating(&zeros, BaseMotion { omega: base.omega, ..BaseMotion::fixed([0.0; 3]) })
+        }
+        Function::FloatingForwardDynamics | Function::FloatingForwardDynamicsWithPayload => {
             let bias = floating(&zeros, BaseMotion { omega: base.omega, ..BaseMotion::fixed([0.0; 3]) });
             let applied = |row: usize| if row < 6 { 0.0 } else { tau[row - 6] };
-            let matrix = DMatrix::from_row_slice(6 + dof, 6 + dof, &flat(floating_mass_matrix(robot, q)));
+            let matrix = DMatrix::from_row_slice(6 + dof, 6 + dof, &flat(floating_mass_matrix(robot, q, loaded)));
             let right = DMatrix::from_fn(6 + dof, 1, |row, _| applied(row) - bias[row]);
             matrix.lu().solve(&right).map_or_else(|| vec![f64::NAN; 6 + dof], |x| x.as_slice().to_vec())
         }
@@ -348,12 +355,12 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
         Function::FloatingEulerStepDerivatives => derivatives_of_floating_step(robot, state),
         Function::ForwardDynamicsInContact => in_contact(robot, state),
         Function::CentroidalMomentumMatrix => {
-            let columns = floating_mass_matrix(robot, q);
+            let columns = floating_mass_matrix(robot, q, None);
             transposed(columns.iter().map(|column| about_centre(column)).collect())
         }
         Function::CentroidalBias => {
             let base = BaseMotion { omega: base.omega, ..BaseMotion::fixed([0.0; 3]) };
-            about_centre(&of_floating_base(robot, &Motion { joints: [q, qd, &zeros], base }))
+            about_centre(&of_floating_base(robot, &Motion { joints: [q, qd, &zeros], base }, None))
         }
         Function::TipJacobians => {
             let turn = rotation();
@@ -464,7 +471,7 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
         Function::Regressor => oracle::regressor(robot, &Motion { joints: [q, qd, qdd], base: fixed }),
         Function::FloatingKineticEnergy => {
             let velocities = [&base.velocity[..], &base.omega, qd].concat();
-            let momenta = times(&floating_mass_matrix(robot, q), &velocities);
+            let momenta = times(&floating_mass_matrix(robot, q, None), &velocities);
             vec![momenta.iter().zip(&velocities).map(|(p, v)| p * v).sum::<f64>() / 2.0]
         }
         Function::FloatingPotentialEnergy => {
@@ -476,7 +483,7 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
         }
         Function::CentroidalMomentum => {
             let velocities = [&base.velocity[..], &base.omega, qd].concat();
-            about_centre(&times(&floating_mass_matrix(robot, q), &velocities))
+            about_centre(&times(&floating_mass_matrix(robot, q, None), &velocities))
         }
         Function::FloatingRegressor => oracle::floating_regressor(robot, &Motion { joints: [q, qd, qdd], base: *base }),
         Function::ActuatorTorques => oracle::actuator_torques(robot, qd, qdd),
@@ -550,11 +557,12 @@ pub(crate) fn magnification(robot: &Robot, function: Function, state: &State, ex
     }
     let loaded = function.takes(Argument::Payload).then_some(&state.payload);
     let matrix = match function {
-        Function::FloatingForwardDynamics | Function::FloatingEulerStep | Function::FloatingEulerStepDerivatives => {
-            floating_mass_matrix(robot, &state.q)
-        }
+        Function::FloatingForwardDynamics
+        | Function::FloatingForwardDynamicsWithPayload
+        | Function::FloatingEulerStep
+        | Function::FloatingEulerStepDerivatives => floating_mass_matrix(robot, &state.q, loaded),
         Function::ForwardDynamicsInContact => {
-            let mass = floating_mass_matrix(robot, &state.q);
+            let mass = floating_mass_matrix(robot, &state.q, None);
             conditioning(&mass)?;
             let jacobians = self::expected(robot, Function::TipJacobians, state);
             let number = contact_condition(robot, &flat(mass), &jacobians);

@@ -97,7 +97,7 @@ pub struct ArgumentPart {
     pub argument: Argument,
     /// The name of the array in emitted code and at run time: `q`, `qd`, `force`, ….
     pub name: &'static str,
-    /// What its numbers belong to.
+    /// The part of the robot that its numbers belong to.
     pub owner: Owner,
     /// How many numbers it has for a state, or for a tip.
     pub length: Length,

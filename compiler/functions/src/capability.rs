@@ -70,6 +70,8 @@ named! {
         FloatingEulerStep = "FloatingEulerStep",
         /// The derivatives of this step.
         FloatingEulerStepDerivatives = "FloatingEulerStepDerivatives",
+        /// The robot with a floating base and a payload that is known when the program runs.
+        FloatingPayloadDynamics = "FloatingPayloadDynamics",
     }
 }
 

@@ -1,7 +1,7 @@
 //! Entries of the table of functions.
 
-use crate::axes::{Axes, Base, Load, What};
-use crate::{Answer, Argument, Capability, Shape};
+use crate::axes::{Axes, Base, Load};
+use crate::{Answer, Argument, Capability, Shape, What};
 
 /// The signature of a function, and the words for its callers.
 #[derive(Debug)]
@@ -50,41 +50,23 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// The entry that most functions have in common.
-    pub(crate) const fn of(what: What, capability: Capability) -> Self {
-        Self {
-            what,
-            capability,
-            output: "",
-            listed: "returned",
-            answer: Answer::Torques,
-            returns_torques: false,
-            is_of_motion: false,
-            feels_rotors: false,
-            is_irreducible: false,
-            inverts_mass: false,
-            divides: None,
-        }
-    }
+    /// The entry that most functions have in common. The table of results puts in the result and its trait.
+    pub(crate) const NEW: Self = Self {
+        what: What::ALL[0],
+        capability: Capability::ALL[0],
+        output: "",
+        listed: "returned",
+        answer: Answer::Torques,
+        returns_torques: false,
+        is_of_motion: false,
+        feels_rotors: false,
+        is_irreducible: false,
+        inverts_mass: false,
+        divides: None,
+    };
 
     /// The entry that functions which return joint torques have in common.
-    pub(crate) const fn torques(what: What, capability: Capability) -> Self {
-        Self { output: "tau", returns_torques: true, ..Self::of(what, capability) }
-    }
-
-    /// The entry among these. Each is there once, and has what C and listings say.
-    pub(crate) const fn find(what: What, rows: &[Self]) -> Self {
-        let (mut found, mut index) = (None, 0);
-        while index < rows.len() {
-            assert!(!rows[index].output.is_empty() && !rows[index].listed.is_empty());
-            if rows[index].what as usize == what as usize {
-                assert!(found.is_none());
-                found = Some(rows[index]);
-            }
-            index += 1;
-        }
-        found.expect("an entry for each kind of base")
-    }
+    pub(crate) const TORQUES: Self = Self { output: "tau", returns_torques: true, ..Self::NEW };
 
     /// The entry for a robot with this base, load and loops: their trait is another one, and loops may be singular.
     pub(crate) const fn for_robot(self, Axes { base, load, loops, .. }: Axes) -> Self {
@@ -96,6 +78,7 @@ impl Entry {
             (false, Base::Held, Load::Payload) if !matches!(self.what, What::InverseDynamics) => {
                 Capability::PayloadDynamics
             }
+            (false, Base::Floating, Load::Payload) => Capability::FloatingPayloadDynamics,
             (false, Base::Held, Load::Wrenches) => Capability::TipWrenches,
             _ => self.capability,
         };

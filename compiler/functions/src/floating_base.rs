@@ -1,8 +1,6 @@
 //! The results for a robot with a floating base.
 
 use crate::answer::{AXES, Answer, AnswerTable, Labels};
-use crate::axes::What;
-use crate::capability::Capability;
 use crate::entry::{Entry, WITHOUT_MASS};
 
 /// Rows of the base, then of the joints.
@@ -11,7 +9,7 @@ const VELOCITIES: Labels = Labels::BaseAndJoints;
 const ALONG_AND_ABOUT: Labels = Labels::Names(&["x", "y", "z", "about x", "about y", "about z"]);
 
 /// Torques, and the wrench on the base.
-const TORQUES: Entry = Entry {
+pub(crate) const TORQUES: Entry = Entry {
     output: "torques",
     listed: "returned: force and moment on the base, then the torques",
     answer: Answer::Tables(&[
@@ -19,11 +17,11 @@ const TORQUES: Entry = Entry {
         AnswerTable::of("moment on the base (N m), about the origin of frame 0", Labels::Names(&["moment"]), AXES),
         AnswerTable::of("torques (N m, prismatic: N)", Labels::Names(&["tau"]), Labels::Joints),
     ]),
-    ..Entry::of(What::InverseDynamics, Capability::FloatingBase)
+    ..Entry::NEW
 };
 
 /// The mass matrix with the rows of the base.
-const MASS_MATRIX: Entry = Entry {
+pub(crate) const MASS_MATRIX: Entry = Entry {
     output: "mass",
     listed: "returned: the rows of the matrix",
     answer: Answer::Tables(&[AnswerTable::of(
@@ -32,11 +30,11 @@ const MASS_MATRIX: Entry = Entry {
         VELOCITIES,
     )]),
     feels_rotors: true,
-    ..Entry::of(What::MassMatrix, Capability::FloatingBase)
+    ..Entry::NEW
 };
 
 /// Accelerations of the base and of the joints.
-const ACCELERATIONS: Entry = Entry {
+pub(crate) const ACCELERATIONS: Entry = Entry {
     output: "accelerations",
     listed: "returned: linear and angular acceleration of the base, then those of the joints",
     answer: Answer::Tables(&[
@@ -54,180 +52,168 @@ const ACCELERATIONS: Entry = Entry {
     ),
     inverts_mass: true,
     feels_rotors: true,
-    ..Entry::of(What::ForwardDynamics, Capability::FloatingBase)
+    ..Entry::NEW
 };
 
 /// The part of an entry that the step and its derivatives have in common.
-const STEP: Entry = Entry {
+pub(crate) const STEP: Entry = Entry {
     divides: Some(
         "the result of the step is not finite: the mass matrix is singular \
          (a joint or the base moves no mass), or the state is too large",
     ),
     inverts_mass: true,
     feels_rotors: true,
-    ..Entry::of(What::EulerStep, Capability::FloatingEulerStep)
+    ..Entry::NEW
 };
 
-/// The functions.
-pub(crate) const FLOATING_BASE: &[Entry] = &[
-    TORQUES,
-    MASS_MATRIX,
-    Entry {
-        output: "bias",
-        listed: "returned: force and moment on the base, then the torques",
-        answer: Answer::Tables(&[AnswerTable::of(
-            "force (N) and moment (N m) on the base, axes of frame 0, then torques (N m, prismatic: N)",
-            Labels::Names(&["bias"]),
-            VELOCITIES,
-        )]),
-        ..Entry::of(What::BiasTorques, Capability::FloatingBase)
-    },
-    ACCELERATIONS,
-    Entry {
-        output: "map",
-        listed: "returned: the rows of the matrix",
-        answer: Answer::Tables(&[AnswerTable::of(
-            "momentum and angular momentum about the centre of mass per velocity, axes of frame 0; SI units",
-            ALONG_AND_ABOUT,
-            VELOCITIES,
-        )]),
-        divides: Some(WITHOUT_MASS),
-        ..Entry::of(What::CentroidalMomentumMatrix, Capability::CentroidalMomentum)
-    },
-    Entry {
-        output: "rate",
-        listed: "returned: force, then moment about the centre of mass",
-        answer: Answer::Tables(&[AnswerTable::of(
-            "force (N), then moment about the centre of mass (N m), axes of frame 0",
-            Labels::Names(&["rate"]),
-            ALONG_AND_ABOUT,
-        )]),
-        divides: Some(WITHOUT_MASS),
-        ..Entry::of(What::CentroidalBias, Capability::CentroidalMomentum)
-    },
-    Entry {
-        output: "regressor",
-        listed: "returned: force, moment and torque; base and link; parameter \
-                 (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)",
-        answer: Answer::PerParameter,
-        ..Entry::of(What::Regressor, Capability::FloatingRegressor)
-    },
-    Entry {
-        output: "energy",
-        answer: Answer::Number("J"),
-        feels_rotors: true,
-        ..Entry::of(What::KineticEnergy, Capability::FloatingEnergy)
-    },
-    Entry {
-        output: "energy",
-        answer: Answer::Number("J"),
-        ..Entry::of(What::PotentialEnergy, Capability::FloatingEnergy)
-    },
-    Entry {
-        output: "momentum",
-        listed: "returned: momentum, then angular momentum about the centre of mass",
-        answer: Answer::Tables(&[AnswerTable::of(
-            "momentum (N s), then angular momentum about the centre of mass (N m s), axes of frame 0",
-            Labels::Names(&["momentum"]),
-            ALONG_AND_ABOUT,
-        )]),
-        divides: Some(WITHOUT_MASS),
-        ..Entry::of(What::CentroidalMomentum, Capability::CentroidalMomentum)
-    },
-    Entry {
-        output: "jacobians",
-        listed: "returned: for each tip the rows of its Jacobian",
-        answer: Answer::Tables(&[AnswerTable::of(
-            "velocity of each tip per velocity, world axes; base in axes of frame 0; SI units",
-            Labels::OfTips(&["vx", "vy", "vz", "wx", "wy", "wz"]),
-            VELOCITIES,
-        )]),
-        ..Entry::of(What::TipJacobians, Capability::FloatingKinematics)
-    },
-    Entry {
-        output: "accelerations",
-        listed: "returned: for each tip its acceleration, then its angular acceleration",
-        answer: Answer::Tables(&[AnswerTable::of(
-            "acceleration of each tip where those of the base and of the joints are zero, world axes",
-            Labels::OfTips(&["linear, m/s²", "angular, rad/s²"]),
+pub(crate) const BIAS_TORQUES: Entry = Entry {
+    output: "bias",
+    listed: "returned: force and moment on the base, then the torques",
+    answer: Answer::Tables(&[AnswerTable::of(
+        "force (N) and moment (N m) on the base, axes of frame 0, then torques (N m, prismatic: N)",
+        Labels::Names(&["bias"]),
+        VELOCITIES,
+    )]),
+    ..Entry::NEW
+};
+
+pub(crate) const CENTROIDAL_MOMENTUM_MATRIX: Entry = Entry {
+    output: "map",
+    listed: "returned: the rows of the matrix",
+    answer: Answer::Tables(&[AnswerTable::of(
+        "momentum and angular momentum about the centre of mass per velocity, axes of frame 0; SI units",
+        ALONG_AND_ABOUT,
+        VELOCITIES,
+    )]),
+    divides: Some(WITHOUT_MASS),
+    ..Entry::NEW
+};
+
+pub(crate) const CENTROIDAL_BIAS: Entry = Entry {
+    output: "rate",
+    listed: "returned: force, then moment about the centre of mass",
+    answer: Answer::Tables(&[AnswerTable::of(
+        "force (N), then moment about the centre of mass (N m), axes of frame 0",
+        Labels::Names(&["rate"]),
+        ALONG_AND_ABOUT,
+    )]),
+    divides: Some(WITHOUT_MASS),
+    ..Entry::NEW
+};
+
+pub(crate) const REGRESSOR: Entry = Entry {
+    output: "regressor",
+    listed: "returned: force, moment and torque; base and link; parameter \
+             (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)",
+    answer: Answer::PerParameter,
+    ..Entry::NEW
+};
+
+pub(crate) const KINETIC_ENERGY: Entry =
+    Entry { output: "energy", answer: Answer::Number("J"), feels_rotors: true, ..Entry::NEW };
+
+pub(crate) const POTENTIAL_ENERGY: Entry = Entry { output: "energy", answer: Answer::Number("J"), ..Entry::NEW };
+
+pub(crate) const CENTROIDAL_MOMENTUM: Entry = Entry {
+    output: "momentum",
+    listed: "returned: momentum, then angular momentum about the centre of mass",
+    answer: Answer::Tables(&[AnswerTable::of(
+        "momentum (N s), then angular momentum about the centre of mass (N m s), axes of frame 0",
+        Labels::Names(&["momentum"]),
+        ALONG_AND_ABOUT,
+    )]),
+    divides: Some(WITHOUT_MASS),
+    ..Entry::NEW
+};
+
+pub(crate) const TIP_JACOBIANS: Entry = Entry {
+    output: "jacobians",
+    listed: "returned: for each tip the rows of its Jacobian",
+    answer: Answer::Tables(&[AnswerTable::of(
+        "velocity of each tip per velocity, world axes; base in axes of frame 0; SI units",
+        Labels::OfTips(&["vx", "vy", "vz", "wx", "wy", "wz"]),
+        VELOCITIES,
+    )]),
+    ..Entry::NEW
+};
+
+pub(crate) const TIP_ACCELERATIONS: Entry = Entry {
+    output: "accelerations",
+    listed: "returned: for each tip its acceleration, then its angular acceleration",
+    answer: Answer::Tables(&[AnswerTable::of(
+        "acceleration of each tip where those of the base and of the joints are zero, world axes",
+        Labels::OfTips(&["linear, m/s²", "angular, rad/s²"]),
+        AXES,
+    )]),
+    ..Entry::NEW
+};
+
+pub(crate) const FORWARD_DYNAMICS_IN_CONTACT: Entry = Entry {
+    output: "result",
+    listed: "returned: accelerations of the base and of the joints, then force and moment of each tip",
+    answer: Answer::Tables(&[
+        AnswerTable::of(
+            "acceleration of the origin of frame 0 less gravity (m/s²), in axes of frame 0",
+            Labels::Names(&["linear"]),
             AXES,
-        )]),
-        ..Entry::of(What::TipAccelerations, Capability::FloatingKinematics)
-    },
-    Entry {
-        output: "result",
-        listed: "returned: accelerations of the base and of the joints, then force and moment of each tip",
-        answer: Answer::Tables(&[
-            AnswerTable::of(
-                "acceleration of the origin of frame 0 less gravity (m/s²), in axes of frame 0",
-                Labels::Names(&["linear"]),
-                AXES,
-            ),
-            AnswerTable::of("angular acceleration of the base (rad/s²)", Labels::Names(&["angular"]), AXES),
-            AnswerTable::of("accelerations (rad/s², prismatic: m/s²)", Labels::Names(&["qdd"]), Labels::Joints),
-            AnswerTable::of(
-                "exerted on the robot at each tip, world axes",
-                Labels::OfTips(&["force, N", "moment, N m"]),
-                AXES,
-            ),
-        ]),
-        divides: Some(
-            "the accelerations are not finite: the mass matrix is singular \
-             (a joint or the base moves no mass), or the state is too large",
         ),
-        inverts_mass: true,
-        feels_rotors: true,
-        ..Entry::of(What::ForwardDynamicsInContact, Capability::ContactDynamics)
-    },
-    Entry {
-        output: "derivatives",
-        listed: "returned: force, moment and torques by q, then by q̇, then by the angular velocity of the base",
-        answer: Answer::Tables(&[
-            AnswerTable::of("force and moment on the base and torques by q; SI units", VELOCITIES, Labels::Joints),
-            AnswerTable::of("by q̇; SI units", VELOCITIES, Labels::Joints),
-            AnswerTable::of("by the angular velocity of the base, in axes of frame 0; SI units", VELOCITIES, AXES),
-        ]),
-        ..Entry::of(What::InverseDynamicsDerivatives, Capability::FloatingInverseDynamicsDerivatives)
-    },
-    Entry {
-        output: "next",
-        listed: "returned: pose, velocity and angular velocity of the base after the step, then the positions and the \
-                 velocities of the joints",
-        answer: Answer::Tables(&[
-            AnswerTable::of("rotation of the base after the step: the columns are the axes of frame 0", AXES, AXES),
-            AnswerTable::of("origin of frame 0 after the step, in the world (m)", Labels::Names(&["origin"]), AXES),
-            AnswerTable::of("velocity of this origin (m/s), in axes of frame 0", Labels::Names(&["linear"]), AXES),
-            AnswerTable::of(
-                "angular velocity of the base (rad/s), in axes of frame 0",
-                Labels::Names(&["angular"]),
-                AXES,
-            ),
-            AnswerTable::of(
-                "position (rad, prismatic: m) and velocity (rad/s, prismatic: m/s) of each joint after the step",
-                Labels::Names(&["q", "qd"]),
-                Labels::Joints,
-            ),
-        ]),
-        ..STEP
-    },
-    Entry {
-        output: "derivatives",
-        listed: "returned: the rows of the derivatives of the next positions by the positions, by the velocities and \
-                 by the torques, then those of the next velocities",
-        answer: Answer::Tables(&[
-            AnswerTable::of(
-                "positions after the step by the positions, axes of frame 0; SI units",
-                VELOCITIES,
-                VELOCITIES,
-            ),
-            AnswerTable::of("positions after the step by the velocities (s)", VELOCITIES, VELOCITIES),
-            AnswerTable::of("positions after the step by the torques; SI units", VELOCITIES, Labels::Joints),
-            AnswerTable::of("velocities after the step by the positions; SI units", VELOCITIES, VELOCITIES),
-            AnswerTable::of("velocities after the step by the velocities; SI units", VELOCITIES, VELOCITIES),
-            AnswerTable::of("velocities after the step by the torques; SI units", VELOCITIES, Labels::Joints),
-        ]),
-        what: What::EulerStepDerivatives,
-        capability: Capability::FloatingEulerStepDerivatives,
-        ..STEP
-    },
-];
+        AnswerTable::of("angular acceleration of the base (rad/s²)", Labels::Names(&["angular"]), AXES),
+        AnswerTable::of("accelerations (rad/s², prismatic: m/s²)", Labels::Names(&["qdd"]), Labels::Joints),
+        AnswerTable::of(
+            "exerted on the robot at each tip, world axes",
+            Labels::OfTips(&["force, N", "moment, N m"]),
+            AXES,
+        ),
+    ]),
+    divides: Some(
+        "the accelerations are not finite: the mass matrix is singular \
+         (a joint or the base moves no mass), or the state is too large",
+    ),
+    inverts_mass: true,
+    feels_rotors: true,
+    ..Entry::NEW
+};
+
+pub(crate) const INVERSE_DYNAMICS_DERIVATIVES: Entry = Entry {
+    output: "derivatives",
+    listed: "returned: force, moment and torques by q, then by q̇, then by the angular velocity of the base",
+    answer: Answer::Tables(&[
+        AnswerTable::of("force and moment on the base and torques by q; SI units", VELOCITIES, Labels::Joints),
+        AnswerTable::of("by q̇; SI units", VELOCITIES, Labels::Joints),
+        AnswerTable::of("by the angular velocity of the base, in axes of frame 0; SI units", VELOCITIES, AXES),
+    ]),
+    ..Entry::NEW
+};
+
+pub(crate) const EULER_STEP: Entry = Entry {
+    output: "next",
+    listed: "returned: pose, velocity and angular velocity of the base after the step, then the positions and the \
+             velocities of the joints",
+    answer: Answer::Tables(&[
+        AnswerTable::of("rotation of the base after the step: the columns are the axes of frame 0", AXES, AXES),
+        AnswerTable::of("origin of frame 0 after the step, in the world (m)", Labels::Names(&["origin"]), AXES),
+        AnswerTable::of("velocity of this origin (m/s), in axes of frame 0", Labels::Names(&["linear"]), AXES),
+        AnswerTable::of("angular velocity of the base (rad/s), in axes of frame 0", Labels::Names(&["angular"]), AXES),
+        AnswerTable::of(
+            "position (rad, prismatic: m) and velocity (rad/s, prismatic: m/s) of each joint after the step",
+            Labels::Names(&["q", "qd"]),
+            Labels::Joints,
+        ),
+    ]),
+    ..STEP
+};
+
+pub(crate) const EULER_STEP_DERIVATIVES: Entry = Entry {
+    output: "derivatives",
+    listed: "returned: the rows of the derivatives of the next positions by the positions, by the velocities and \
+             by the torques, then those of the next velocities",
+    answer: Answer::Tables(&[
+        AnswerTable::of("positions after the step by the positions, axes of frame 0; SI units", VELOCITIES, VELOCITIES),
+        AnswerTable::of("positions after the step by the velocities (s)", VELOCITIES, VELOCITIES),
+        AnswerTable::of("positions after the step by the torques; SI units", VELOCITIES, Labels::Joints),
+        AnswerTable::of("velocities after the step by the positions; SI units", VELOCITIES, VELOCITIES),
+        AnswerTable::of("velocities after the step by the velocities; SI units", VELOCITIES, VELOCITIES),
+        AnswerTable::of("velocities after the step by the torques; SI units", VELOCITIES, Labels::Joints),
+    ]),
+    ..STEP
+};

@@ -1,8 +1,8 @@
 //! Properties of a function, by the table.
 
-use crate::axes::{Axes, Base, Load, What};
+use crate::axes::{Axes, Base, Load};
 use crate::table::{SIGNATURES, TABLE};
-use crate::{Answer, Argument, Capability, Entry, Function, Length, Shape};
+use crate::{Answer, Argument, Capability, Entry, Function, Length, Shape, What};
 #[cfg(feature = "alloc")]
 use crate::{Layout, Sizes};
 

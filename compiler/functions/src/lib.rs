@@ -18,10 +18,11 @@ mod layout;
 mod named;
 mod record;
 mod table;
+mod what;
 
 pub use answer::{Answer, AnswerTable, Labels, MatrixUnit};
 pub use argument::{Argument, ArgumentPart, Owner};
-pub use axes::{Axes, Base, Load, What};
+pub use axes::{Axes, Base, Load};
 pub use capability::Capability;
 pub use entry::Entry;
 #[cfg(feature = "alloc")]
@@ -29,3 +30,4 @@ pub use layout::Layout;
 pub use layout::{Length, Shape, Sizes};
 pub use record::Record;
 pub use table::Function;
+pub use what::What;

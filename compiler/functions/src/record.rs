@@ -48,7 +48,8 @@ macro_rules! records {
         pub(crate) mod returned {
             use super::{Record, Shape, shapes};
 
-            $(#[doc = $about] pub(crate) const $record: Shape = Shape::Record(Record::$record, &[$(shapes::$shape),*]);)*
+            $(#[doc = $about]
+            pub(crate) const $record: Shape = Shape::Record(Record::$record, &[$(shapes::$shape),*]);)*
         }
     };
 }
@@ -86,7 +87,8 @@ records! {
     TorqueHessian = "hessian" [Joints] { dq_dq: Matrix, dq_dqd: Matrix, dqd_dqd: Matrix, dq_dqdd: Matrix }:
         "Second derivatives of the torques, each times its multiplier and added up: element (i, j) is by joint i and \
          by joint j.";
-    NextState = "next_state" [Joints] { q: Vector, qd: Vector }: "Positions, rad or m, and velocities, rad/s or m/s, after a step.";
+    NextState = "next_state" [Joints] { q: Vector, qd: Vector }:
+        "Positions, rad or m, and velocities, rad/s or m/s, after a step.";
     StepDerivatives = "step_derivatives" [Joints] { dq: Matrix, dqd: Matrix, dtau: Matrix }:
         "Positions or velocities after a step by positions, by velocities and by torques; row i is position or \
          velocity i, column j is joint j.";
@@ -97,12 +99,13 @@ records! {
     FloatingNextState = "floating_next_state" [Joints] { pose: Pose, twist: BaseTwist, q: Vector, qd: Vector }:
         "Pose and velocity of the base, positions, rad or m, and velocities, rad/s or m/s, of the joints after a step.";
     FloatingStepDerivatives = "floating_step_derivatives" [Joints, Velocities] {
-        q_dq: FloatingMatrix, q_dv: FloatingMatrix, q_dtau: RowsByJoint, v_dq: FloatingMatrix, v_dv: FloatingMatrix, v_dtau: RowsByJoint
+        q_dq: FloatingMatrix, q_dv: FloatingMatrix, q_dtau: RowsByJoint,
+        v_dq: FloatingMatrix, v_dv: FloatingMatrix, v_dtau: RowsByJoint,
     }:
         "Positions and velocities after a step by positions, by velocities and by torques; six rows and columns of the \
          base, in axes of frame 0, stand before those of the joints.";
     BaseMotion = "base_motion" [] { omega: Point, omega_dot: Point, acceleration: Point, gravity: Point }:
-        "Angular velocity of the base, rad/s, its rate, rad/s², its acceleration, m/s², and gravity, m/s², in its axes.";
+        "Angular velocity of the base, rad/s, its rate, rad/s², acceleration, m/s², and gravity, m/s², in its axes.";
     Payload = "payload" [] { mass: Number, com: Point, inertia: Spatial }:
         "Mass, kg, centre of mass, m, and inertia about it xx, yy, zz, xy, xz, yz, kg m², in axes of the tip.";
 }

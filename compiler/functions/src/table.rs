@@ -4,13 +4,11 @@
 //! computes has an entry in the table of its kind of base and formulas in `formulate`, too. A new function is the last
 //! line, whatever its capability, so that the others keep their places, which are the ids of the C library.
 
-use crate::Argument;
-use crate::axes::{Axes, Base, What};
+use crate::axes::Axes;
 use crate::entry::{Entry, Signature};
-use crate::fixed_base::FIXED_BASE;
-use crate::floating_base::FLOATING_BASE;
 use crate::layout::returned;
 use crate::named;
+use crate::{Argument, What};
 
 /// Every function in the order of [`Function`]: its variant, its [`Axes`], its method with the arguments by their names
 /// and kinds, its result, and the sentences about it. `at NAME` follows the result where the function of the tip can be
@@ -400,6 +398,28 @@ macro_rules! functions {
             CoriolisTorques [CoriolisTorques] = coriolis_torques(q: Positions, qd: Rates) -> Vector:
                 "Coriolis and centrifugal torques, C(q, q̇) q̇: the bias torques without gravity.",
                 "tau: C(q, q̇) q̇, without gravity, accelerations and friction; bias_torques less gravity_torques.";
+            FloatingInverseDynamicsWithPayload [InverseDynamics.floating.with_payload] = floating_inverse_dynamics_with_payload(
+                q: Positions, qd: Rates, qdd: Accelerations, base: Base, payload: Payload
+            ) -> FloatingTorques:
+                "Torques, and the wrench on a floating base, when a payload is fixed to the tip.",
+                "payload: as in inverse_dynamics_with_payload. base, wrench: as in inverse_dynamics_of_floating_base. The \
+                 tips exert nothing.";
+            FloatingMassMatrixWithPayload [MassMatrix.floating.with_payload] = floating_mass_matrix_with_payload(
+                q: Positions, payload: Payload
+            ) -> FloatingMatrix:
+                "The mass matrix of a robot with a floating base and a payload at its tip: six rows, then the joints.",
+                "payload: as in inverse_dynamics_with_payload. mass[i][j]: as in floating_mass_matrix.";
+            FloatingBiasTorquesWithPayload [BiasTorques.floating.with_payload] = floating_bias_torques_with_payload(
+                q: Positions, qd: Rates, omega: BaseVelocity, payload: Payload
+            ) -> FloatingVector:
+                "Force and moment on a floating base and torques where nothing accelerates, with a payload at the tip.",
+                "payload: as in inverse_dynamics_with_payload. omega, bias: as in floating_bias. The tips exert nothing.";
+            FloatingForwardDynamicsWithPayload [ForwardDynamics.floating.with_payload] = floating_forward_dynamics_with_payload(
+                q: Positions, qd: Rates, tau: Torques, omega: BaseVelocity, payload: Payload
+            ) -> FloatingAccelerations:
+                "Accelerations of a floating base and of the joints for torques `tau`, with a payload at the tip.",
+                "payload: as in inverse_dynamics_with_payload. omega, base, qdd: as in floating_forward_dynamics. The \
+                 tips exert nothing.";
         }
     };
 }
@@ -434,11 +454,12 @@ functions!(signatures);
 
 /// The entries, in the order of the variants.
 pub(crate) static TABLE: [Entry; Function::ALL.len()] = {
-    let (mut entries, mut index) = ([FIXED_BASE[0]; Function::ALL.len()], 0);
+    let (mut entries, mut index) = ([Entry::NEW; Function::ALL.len()], 0);
     while index < Function::ALL.len() {
         let axes = SIGNATURES[index].axes;
-        let rows = if matches!(axes.base, Base::Floating) { FLOATING_BASE } else { FIXED_BASE };
-        entries[index] = Entry::find(axes.what, rows).for_robot(axes);
+        entries[index] = axes.what.entry(axes.base).for_robot(axes);
+        // C and listings say something of each
+        assert!(!entries[index].output.is_empty() && !entries[index].listed.is_empty());
         index += 1;
     }
     entries

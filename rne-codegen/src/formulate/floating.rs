@@ -1,10 +1,9 @@
 //! Results of a robot whose base nothing holds: the rows of the base stand before those of the joints.
 
-use crate::argument_array::all_names_of;
 use crate::coordinates::Coordinates;
 use crate::formulate::ldlt::{self, System};
 use crate::formulate::{Frame, Outputs, components, square};
-use crate::ir::{Axis, Builder, Matrix, Name, Quantity, Symbol, Vector, WithRespectTo};
+use crate::ir::{Axis, Builder, Matrix, Name, Quantity, Symbol, Vector, WithRespectTo, all_names_of};
 
 /// The rotation of the base: an argument.
 pub(crate) fn base_rotation(builder: &Builder) -> Matrix<'_> {

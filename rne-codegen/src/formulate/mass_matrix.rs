@@ -93,13 +93,14 @@ impl<'s> OfBase<'s> {
     }
 }
 
-/// The rows of a base that nothing holds, by joint, and the upper half of M of the joints.
+/// The rows of a floating base, by joint, and the upper half of M of the joints, of a robot with `tip` at its tip.
 ///
 /// For ω̇ = e_k the force is e_k × h and the moment J e_k.
 pub(crate) fn with_base<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],
     system: &System<'_>,
+    tip: &AtTip<'s>,
 ) -> (OfBase<'s>, Vec<Vec<Symbol<'s>>>) {
     let (builder, still) = (arm.builder, at_rest(arm, states));
     let (zeros, weightless) = (builder.zeros(Cause::UnitAcceleration), builder.zeros(Cause::NoGravity));
@@ -107,20 +108,23 @@ pub(crate) fn with_base<'s>(
     let at_rest = builder.zeros(Cause::AtRest);
     let nothing = Wrench { force: zeros, moment: zeros };
     let base = Motion::of_base(arm, [at_rest, zeros, zeros], weightless);
-    let (joints, on_base) = of_joints(arm, &still, &base, &AtTip::Nothing);
+    let (joints, on_base) = of_joints(arm, &still, &base, tip);
     let turning = |axis: Axis| {
         let mut omega_dot = zeros;
         omega_dot.0[axis as usize] = one;
         builder.by(Some(WithRespectTo::BaseRateDot(4 + axis as usize)), || {
             let base = Motion::of_base(arm, [at_rest, omega_dot, zeros], weightless);
-            seven_steps::inverse_dynamics_of_floating_base(arm, &still, &base, &AtTip::Nothing).0.unwrap_or(nothing)
+            seven_steps::inverse_dynamics_of_floating_base(arm, &still, &base, tip).0.unwrap_or(nothing)
         })
     };
     let [x, y, z] = Axis::ALL.map(turning);
     let line = builder.joint(0);
     let of_base = arm.floating_base.as_ref().map_or_else(|| builder.zero(), |base| base.mass);
     let mass = builder.by(Some(WithRespectTo::BaseRateDot(1)), || {
-        line.within(Quantity::BaseForce, || arm.links.iter().fold(of_base, |mass, link| mass + link.body.mass))
+        line.within(Quantity::BaseForce, || {
+            let of_links = arm.links.iter().fold(of_base, |mass, link| mass + link.body.mass);
+            if let AtTip::Payload(payload) = tip { of_links + payload.mass } else { of_links }
+        })
     });
     let mass = builder.name(system.name_of_element(0, 0), mass);
     let h = Vector([-y.force.0[2], -z.force.0[0], y.force.0[0]]);

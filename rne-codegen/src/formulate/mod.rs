@@ -41,12 +41,11 @@ use std::array::from_fn;
 
 use rne_model::{PER_LINK, Robot};
 
-use crate::argument_array::all_names_of;
 use crate::coordinates::{Coordinates, scaled};
 use crate::formulate::ldlt::System;
 use crate::formulate::mass_matrix::OfBase;
 use crate::function::{Argument, Function, What};
-use crate::ir::{Axis, Builder, Cause, Component, Name, Quantity, Ref, Symbol, Vector, WithRespectTo};
+use crate::ir::{Axis, Builder, Cause, Component, Name, Quantity, Ref, Symbol, Vector, WithRespectTo, all_names_of};
 
 /// The results of a function of a robot, by name, in the order of its layout. Zeros of the function are put in before
 /// anything is folded.
@@ -300,16 +299,19 @@ impl<'s, 'r> Derivation<'s, 'r> {
 
     /// The rows of the base in M, and the upper half of that of the joints.
     fn of_base(&self) -> (OfBase<'s>, Vec<Vec<Symbol<'s>>>) {
-        let (of_base, joints) = mass_matrix::with_base(&self.arm, &self.states, &self.system());
+        let (of_base, joints) = mass_matrix::with_base(&self.arm, &self.states, &self.system(), self.matter_at_tip());
         (of_base.gathered(self.coordinates()), joints)
     }
 
     /// The upper half of M.
     fn upper_half(&self) -> Vec<Vec<Symbol<'s>>> {
-        // no force changes the mass matrix
-        let tip = if let AtTip::Payload(_) = self.tip { &self.tip } else { &AtTip::Nothing };
-        let of_joints = mass_matrix::upper_half(&self.arm, &self.states, tip);
+        let of_joints = mass_matrix::upper_half(&self.arm, &self.states, self.matter_at_tip());
         self.coordinates().upper_half(self.builder, of_joints)
+    }
+
+    /// The load that changes the mass matrix: no force does.
+    const fn matter_at_tip(&self) -> &AtTip<'s> {
+        if let AtTip::Payload(_) = self.tip { &self.tip } else { &AtTip::Nothing }
     }
 
     fn coriolis_matrix(&self) -> Outputs<'s> {

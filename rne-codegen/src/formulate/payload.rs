@@ -8,10 +8,9 @@
 //! f = m (c̈ - g)                   n = I ω̇ + ω × (I ω) + c × f          about the origin of the tip frame
 //! ```
 
-use crate::argument_array::all_names_of;
 use crate::formulate::{Arm, Motion, Wrench};
 use crate::function::Argument;
-use crate::ir::{Builder, Matrix, Quantity, Symbol, Vector};
+use crate::ir::{Builder, Matrix, Quantity, Symbol, Vector, all_names_of};
 
 /// A payload, in tip axes.
 #[derive(Clone, Copy)]

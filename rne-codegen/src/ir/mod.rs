@@ -2,6 +2,7 @@
 
 mod adjoint;
 mod arithmetic;
+mod array_names;
 mod builder;
 mod causes;
 mod constants;
@@ -24,6 +25,7 @@ mod trace;
 mod value_numbering;
 mod written;
 
+pub(crate) use array_names::{all_names_of, names_of};
 pub(crate) use builder::{Builder, JointLines, Moving};
 pub(crate) use causes::CausesId;
 pub use cost::Cost;

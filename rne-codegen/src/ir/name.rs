@@ -66,8 +66,8 @@ impl Name {
         Self { quantity, joint, component: Component::Scalar, indices: [0; 2], part: 0, by: None }
     }
 
-    /// The number at place `at` among the `count` numbers of a quantity: one number; x, y, z; an inertia xx, yy, zz, xy,
-    /// xz, yz; or a matrix by rows.
+    /// The number at place `at` among the `count` numbers of a quantity: one number; x, y, z; an inertia xx, yy, zz,
+    /// xy, xz, yz; or a matrix by rows.
     pub(crate) const fn nth(quantity: Quantity, joint: usize, count: usize, at: usize) -> Self {
         use Axis::{X, Y, Z};
         const OF_INERTIA: [(Axis, Axis); 6] = [(X, X), (Y, Y), (Z, Z), (X, Y), (X, Z), (Y, Z)];

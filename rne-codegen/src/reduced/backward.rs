@@ -40,7 +40,7 @@ pub(crate) fn torques<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Optio
 /// The wrench that must act on a base that nothing holds, about the origin of frame 0, and the torques, base to tip.
 pub(crate) fn torques_of_floating_base<'s>(arm: &Arm<'_, 's>) -> (Wrench<'s>, Vec<Symbol<'s>>) {
     let builder = arm.builder;
-    let (carried, children) = inward(arm, &motions(arm), None);
+    let (carried, children) = inward(arm, &motions(arm), arm.load(false));
     let (motion, matter) = (motion_of_base(arm), &arm.parameters.base);
     let scale = |scales: &[Number]| scales.first().copied().unwrap_or(Number::ONE);
     let (lambda, mu) = (scale(&arm.parameters.lambda), scale(&arm.parameters.mu));

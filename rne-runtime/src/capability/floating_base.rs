@@ -3,7 +3,8 @@
 #[cfg(doc)]
 use super::{Energy, InverseDynamics, MassMatrix, Regressor, TipWrenches};
 use crate::{
-    AccelerationsAndWrenches, BaseMotion, BaseTwist, FloatingAccelerations, FloatingTorques, Pose, Scalar, Wrench,
+    AccelerationsAndWrenches, BaseMotion, BaseTwist, FloatingAccelerations, FloatingTorques, Payload, Pose, Scalar,
+    Wrench,
 };
 
 /// Dynamics of a robot whose base nothing holds: it walks, flies or rides. Its base is the link `floating_base` of the
@@ -70,6 +71,50 @@ pub trait FloatingBase<const DOF: usize, const NV: usize, const TIPS: usize> {
         tau: &[T; DOF],
         omega: &[T; 3],
         wrenches: &[Wrench<T>; TIPS],
+    ) -> FloatingAccelerations<DOF, T>;
+}
+
+/// A robot with a floating base and a payload that is known when the program runs: every function is that of the robot
+/// whose last link has the payload, too. The tips exert nothing. The base and its `NV` = `DOF` + 6 velocities are those
+/// of [`FloatingBase`]; a payload of zero gives the numbers of its functions with free tips.
+pub trait FloatingPayloadDynamics<const DOF: usize, const NV: usize> {
+    /// Torques, and the wrench that must act on the base, when frame 0 moves as `base` says. See
+    /// [`inverse_dynamics_of_floating_base`](FloatingBase::inverse_dynamics_of_floating_base).
+    #[must_use]
+    fn floating_inverse_dynamics_with_payload<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        qdd: &[T; DOF],
+        base: &BaseMotion<T>,
+        payload: &Payload<T>,
+    ) -> FloatingTorques<DOF, T>;
+
+    /// The mass matrix of `NV` rows and columns. See [`floating_mass_matrix`](FloatingBase::floating_mass_matrix).
+    #[must_use]
+    fn floating_mass_matrix_with_payload<T: Scalar>(&self, q: &[T; DOF], payload: &Payload<T>) -> [[T; NV]; NV];
+
+    /// The wrench on the base, force (N) above moment (N m), and the torques (N m or N) of a motion without
+    /// accelerations. See [`floating_bias`](FloatingBase::floating_bias).
+    #[must_use]
+    fn floating_bias_torques_with_payload<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        omega: &[T; 3],
+        payload: &Payload<T>,
+    ) -> [T; NV];
+
+    /// The accelerations that follow from torques, where nothing but gravity acts on the robot. See
+    /// [`floating_forward_dynamics`](FloatingBase::floating_forward_dynamics).
+    #[must_use]
+    fn floating_forward_dynamics_with_payload<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        tau: &[T; DOF],
+        omega: &[T; 3],
+        payload: &Payload<T>,
     ) -> FloatingAccelerations<DOF, T>;
 }
 

@@ -235,8 +235,8 @@ fn bodies(robot: &Robot, payload: Option<&Payload<f64>>) -> Vec<Body> {
 }
 
 /// Force, and moment about the origin of frame 0, that must act on the base beside gravity.
-pub fn base_wrench(robot: &Robot, motion: &Motion<'_>) -> [Vector3<f64>; 2] {
-    needed(robot, motion, None).iter().fold([Vector3::zeros(); 2], |[force, moment], it| {
+pub fn base_wrench(robot: &Robot, motion: &Motion<'_>, payload: Option<&Payload<f64>>) -> [Vector3<f64>; 2] {
+    needed(robot, motion, payload).iter().fold([Vector3::zeros(); 2], |[force, moment], it| {
         [force + it.force, moment + it.moment + it.centre.cross(&it.force)]
     })
 }
