@@ -108,6 +108,7 @@ fn a_urdf_has_followers_frames_and_bodies_of_a_tree() {
     assert!(text.contains("<mimic joint=\"left\" multiplier=\"-0.5\" offset=\"0.25\"/>"), "{text}");
     assert!(text.contains("<link name=\"eye\"/>") && text.contains("<link name=\"camera\">\n    <inertial>"), "{text}");
     assert!(exported.remarks.iter().any(|remark| remark.contains("with their rotors: shoulder;")), "{exported:?}");
+    assert!(exported.remarks.iter().any(|remark| remark.contains("no limit of effort or velocity")), "{exported:?}");
 }
 
 #[test]
