@@ -155,8 +155,9 @@ fn returned(function: Function) -> String {
         }
         Shape::Record(Record::FloatingStepDerivatives, _) => {
             "A and B, of shape (12 + 2 n, 12 + 2 n) and (12 + 2 n, n), or (N, 12 + 2 n, 12 + 2 n) and \
-             (N, 12 + 2 n, n); rows and columns are the positions, then the velocities, each of the base before the joints. `out` is one \
-             array with the rows of q_dq, q_dv, q_dtau, v_dq, v_dv and v_dtau, one after the other."
+             (N, 12 + 2 n, n); rows and columns are the positions, then the velocities, each of the base \
+             before the joints. `out` is one array with the rows of q_dq, q_dv, q_dtau, v_dq, \
+             v_dv and v_dtau, one after the other."
                 .to_owned()
         }
         Shape::Record(record, parts) => of_record(*record, parts),

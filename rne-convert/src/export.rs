@@ -122,8 +122,8 @@ pub fn export(robot: &Robot) -> Result<Exported, NoUrdf> {
     if !without.is_empty() {
         let joints = if without.len() == chain.joints.len() { "all joints".to_owned() } else { without.join(", ") };
         remarks.push(format!(
-            "the robot file has no limit of effort or velocity for {joints}; a URDF must have both, so the missing ones \
-             are 0, which some programs take for a joint that cannot move"
+            "the robot file has no limit of effort or velocity for {joints}; a URDF must have both, so the missing \
+             ones are 0, which some programs take for a joint that cannot move"
         ));
     }
     let mut text = String::from("<?xml version=\"1.0\"?>\n");

@@ -190,7 +190,7 @@ impl Target<'_> {
         let parts: Vec<_> = argument.parts().map(|part| format_ident!("{}", part.name)).collect();
         match argument.shape() {
             Shape::Number => None,
-            Shape::Array(_, of) if matches!(of, Shape::Number) => None,
+            Shape::Array(_, Shape::Number) => None,
             // its inertia is a type of the model
             Shape::Record(Record::Payload, _) => Some(quote!(let #name = &#krate::Payload::to_array(#name);)),
             Shape::Record(record, _) if parts.len() > 1 => {

@@ -88,7 +88,8 @@ whats! {
     Regressor = "regressor": [Regressor fixed::REGRESSOR] [FloatingRegressor floating::REGRESSOR];
     /// Derivatives of the torques.
     InverseDynamicsDerivatives = "inverse_dynamics_derivatives":
-        [InverseDynamicsDerivatives fixed::DERIVATIVES] [FloatingInverseDynamicsDerivatives floating::INVERSE_DYNAMICS_DERIVATIVES];
+        [InverseDynamicsDerivatives fixed::DERIVATIVES]
+        [FloatingInverseDynamicsDerivatives floating::INVERSE_DYNAMICS_DERIVATIVES];
     /// Derivatives of the accelerations.
     ForwardDynamicsDerivatives = "forward_dynamics_derivatives":
         [ForwardDynamicsDerivatives fixed::ACCELERATION_DERIVATIVES] [];
@@ -108,7 +109,8 @@ whats! {
     EulerStep = "euler_step": [EulerStep fixed::EULER_STEP] [FloatingEulerStep floating::EULER_STEP];
     /// The derivatives of this step.
     EulerStepDerivatives = "euler_step_derivatives":
-        [EulerStepDerivatives fixed::EULER_STEP_DERIVATIVES] [FloatingEulerStepDerivatives floating::EULER_STEP_DERIVATIVES];
+        [EulerStepDerivatives fixed::EULER_STEP_DERIVATIVES]
+        [FloatingEulerStepDerivatives floating::EULER_STEP_DERIVATIVES];
     /// The momentum about the centre of mass.
     CentroidalMomentum = "centroidal_momentum": [] [CentroidalMomentum floating::CENTROIDAL_MOMENTUM];
     /// The matrix from velocities to this momentum.

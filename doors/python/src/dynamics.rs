@@ -16,7 +16,7 @@ impl Arm {
             Shape::Array(Length::Joints, _) => self.of_joints(name, value)?,
             Shape::Array(Length::Passive, _) => self.of_passive(name, value)?,
             Shape::Array(Length::Tips, _) => self.of_tips(name, Some(value))?,
-            Shape::Array(_, rows) if matches!(rows, Shape::Array(..)) => self.of_rotation(name, value)?,
+            Shape::Array(_, Shape::Array(..)) => self.of_rotation(name, value)?,
             Shape::Record(Record::Pose, _) => self.of_pose(name, value)?,
             Shape::Record(Record::Wrench, _) => {
                 Given { parts: &["force", "moment"], ..Given::vector(name, elements, value.clone()) }
