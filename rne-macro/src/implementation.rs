@@ -189,8 +189,7 @@ impl Target<'_> {
         let (krate, name) = (self.krate, format_ident!("{}", argument.name()));
         let parts: Vec<_> = argument.parts().map(|part| format_ident!("{}", part.name)).collect();
         match argument.shape() {
-            Shape::Number => None,
-            Shape::Array(_, Shape::Number) => None,
+            Shape::Number | Shape::Array(_, Shape::Number) => None,
             // its inertia is a type of the model
             Shape::Record(Record::Payload, _) => Some(quote!(let #name = &#krate::Payload::to_array(#name);)),
             Shape::Record(record, _) if parts.len() > 1 => {
@@ -199,11 +198,8 @@ impl Target<'_> {
                     if field == *part { quote!(#field) } else { quote!(#field: #part) }
                 });
                 let type_name = format_ident!("{}", record.name());
-                let fields = match record {
-                    // its velocity has no influence
-                    Record::BaseMotion => quote!(#(#fields,)* ..),
-                    _ => quote!(#(#fields),*),
-                };
+                // the velocity of a base has no influence
+                let fields = if *record == Record::BaseMotion { quote!(#(#fields,)* ..) } else { quote!(#(#fields),*) };
                 Some(quote!(let #krate::#type_name { #fields } = #name;))
             }
             // named as its array, too

@@ -232,6 +232,16 @@ fn error_in_contact(arm: &Arm, given: &Given<'_, f64>, found: &[f64], expected: 
     error_on_scale(found, expected, 0.0) / number
 }
 
+/// The condition of the mass matrix that a function solves by, unless it is nearly singular.
+fn conditioning_of(arm: &Arm, function: Function, q: &[f64], payload: &Payload<f64>) -> Option<Conditioning> {
+    let matrix = if function.is_of_floating_base() {
+        arm.runtime.floating_mass_matrix_with_payload(q, payload)
+    } else {
+        arm.runtime.mass_matrix_with_payload(q, payload)
+    };
+    conditioning(&matrix.expect("one per joint")).filter(|condition| condition.number < 1e12)
+}
+
 /// How far what is found is from the runtime, of its scale and, for accelerations, of the condition of M.
 pub(crate) fn error(
     arm: &Arm,
@@ -326,15 +336,10 @@ pub(crate) fn error(
         | Function::FloatingForwardDynamics
         | Function::FloatingForwardDynamicsWithPayload => {
             let payload = if function.takes(Argument::Payload) { given.payload } else { Payload::none() };
-            let matrix = match function {
-                _ if function.is_of_floating_base() => arm.runtime.floating_mass_matrix_with_payload(given.q, &payload),
-                _ => arm.runtime.mass_matrix_with_payload(given.q, &payload),
-            };
-            let matrix = matrix.expect("one per joint");
-            let Some(Conditioning { number, largest: of_matrix }) = conditioning(&matrix) else { return 0.0 };
-            if number >= 1e12 {
+            let Some(Conditioning { number, largest: of_matrix }) = conditioning_of(arm, function, given.q, &payload)
+            else {
                 return 0.0;
-            }
+            };
             // Rounding of a matrix changes the solution by the condition number times as much, relative to the
             // solution; rounding of the torques and of the bias that they are compared with by M⁻¹, of 1/λ at most.
             if function == Function::InverseMassMatrix {
