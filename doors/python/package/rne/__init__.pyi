@@ -264,7 +264,7 @@ class Arm:
         """Torques, and the wrench that must act on the base, when nothing holds the base and it moves as told."""
     def floating_mass_matrix(
         self, q: Joints, *,
-        parameters: Parameters = ..., out: Floats | None = ...,
+        payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The mass matrix of a robot whose base nothing holds, symmetric: six rows of the base, then the joints."""
     def floating_bias(
@@ -453,6 +453,28 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Coriolis and centrifugal torques, C(q, q̇) q̇: the bias torques without gravity."""
+    def floating_inverse_dynamics_with_payload(
+        self, q: Joints, qd: Joints, qdd: Joints, payload: ArrayLike, *,
+        base_omega: ArrayLike | None = ..., base_omega_dot: ArrayLike | None = ...,
+        base_acceleration: ArrayLike | None = ..., base_gravity: ArrayLike | None = ...,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats]:
+        """Torques, and the wrench on a floating base, when a payload is fixed to the tip."""
+    def floating_mass_matrix_with_payload(
+        self, q: Joints, payload: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The mass matrix of a robot with a floating base and a payload at its tip: six rows, then the joints."""
+    def floating_bias_torques_with_payload(
+        self, q: Joints, qd: Joints, omega: ArrayLike, payload: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Force and moment on a floating base and torques where nothing accelerates, with a payload at the tip."""
+    def floating_forward_dynamics_with_payload(
+        self, q: Joints, qd: Joints, tau: Joints, omega: ArrayLike, payload: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> tuple[Floats, Floats]:
+        """Accelerations of a floating base and of the joints for torques `tau`, with a payload at the tip."""
     # <!-- end -->
     def runge_kutta_step(
         self, q: Joints, qd: Joints, tau: Joints, step: ArrayLike, *, steps: int = ...,
