@@ -102,7 +102,7 @@ fn error(arm: &Arm, right: &Arm, function: Function, states: usize) -> f64 {
     if error == 0.0 { 0.0 } else { error / scale }
 }
 
-/// Code says what it loses. Of the form `reduced`, at most one function in fifty loses something, but for those that
+/// Code says what it loses, with a margin. Of the form `reduced`, at most one function in 25 does, but for those that
 /// are about frames of the table themselves.
 #[test]
 fn calibrated_tables_keep_single_precision_or_say_what_they_lose() {
@@ -151,7 +151,7 @@ fn calibrated_tables_keep_single_precision_or_say_what_they_lose() {
     println!("{lost} functions say that they lose digits, {lost_reduced} of {reduced} in the form reduced");
     assert!(wrong.is_empty(), "{wrong}");
     assert!(lost > 0, "no table of these is a hard one");
-    assert!(lost_reduced * 50 <= reduced, "{lost_reduced} of {reduced}");
+    assert!(lost_reduced * 25 <= reduced, "{lost_reduced} of {reduced}");
 }
 
 /// Long lengths that are no common normals of nearly parallel axes: beside parallel axes, of a base in the axes of a

@@ -355,8 +355,8 @@ fn a_moving_base_is_under_the_gravity_of_the_file_unless_told() {
             &[
                 "inverse_dynamics takes no",
                 name,
-                "inverse_dynamics_on_moving_base, inverse_dynamics_of_floating_base, floating_regressor and \
-                 floating_inverse_dynamics_derivatives do",
+                "inverse_dynamics_on_moving_base, inverse_dynamics_of_floating_base, floating_regressor, \
+                 floating_inverse_dynamics_derivatives and floating_inverse_dynamics_with_payload do",
             ],
         );
     }

@@ -185,7 +185,7 @@ fn every_function_is_that_of_single_states() {
             if let Some(mass) = place("m") {
                 state[mass] = state[mass].abs();
                 // a body
-                state[mass + 4..mass + 7].iter_mut().for_each(|moment| *moment = 3.0 + moment.abs());
+                state[mass + 4..mass + 7].iter_mut().for_each(|moment| *moment = 9.0 + moment.abs());
             }
             if let Some(duration) = place("duration") {
                 state[duration] = state[duration].abs();

@@ -180,7 +180,8 @@ fn friction_goes_through_the_gear_to_the_joint() {
     let text = |motor: &str| {
         format!(
             "{{format: 1, name: arm, source: own, convention: standard, gravity: [0, 0, -9.81], joints: [{{type: \
-             revolute, dh: {{theta: 0, d: 0, a: 1, alpha: 0}}, link: {{mass: 1}}, motor: {motor}}}]}}"
+             revolute, dh: {{theta: 0, d: 0, a: 1, alpha: 0}}, limits: {{velocity: 1, effort: 1}}, \
+             link: {{mass: 1}}, motor: {motor}}}]}}"
         )
     };
     let exported =
