@@ -281,9 +281,8 @@ impl Monitor {
         let states = q.iter().zip(qd).zip(effort);
         let friction = self.friction.iter_mut().zip(states);
         let tau: Vec<f64> = friction.map(|(friction, ((q, qd), effort))| effort - friction.next(*q, *qd)).collect();
-        let [momentum, rate] =
-            self.arm.momentum_and_rate(q, qd, &tau).map_err(|error| Lacking::Torques(error.to_string()))?;
-        let seen = self.observer.advance(period.unwrap_or(0.0), momentum, rate);
+        let now = self.arm.momentum_and_rate(q, qd, &tau).map_err(|error| Lacking::Torques(error.to_string()))?;
+        let seen = self.observer.advance(period.unwrap_or(0.0), now.momentum, now.rate);
         let seen = seen.map_err(|error| Lacking::Torques(error.to_string()))?;
         self.observed = Some(stamp);
         if period.is_none() {
