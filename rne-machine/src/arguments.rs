@@ -173,7 +173,7 @@ impl<'a, T> Arguments<'a, T> {
 
     /// The argument of a part of the table.
     pub(crate) fn of_part(self, part: &ArgumentPart, array: Array<'a, T>) -> Self {
-        self.with_array(part.place(), array)
+        self.with_array(part.place, array)
     }
 
     /// The argument at a place.

@@ -24,13 +24,6 @@ macro_rules! arguments {
             }
         }
 
-        of_types! { ($) $($argument ($($type)*))* }
-    };
-}
-
-/// The macro with the types: `$` is handed down, because a macro inside another one has none of its own.
-macro_rules! of_types {
-    (($dollar:tt) $($argument:ident ($($type:tt)*))*) => {
         /// The type of an argument where the number of joints is known at run time; `T` is the number.
         #[doc(hidden)]
         #[macro_export]
@@ -97,14 +90,16 @@ pub struct ArgumentPart {
     pub argument: Argument,
     /// The name of the array in emitted code and at run time: `q`, `qd`, `force`, ….
     pub name: &'static str,
+    /// Its place among all arrays.
+    pub place: usize,
     /// The part of the robot that its numbers belong to.
     pub owner: Owner,
     /// How many numbers it has for a state, or for a tip.
     pub length: Length,
 }
 
-/// Every array: its name, its argument, the place that its numbers belong to, their quantities with how many numbers
-/// each has, and what it is with its unit. `$callback!` is given the list.
+/// Every array: its name, its argument, the part of the robot that its numbers belong to, their quantities with how
+/// many numbers each has, and what it is with its unit. `$callback!` is given the list.
 #[macro_export]
 macro_rules! argument_parts {
     ($callback:ident) => { $callback! {
@@ -149,10 +144,15 @@ macro_rules! argument_parts {
 
 macro_rules! parts {
     ($($name:ident: $argument:ident, $owner:ident [$($quantity:ident * $count:literal),*], $about:literal;)*) => {
+        /// Their places.
+        #[allow(non_camel_case_types)] // named as the arrays
+        enum Place { $($name),* }
+
         /// All of them, those of an argument beside each other.
         const PARTS: &[ArgumentPart] = &[$(ArgumentPart {
             argument: Argument::$argument,
             name: stringify!($name),
+            place: Place::$name as usize,
             owner: Owner::$owner,
             length: match Owner::$owner {
                 Owner::Joints => Length::Joints,
@@ -164,14 +164,6 @@ macro_rules! parts {
 }
 
 argument_parts!(parts);
-
-impl ArgumentPart {
-    /// Its place among all.
-    #[must_use]
-    pub fn place(&self) -> usize {
-        PARTS.iter().position(|part| part.name == self.name).unwrap_or(PARTS.len())
-    }
-}
 
 impl Argument {
     /// The arrays that it is passed in, in order.
