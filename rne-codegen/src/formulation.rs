@@ -35,7 +35,7 @@ impl Formulation {
     }
 
     fn on(mut builder: Builder, robot: &Robot, function: Function) -> Self {
-        if builder.moves_origins && !function.is_of_table_points() {
+        if builder.moves_origins && !function.entry().is_of_table_points {
             builder.origins = near_origins(robot);
         }
         let (names, outputs) = formulate::outputs(&builder, robot, function).into_iter().unzip();

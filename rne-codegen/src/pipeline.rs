@@ -79,7 +79,7 @@ impl<'r> Reference<'r> {
             Ok(lower(&heading, traced, &names)?.0)
         };
         let function = seven_steps.function;
-        let is_far = !function.is_of_table_points() && near_origins(robot).is_some();
+        let is_far = !function.entry().is_of_table_points && near_origins(robot).is_some();
         Self::new(robot, seven_steps, is_far, compiled)
     }
 

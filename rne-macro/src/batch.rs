@@ -74,8 +74,8 @@ pub(crate) fn batch(function: Function, input: TokenStream) -> TokenStream {
     // a robot that is not known uses no argument
     let unused = program.is_none().then(|| quote!(#[allow(unused_variables)]));
     let tests = program.as_ref().map(|program| {
-        let tests = of_batch(function);
-        own_tests::module(&item, &attribute, trait_name(function), tests, program.dof, &loaded.text)
+        let (name, tests) = (trait_name(function), of_batch(function));
+        own_tests::module(&item, &attribute, name, [].into_iter(), tests, program.dof, &loaded.text)
     });
     quote! {
         #refused

@@ -63,14 +63,15 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
                 errors.at_span(span, format!("the readable code for `inspect` cannot be written: {error}"));
             }
             let code = target.robot(robot, capability, programs, &parameters);
-            let names = own_tests::of_capability(capability);
             let golden = loaded.golden.as_ref().filter(|_| capability == Capability::InverseDynamics);
             let golden = golden.filter(|_| attribute.tests.is_some()).map(|file| {
                 let watched = watch(file);
                 let test = own_tests::golden(&item, &attribute, file, robot.dof(), &mut errors);
                 quote!(#watched #test)
             });
-            let tests = own_tests::module(&item, &attribute, capability.name(), names, robot.dof(), &loaded.text);
+            let (name, laws) = (capability.name(), own_tests::laws(capability));
+            let functions = capability.functions();
+            let tests = own_tests::module(&item, &attribute, name, functions, laws, robot.dof(), &loaded.text);
             quote!(#code #tests #golden)
         }
         None => target.stub(capability, loaded.joints),

@@ -2,7 +2,7 @@
 
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
-use rne_codegen::{Capability, Form, Function};
+use rne_codegen::{Capability, Form, Function, Shape};
 use rne_model::{GoldenFile, GoldenState};
 use syn::ext::IdentExt;
 use syn::{Data, DeriveInput, Path, PathSegment};
@@ -13,49 +13,18 @@ use crate::implementation::number;
 use crate::location::RobotFile;
 use crate::parameters::Parameters;
 
-/// The tests of a capability, named as the functions of `rne::testing` that they call.
-pub(crate) fn of_capability(capability: Capability) -> &'static [&'static str] {
+/// The laws that the functions of a capability obey, named as the functions of `rne::testing` that compare them.
+pub(crate) const fn laws(capability: Capability) -> &'static [&'static str] {
     match capability {
-        Capability::InverseDynamics => &[
-            "torques_are_those_of_the_runtime",
-            "torques_are_linear_in_accelerations",
-            "gravity_and_bias_are_torques_without_motion",
-        ],
-        Capability::MassMatrix => &["mass_matrix_is_that_of_the_runtime", "mass_matrix_is_symmetric"],
-        Capability::CoriolisMatrix => &["coriolis_matrix_is_that_of_the_runtime"],
-        Capability::ForwardDynamics => {
-            &["accelerations_are_those_of_the_runtime", "accelerations_need_the_torques_that_cause_them"]
+        Capability::InverseDynamics => {
+            &["torques_are_linear_in_accelerations", "gravity_and_bias_are_torques_without_motion"]
         }
-        Capability::Kinematics => &["kinematics_are_those_of_the_runtime", "rotations_are_orthonormal"],
-        Capability::Energy => &["energies_are_those_of_the_runtime", "kinetic_energy_is_that_of_the_mass_matrix"],
-        Capability::CentreOfMass => &["centre_of_mass_is_that_of_the_runtime"],
-        Capability::Regressor => &["regressor_is_that_of_the_runtime"],
-        Capability::InverseDynamicsDerivatives => &["derivatives_are_those_of_the_runtime"],
-        Capability::InverseDynamicsGradient => &["gradient_is_that_of_the_runtime"],
-        Capability::ForwardDynamicsDerivatives => &["derivatives_of_accelerations_are_those_of_the_runtime"],
-        Capability::JacobianDerivatives => &["derivatives_of_the_jacobian_are_those_of_the_runtime"],
-        Capability::InverseDynamicsHessian => &["hessian_is_that_of_the_runtime"],
-        Capability::EulerStep => &["euler_step_is_that_of_the_runtime"],
-        Capability::EulerStepDerivatives => &["derivatives_of_the_euler_step_are_those_of_the_runtime"],
-        Capability::JointWrenches => &["joint_wrenches_are_those_of_the_runtime"],
-        Capability::MomentumObserver => &["momenta_are_those_of_the_runtime", "momentum_is_that_of_the_mass_matrix"],
-        Capability::MovingBase => &["torques_on_a_moving_base_are_those_of_the_runtime"],
-        Capability::Actuation => &["actuator_torques_are_those_of_the_runtime"],
-        Capability::PayloadDynamics => &["payload_dynamics_are_those_of_the_runtime"],
-        // an `Arm` does not know the tips of a file
-        Capability::TipWrenches
-        | Capability::FloatingBase
-        | Capability::FloatingPayloadDynamics
-        | Capability::CentroidalMomentum
-        | Capability::FloatingRegressor
-        | Capability::FloatingEnergy
-        | Capability::FloatingKinematics
-        | Capability::ContactDynamics
-        | Capability::FloatingInverseDynamicsDerivatives
-        | Capability::FloatingEulerStep
-        | Capability::FloatingEulerStepDerivatives
-        | Capability::ClosedLoops
-        | Capability::FloatingClosedLoops => &[],
+        Capability::MassMatrix => &["mass_matrix_is_symmetric"],
+        Capability::ForwardDynamics => &["accelerations_need_the_torques_that_cause_them"],
+        Capability::Kinematics => &["rotations_are_orthonormal"],
+        Capability::Energy => &["kinetic_energy_is_that_of_the_mass_matrix"],
+        Capability::MomentumObserver => &["momentum_is_that_of_the_mass_matrix"],
+        _ => &[],
     }
 }
 
@@ -99,11 +68,13 @@ fn is_made_of_nothing(item: &DeriveInput) -> bool {
     data.fields.is_empty() && item.generics.params.is_empty()
 }
 
-/// The module with the tests of one derive; `trait_name` is the derive, `text` the robot file.
+/// The module with the tests of one derive: each of `functions` against the runtime, and the tests of `rne::testing`
+/// with the names `tests`. `trait_name` is the derive, `text` the robot file.
 pub(crate) fn module(
     item: &DeriveInput,
     attribute: &Attribute,
     trait_name: &str,
+    functions: impl Iterator<Item = Function>,
     tests: &[&str],
     dof: usize,
     text: &TokenStream,
@@ -115,6 +86,26 @@ pub(crate) fn module(
     let module = format_ident!("{}_{}_tests", snake(&ident.unraw().to_string()), snake(trait_name));
     let (import, krate) = seen_from_inside(&attribute.krate);
     let (rotors, seven_steps) = (attribute.rotors, attribute.form == Form::SevenSteps);
+    let functions = functions.map(|function| {
+        let (name, method) = (function.name(), format_ident!("{}", function.name()));
+        let (test, capability) = (format_ident!("{name}_is_that_of_the_runtime"), function.capability().name());
+        let capability = Ident::new(capability, Span::call_site());
+        let arguments = function.arguments().iter().map(|argument| {
+            let name = format_ident!("{}", argument.name());
+            match argument.shape() {
+                Shape::Array(..) => quote!(#krate::testing::array(given.#name)),
+                Shape::Number | Shape::Record(..) => quote!(given.#name),
+            }
+        });
+        quote! {
+            #[::core::prelude::v1::test]
+            fn #test() {
+                #krate::testing::is_that_of_the_runtime(&ROBOT_FILE, #name, |given| {
+                    #krate::testing::numbers(#krate::#capability::#method(&super::#ident {}, #(#arguments),*))
+                });
+            }
+        }
+    });
     let tests = tests.iter().map(|name| {
         let name = Ident::new(name, Span::call_site());
         quote! {
@@ -134,6 +125,7 @@ pub(crate) fn module(
                     rotors: #rotors,
                     seven_steps: #seven_steps,
                 };
+                #(#functions)*
                 #(#tests)*
             }
         }

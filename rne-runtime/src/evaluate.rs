@@ -49,6 +49,7 @@ impl<S: Constant> DynArm<S> {
     ///
     /// # Errors
     /// When an argument of the function does not have one element per joint or tip.
+    #[doc(hidden)] // the ids of functions are internal
     pub fn evaluate<T: Scalar + Numbers<T>>(
         &self,
         function: Function,

@@ -41,7 +41,7 @@ mod dyn_arm;
 mod energy;
 #[cfg(all(feature = "arm", feature = "std"))]
 mod error;
-#[cfg(feature = "evaluate")]
+#[cfg(all(feature = "arm", feature = "std"))]
 mod evaluate;
 #[cfg(feature = "arm")]
 mod floating_base;
@@ -153,7 +153,8 @@ pub use dual::Dual;
 pub use dyn_arm::{DynArm, DynTrace};
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use error::{LoadError, WrongJointCount, WrongLength};
-#[cfg(feature = "evaluate")]
+#[cfg(all(feature = "arm", feature = "std"))]
+#[doc(hidden)]
 pub use evaluate::Inputs;
 pub use floating_derivatives::FloatingInverseDynamicsDerivatives;
 pub use floating_euler_step::FloatingEulerStep;
@@ -168,7 +169,7 @@ pub use joint_order::{JointOrderError, joint_order};
 pub use names::unknown_frame;
 #[doc(hidden)]
 pub use numbers::Numbers;
-#[cfg(any(feature = "evaluate", feature = "machine"))]
+#[cfg(feature = "machine")]
 #[doc(hidden)]
 pub use numbers::Shaped;
 #[cfg(all(feature = "arm", feature = "std"))]

@@ -75,10 +75,10 @@ impl<T: Numbers<T>> Numbers<T> for Payload<T> {
     }
 }
 
-#[cfg(any(feature = "evaluate", feature = "machine"))]
+#[cfg(feature = "machine")]
 pub use self::shaped::Shaped;
 
-#[cfg(any(feature = "evaluate", feature = "machine"))]
+#[cfg(feature = "machine")]
 mod shaped {
     use core::array;
 

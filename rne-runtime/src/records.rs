@@ -56,7 +56,7 @@ macro_rules! records {
                 }
             }
 
-            #[cfg(any(feature = "evaluate", feature = "machine"))]
+            #[cfg(feature = "machine")]
             impl<T: crate::numbers::Shaped<T>> crate::numbers::Shaped<T> for $counted<T> {
                 fn take(layout: &rne_functions::Layout, numbers: &mut impl Iterator<Item = T>) -> Self {
                     let mut parts = layout.parts();

@@ -127,12 +127,12 @@ fn calibrated_tables_keep_single_precision_or_say_what_they_lose() {
                 // the base of these arms has no mass
                 let is_solvable = |function: &Function| !(function.is_of_floating_base() && function.inverts_mass());
                 for function in Function::OF_TREES.into_iter().filter(is_solvable) {
-                    let right = if function.is_of_table_points() { &of_table } else { &exact };
+                    let right = if function.entry().is_of_table_points { &of_table } else { &exact };
                     let error = error(&arm, right, function, states);
                     let loss = arm.program(function).loss;
                     // energy is zero at frame 0, and a floating base is frame 0, wherever the table has it
                     let is_of_frame_0 = function.what() == What::PotentialEnergy || function.is_of_floating_base();
-                    let is_of_table = function.is_of_table_points() || is_of_frame_0;
+                    let is_of_table = function.entry().is_of_table_points || is_of_frame_0;
                     lost += usize::from(loss.is_some());
                     if form == Form::Reduced && !is_of_table {
                         reduced += 1;

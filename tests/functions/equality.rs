@@ -14,52 +14,6 @@ use crate::check::{Conditioning, Worst, conditioning, error_on_scale};
 use crate::golden::ROBOTS;
 use crate::tree_functions::contact_condition;
 
-/// Functions whose seven steps are the runtime's operations, in its order.
-const SAME_BITS: [Function; 42] = [
-    Function::InverseDynamics,
-    Function::InverseDynamicsWithWrench,
-    Function::InverseDynamicsWithPayload,
-    Function::InverseDynamicsFromSinCos,
-    Function::GravityTorques,
-    Function::BiasTorques,
-    Function::CoriolisTorques,
-    Function::MassMatrix,
-    Function::ForwardDynamics,
-    Function::EulerStep,
-    Function::JacobianRateTimesVelocity,
-    Function::KineticEnergy,
-    Function::InverseDynamicsDerivatives,
-    Function::JointWrenches,
-    Function::MomentumAndRate,
-    Function::InverseDynamicsOnMovingBase,
-    Function::ActuatorTorques,
-    Function::InverseMassMatrix,
-    Function::GravityTorquesWithPayload,
-    Function::BiasTorquesWithPayload,
-    Function::MassMatrixWithPayload,
-    Function::ForwardDynamicsWithPayload,
-    Function::InverseDynamicsDerivativesWithPayload,
-    Function::MomentumAndRateWithPayload,
-    Function::InverseDynamicsWithWrenches,
-    Function::ForwardDynamicsWithWrenches,
-    Function::InverseDynamicsOfFloatingBase,
-    Function::FloatingMassMatrix,
-    Function::FloatingBias,
-    Function::FloatingForwardDynamics,
-    Function::FloatingInverseDynamicsWithPayload,
-    Function::FloatingMassMatrixWithPayload,
-    Function::FloatingBiasTorquesWithPayload,
-    Function::FloatingForwardDynamicsWithPayload,
-    Function::FloatingEulerStep,
-    Function::CentroidalMomentumMatrix,
-    Function::CentroidalBias,
-    Function::FloatingKineticEnergy,
-    Function::CentroidalMomentum,
-    Function::FloatingInverseDynamicsDerivatives,
-    Function::InverseMassMatrixTimesTorques,
-    Function::InverseDynamicsDerivativesWithWrenches,
-];
-
 /// Of the largest number of the result.
 const TOLERANCE: f64 = 1e-13;
 
@@ -264,7 +218,7 @@ pub(crate) fn error(
             Function::InverseDynamicsFromSinCos,
         ]
         .contains(&function);
-    let has_bits = maker == Maker::Code(Form::SevenSteps) && SAME_BITS.contains(&function)
+    let has_bits = maker == Maker::Code(Form::SevenSteps) && function.entry().has_bits_of_runtime
         && !is_other
         // code eliminates the joints of a tree in the order that fills less
         && (arm.robot.is_serial() || !function.inverts_mass() || function.is_of_floating_base());

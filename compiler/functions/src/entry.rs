@@ -45,6 +45,14 @@ pub struct Entry {
     pub is_irreducible: bool,
     /// Whether it solves by the mass matrix, so that its numbers are worth nothing where that is nearly singular.
     pub inverts_mass: bool,
+    /// Whether it is about places, directions and their changes alone, so that its terms are of about one meter.
+    pub is_geometry: bool,
+    /// Whether masses and inertias change what it returns, where they are no argument.
+    pub feels_links: bool,
+    /// Whether what it returns is about the points where the table has its joints and frames.
+    pub is_of_table_points: bool,
+    /// Whether its seven steps have the operations of the runtime in the same order, and so the same bits.
+    pub has_bits_of_runtime: bool,
     /// The meaning of numbers that are not finite, for a function that divides.
     pub divides: Option<&'static str>,
 }
@@ -62,11 +70,16 @@ impl Entry {
         feels_rotors: false,
         is_irreducible: false,
         inverts_mass: false,
+        is_geometry: false,
+        feels_links: true,
+        is_of_table_points: false,
+        has_bits_of_runtime: false,
         divides: None,
     };
 
     /// The entry that functions which return joint torques have in common.
-    pub(crate) const TORQUES: Self = Self { output: "tau", returns_torques: true, ..Self::NEW };
+    pub(crate) const TORQUES: Self =
+        Self { output: "tau", returns_torques: true, has_bits_of_runtime: true, ..Self::NEW };
 
     /// The entry for a robot with this base, load and loops: their trait is another one, and loops may be singular.
     pub(crate) const fn for_robot(self, Axes { base, load, loops, .. }: Axes) -> Self {
@@ -87,7 +100,8 @@ impl Entry {
             _ if self.inverts_mass => Some(MOVES_NO_MASS),
             _ => Some(SINGULAR_LOOPS),
         };
-        Self { capability, divides, ..self }
+        // with loops the dependent joints are eliminated in another order
+        Self { capability, divides, has_bits_of_runtime: self.has_bits_of_runtime && !loops, ..self }
     }
 }
 

@@ -14,6 +14,7 @@ const fn by_position(about: &'static str) -> AnswerTable {
 }
 
 pub(crate) const MASS_MATRIX: Entry = Entry {
+    has_bits_of_runtime: true,
     output: "mass",
     listed: "returned: the rows of the matrix",
     answer: Answer::Tables(&[of_joints("", MatrixUnit::Mass)]),
@@ -23,6 +24,7 @@ pub(crate) const MASS_MATRIX: Entry = Entry {
 };
 
 pub(crate) const FORWARD_DYNAMICS: Entry = Entry {
+    has_bits_of_runtime: true,
     output: "qdd",
     answer: Answer::Accelerations,
     divides: Some(
@@ -35,6 +37,7 @@ pub(crate) const FORWARD_DYNAMICS: Entry = Entry {
 };
 
 pub(crate) const DERIVATIVES: Entry = Entry {
+    has_bits_of_runtime: true,
     output: "derivatives",
     listed: "returned: the rows of ∂τ/∂q, then those of ∂τ/∂q̇",
     answer: Answer::Tables(&[of_joints("∂τ/∂q", MatrixUnit::PerPosition), of_joints("∂τ/∂q̇", MatrixUnit::PerRate)]),
@@ -43,6 +46,7 @@ pub(crate) const DERIVATIVES: Entry = Entry {
 };
 
 pub(crate) const MOMENTUM_AND_RATE: Entry = Entry {
+    has_bits_of_runtime: true,
     output: "momentum",
     listed: "returned: the momenta of the joints, then their rates",
     answer: Answer::Tables(&[AnswerTable::of(
@@ -98,7 +102,8 @@ const fn of_step(about: &'static str) -> AnswerTable {
 }
 
 /// The part of an entry that functions of the loops alone have in common.
-pub(crate) const OF_CLOSURE: Entry = Entry { divides: Some(SINGULAR_LOOPS), ..Entry::NEW };
+pub(crate) const OF_CLOSURE: Entry =
+    Entry { is_geometry: true, feels_links: false, divides: Some(SINGULAR_LOOPS), ..Entry::NEW };
 
 pub(crate) const GRAVITY_TORQUES: Entry = Entry { is_of_motion: true, ..Entry::TORQUES };
 
@@ -115,6 +120,8 @@ pub(crate) const CORIOLIS_MATRIX: Entry = Entry {
 pub(crate) const CORIOLIS_TORQUES: Entry = Entry { is_of_motion: true, ..Entry::TORQUES };
 
 pub(crate) const FORWARD_KINEMATICS: Entry = Entry {
+    is_geometry: true,
+    feels_links: false,
     output: "tip",
     listed: "returned: the rows of the rotation, then the translation",
     answer: Answer::Poses,
@@ -122,6 +129,9 @@ pub(crate) const FORWARD_KINEMATICS: Entry = Entry {
 };
 
 pub(crate) const LINK_POSES: Entry = Entry {
+    is_of_table_points: true,
+    is_geometry: true,
+    feels_links: false,
     output: "poses",
     listed: "returned: rotation and translation of every link",
     answer: Answer::Poses,
@@ -129,6 +139,8 @@ pub(crate) const LINK_POSES: Entry = Entry {
 };
 
 pub(crate) const JACOBIAN: Entry = Entry {
+    is_geometry: true,
+    feels_links: false,
     output: "jacobian",
     listed: "returned: three linear rows, then three angular ones",
     answer: Answer::Tables(&[AnswerTable::of(
@@ -140,6 +152,9 @@ pub(crate) const JACOBIAN: Entry = Entry {
 };
 
 pub(crate) const JACOBIAN_RATE_TIMES_VELOCITY: Entry = Entry {
+    has_bits_of_runtime: true,
+    is_geometry: true,
+    feels_links: false,
     output: "acceleration",
     answer: Answer::Tables(&[AnswerTable::of(
         "acceleration of the tip where q̈ = 0, world axes",
@@ -149,12 +164,18 @@ pub(crate) const JACOBIAN_RATE_TIMES_VELOCITY: Entry = Entry {
     ..Entry::NEW
 };
 
-pub(crate) const KINETIC_ENERGY: Entry =
-    Entry { output: "energy", answer: Answer::Number("J"), feels_rotors: true, ..Entry::NEW };
+pub(crate) const KINETIC_ENERGY: Entry = Entry {
+    has_bits_of_runtime: true,
+    output: "energy",
+    answer: Answer::Number("J"),
+    feels_rotors: true,
+    ..Entry::NEW
+};
 
 pub(crate) const POTENTIAL_ENERGY: Entry = Entry { output: "energy", answer: Answer::Number("J"), ..Entry::NEW };
 
 pub(crate) const CENTRE_OF_MASS: Entry = Entry {
+    is_geometry: true,
     output: "centre",
     listed: "returned: x, y, z",
     answer: Answer::Tables(&[AnswerTable::of(
@@ -167,6 +188,7 @@ pub(crate) const CENTRE_OF_MASS: Entry = Entry {
 };
 
 pub(crate) const CENTRE_OF_MASS_JACOBIAN: Entry = Entry {
+    is_geometry: true,
     output: "jacobian",
     listed: "returned: the rows of the Jacobian",
     answer: Answer::Tables(&[AnswerTable::of(
@@ -179,6 +201,8 @@ pub(crate) const CENTRE_OF_MASS_JACOBIAN: Entry = Entry {
 };
 
 pub(crate) const REGRESSOR: Entry = Entry {
+    is_of_table_points: true,
+    feels_links: false,
     output: "regressor",
     listed: "returned: torque, link, parameter (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)",
     answer: Answer::PerParameter,
@@ -186,6 +210,8 @@ pub(crate) const REGRESSOR: Entry = Entry {
 };
 
 pub(crate) const JOINT_WRENCHES: Entry = Entry {
+    has_bits_of_runtime: true,
+    is_of_table_points: true,
     output: "wrenches",
     listed: "returned: force and moment of every joint",
     answer: Answer::Tables(&[AnswerTable::of(
@@ -198,10 +224,18 @@ pub(crate) const JOINT_WRENCHES: Entry = Entry {
     ..Entry::NEW
 };
 
-pub(crate) const ACTUATOR_TORQUES: Entry =
-    Entry { output: "tau", answer: Answer::Torques, is_irreducible: true, feels_rotors: true, ..Entry::NEW };
+pub(crate) const ACTUATOR_TORQUES: Entry = Entry {
+    has_bits_of_runtime: true,
+    feels_links: false,
+    output: "tau",
+    answer: Answer::Torques,
+    is_irreducible: true,
+    feels_rotors: true,
+    ..Entry::NEW
+};
 
 pub(crate) const INVERSE_MASS_MATRIX: Entry = Entry {
+    has_bits_of_runtime: true,
     output: "inverse",
     listed: "returned: the rows of the matrix",
     answer: Answer::Tables(&[AnswerTable::of(PER_TORQUE, Labels::Joints, Labels::Joints)]),
@@ -212,7 +246,7 @@ pub(crate) const INVERSE_MASS_MATRIX: Entry = Entry {
     ..Entry::NEW
 };
 
-pub(crate) const WRENCH_TORQUES: Entry = Entry { output: "tau", ..Entry::NEW };
+pub(crate) const WRENCH_TORQUES: Entry = Entry { feels_links: false, output: "tau", ..Entry::NEW };
 
 pub(crate) const TORQUE_GRADIENT: Entry = Entry {
     output: "gradient",
@@ -230,6 +264,8 @@ pub(crate) const TORQUE_GRADIENT: Entry = Entry {
 pub(crate) const INVERSE_MASS_MATRIX_TIMES_TORQUES: Entry = Entry { is_of_motion: true, ..FORWARD_DYNAMICS };
 
 pub(crate) const JACOBIAN_RATE: Entry = Entry {
+    is_geometry: true,
+    feels_links: false,
     output: "rate",
     listed: "returned: three linear rows, then three angular ones",
     answer: Answer::Tables(&[AnswerTable::of(
@@ -241,6 +277,8 @@ pub(crate) const JACOBIAN_RATE: Entry = Entry {
 };
 
 pub(crate) const JACOBIAN_DERIVATIVES: Entry = Entry {
+    is_geometry: true,
+    feels_links: false,
     output: "derivatives",
     listed: "returned: six matrices, of vx, vy, vz, wx, wy, wz: the column of the Jacobian, then the position",
     answer: Answer::Tables(&[
@@ -271,6 +309,7 @@ pub(crate) const TORQUE_HESSIAN: Entry = Entry {
 };
 
 pub(crate) const EULER_STEP: Entry = Entry {
+    has_bits_of_runtime: true,
     output: "next",
     listed: "returned: the positions after the step, then the velocities",
     answer: Answer::Tables(&[AnswerTable::of(

@@ -10,6 +10,7 @@ const ALONG_AND_ABOUT: Labels = Labels::Names(&["x", "y", "z", "about x", "about
 
 /// Torques, and the wrench on the base.
 pub(crate) const TORQUES: Entry = Entry {
+    has_bits_of_runtime: true,
     output: "torques",
     listed: "returned: force and moment on the base, then the torques",
     answer: Answer::Tables(&[
@@ -22,6 +23,7 @@ pub(crate) const TORQUES: Entry = Entry {
 
 /// The mass matrix with the rows of the base.
 pub(crate) const MASS_MATRIX: Entry = Entry {
+    has_bits_of_runtime: true,
     output: "mass",
     listed: "returned: the rows of the matrix",
     answer: Answer::Tables(&[AnswerTable::of(
@@ -35,6 +37,7 @@ pub(crate) const MASS_MATRIX: Entry = Entry {
 
 /// Accelerations of the base and of the joints.
 pub(crate) const ACCELERATIONS: Entry = Entry {
+    has_bits_of_runtime: true,
     output: "accelerations",
     listed: "returned: linear and angular acceleration of the base, then those of the joints",
     answer: Answer::Tables(&[
@@ -67,6 +70,7 @@ pub(crate) const STEP: Entry = Entry {
 };
 
 pub(crate) const BIAS_TORQUES: Entry = Entry {
+    has_bits_of_runtime: true,
     output: "bias",
     listed: "returned: force and moment on the base, then the torques",
     answer: Answer::Tables(&[AnswerTable::of(
@@ -78,6 +82,7 @@ pub(crate) const BIAS_TORQUES: Entry = Entry {
 };
 
 pub(crate) const CENTROIDAL_MOMENTUM_MATRIX: Entry = Entry {
+    has_bits_of_runtime: true,
     output: "map",
     listed: "returned: the rows of the matrix",
     answer: Answer::Tables(&[AnswerTable::of(
@@ -90,6 +95,7 @@ pub(crate) const CENTROIDAL_MOMENTUM_MATRIX: Entry = Entry {
 };
 
 pub(crate) const CENTROIDAL_BIAS: Entry = Entry {
+    has_bits_of_runtime: true,
     output: "rate",
     listed: "returned: force, then moment about the centre of mass",
     answer: Answer::Tables(&[AnswerTable::of(
@@ -102,6 +108,8 @@ pub(crate) const CENTROIDAL_BIAS: Entry = Entry {
 };
 
 pub(crate) const REGRESSOR: Entry = Entry {
+    is_of_table_points: true,
+    feels_links: false,
     output: "regressor",
     listed: "returned: force, moment and torque; base and link; parameter \
              (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)",
@@ -109,12 +117,18 @@ pub(crate) const REGRESSOR: Entry = Entry {
     ..Entry::NEW
 };
 
-pub(crate) const KINETIC_ENERGY: Entry =
-    Entry { output: "energy", answer: Answer::Number("J"), feels_rotors: true, ..Entry::NEW };
+pub(crate) const KINETIC_ENERGY: Entry = Entry {
+    has_bits_of_runtime: true,
+    output: "energy",
+    answer: Answer::Number("J"),
+    feels_rotors: true,
+    ..Entry::NEW
+};
 
 pub(crate) const POTENTIAL_ENERGY: Entry = Entry { output: "energy", answer: Answer::Number("J"), ..Entry::NEW };
 
 pub(crate) const CENTROIDAL_MOMENTUM: Entry = Entry {
+    has_bits_of_runtime: true,
     output: "momentum",
     listed: "returned: momentum, then angular momentum about the centre of mass",
     answer: Answer::Tables(&[AnswerTable::of(
@@ -127,6 +141,8 @@ pub(crate) const CENTROIDAL_MOMENTUM: Entry = Entry {
 };
 
 pub(crate) const TIP_JACOBIANS: Entry = Entry {
+    is_geometry: true,
+    feels_links: false,
     output: "jacobians",
     listed: "returned: for each tip the rows of its Jacobian",
     answer: Answer::Tables(&[AnswerTable::of(
@@ -138,6 +154,8 @@ pub(crate) const TIP_JACOBIANS: Entry = Entry {
 };
 
 pub(crate) const TIP_ACCELERATIONS: Entry = Entry {
+    is_geometry: true,
+    feels_links: false,
     output: "accelerations",
     listed: "returned: for each tip its acceleration, then its angular acceleration",
     answer: Answer::Tables(&[AnswerTable::of(
@@ -175,6 +193,7 @@ pub(crate) const FORWARD_DYNAMICS_IN_CONTACT: Entry = Entry {
 };
 
 pub(crate) const INVERSE_DYNAMICS_DERIVATIVES: Entry = Entry {
+    has_bits_of_runtime: true,
     output: "derivatives",
     listed: "returned: force, moment and torques by q, then by q̇, then by the angular velocity of the base",
     answer: Answer::Tables(&[
@@ -186,6 +205,7 @@ pub(crate) const INVERSE_DYNAMICS_DERIVATIVES: Entry = Entry {
 };
 
 pub(crate) const EULER_STEP: Entry = Entry {
+    has_bits_of_runtime: true,
     output: "next",
     listed: "returned: pose, velocity and angular velocity of the base after the step, then the positions and the \
              velocities of the joints",

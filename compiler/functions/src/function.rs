@@ -40,20 +40,6 @@ impl Function {
         found
     }
 
-    /// Whether masses or inertias of links change what it returns: a payload, which is a part of its link, too.
-    #[must_use]
-    pub const fn feels_links(self) -> bool {
-        !matches!(
-            self.capability(),
-            Capability::Kinematics
-                | Capability::JacobianDerivatives
-                | Capability::FloatingKinematics
-                | Capability::Regressor
-                | Capability::FloatingRegressor
-                | Capability::Actuation
-        ) && !matches!(self.what(), What::ClosureStep | What::LoopMap | What::LoopMapRateTimesVelocity)
-    }
-
     /// Its entry in the table, which stands at its place.
     pub const fn entry(self) -> &'static Entry {
         &TABLE[self as usize]
@@ -183,12 +169,6 @@ impl Function {
     #[must_use]
     pub const fn is_of_every_link(self) -> bool {
         matches!(self, Self::Regressor | Self::FloatingRegressor)
-    }
-
-    /// Whether what it returns is about the points where the table has its joints and frames.
-    #[must_use]
-    pub const fn is_of_table_points(self) -> bool {
-        matches!(self, Self::LinkPoses | Self::Regressor | Self::FloatingRegressor | Self::JointWrenches)
     }
 
     /// Whether it has a reduced form, whose graph can be rewritten.

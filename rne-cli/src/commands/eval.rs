@@ -485,7 +485,7 @@ mod tests {
                 let is_used = match option {
                     "--rotors" => function.feels_rotors(),
                     "--frame" => function.of_frame().is_some(),
-                    "--payload" => function.feels_links(),
+                    "--payload" => function.entry().feels_links,
                     _ => false,
                 };
                 let given = needed().chain(iter::once(option)).chain(value);
@@ -545,7 +545,7 @@ mod tests {
             let Ok(state) = State::new(function, given, &robot) else { continue };
             let [alone, loaded] = [&robot, &loaded]
                 .map(|robot| state.numbers(&DynArm::from_robot(robot)).expect("arrays of the right length"));
-            assert_eq!(alone != loaded, function.feels_links(), "{function}");
+            assert_eq!(alone != loaded, function.entry().feels_links, "{function}");
         }
     }
 }

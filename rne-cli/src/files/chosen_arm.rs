@@ -187,7 +187,7 @@ impl ChosenArm {
 
     /// Refuses a payload and rotors where they change nothing of a function.
     pub(crate) fn check(&self, function: Function) -> Result<(), Failure> {
-        if self.carried.payload.is_some() && !function.feels_links() {
+        if self.carried.payload.is_some() && !function.entry().feels_links {
             let with = Function::ALL.into_iter().filter(|other| other.with_payload().is_some()).map(Function::name);
             return Err(Failure::usage(format_args!(
                 "{function} takes no {TYPED}--payload{TYPED:#}: masses do not change it. These functions take one, as \

@@ -1,40 +1,9 @@
-//! States at which tests compare: the same ones in each run.
+//! Random numbers that are the same in each run.
 
+use core::array;
 use core::cell::Cell;
-use core::{array, fmt};
 
 use crate::{BaseMotion, Payload, Wrench};
-
-/// Number of states to try.
-const STATES: usize = 48;
-
-/// A state of an arm, and what acts on it.
-pub(super) struct State<const DOF: usize> {
-    pub(super) q: [f64; DOF],
-    pub(super) qd: [f64; DOF],
-    pub(super) qdd: [f64; DOF],
-    pub(super) tau: [f64; DOF],
-    pub(super) wrench: Wrench<f64>,
-    pub(super) payload: Payload<f64>,
-    pub(super) base: BaseMotion<f64>,
-}
-
-impl<const DOF: usize> fmt::Display for State<DOF> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { q, qd, qdd, tau, .. } = self;
-        write!(f, "  q   = {q:?}\n  qd  = {qd:?}\n  qdd = {qdd:?}\n  tau = {tau:?}")
-    }
-}
-
-/// The states, seeded.
-pub(super) fn states<const DOF: usize>() -> impl Iterator<Item = State<DOF>> {
-    let random = Random::new(0x5EED, |number| number);
-    (0..STATES).map(move |_| {
-        let [q, qd, qdd, tau] = JOINTS.map(|limit| random.array(limit));
-        let (wrench, payload) = (random.wrench(), random.payload());
-        State { q, qd, qdd, tau, wrench, payload, base: BaseMotion { velocity: random.array(1.0), ..random.base() } }
-    })
-}
 
 /// The largest positions, velocities, accelerations and torques of a joint: rad or m, N m or N.
 pub const JOINTS: [f64; 4] = [3.0, 2.0, 5.0, 20.0];

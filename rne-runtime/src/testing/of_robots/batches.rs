@@ -2,14 +2,14 @@
 
 use core::array;
 
+use rne_functions::Function;
+
 use super::RobotFile;
-use super::comparison::{Allowed, are_finite, compare, largest};
+use super::comparison::{Allowed, compare};
+use super::laws::{are_accelerated, caused};
+use super::runtime::terms;
 use super::state::{State, states};
-use super::torques::scale;
-use crate::{
-    BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives, BatchMassMatrix, ForwardDynamics,
-    InverseDynamics, InverseDynamicsDerivatives, MassMatrix,
-};
+use crate::{BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives, BatchMassMatrix, DynArm};
 
 /// Runs a test on a stack of 256 MiB: a build without optimization keeps each intermediate register of a batch in
 /// memory, and threads of tests have 2 MiB.
@@ -23,16 +23,19 @@ pub fn on_large_stack(test: impl FnOnce() + Send) {
 
 /// The states, and each joint's numbers of all of them: positions, velocities, accelerations and torques.
 struct Motion<const DOF: usize> {
-    states: Vec<State<DOF>>,
+    arm: DynArm,
+    states: Vec<State>,
     columns: [[Vec<f64>; DOF]; 4],
 }
 
 impl<const DOF: usize> Motion<DOF> {
-    fn new() -> Self {
-        let states: Vec<State<DOF>> = states().collect();
-        let parts = [|s: &State<DOF>| s.q, |s: &State<DOF>| s.qd, |s: &State<DOF>| s.qdd, |s: &State<DOF>| s.tau];
-        let columns = parts.map(|part| array::from_fn(|joint| states.iter().map(|state| part(state)[joint]).collect()));
-        Self { states, columns }
+    fn new(file: &RobotFile) -> Self {
+        let (robot, arm) = file.robot();
+        let states: Vec<State> = states(&robot, &arm).collect();
+        let column =
+            |part: usize, joint: usize| states.iter().map(|state| state.motion::<DOF>()[part][joint]).collect();
+        let columns = array::from_fn(|part| array::from_fn(|joint| column(part, joint)));
+        Self { arm, states, columns }
     }
 
     fn slices(&self) -> [[&[f64]; DOF]; 4] {
@@ -48,6 +51,16 @@ impl<const DOF: usize> Motion<DOF> {
     fn matrix(&self) -> [[Vec<f64>; DOF]; DOF] {
         array::from_fn(|_| self.vector())
     }
+
+    /// Compares what a batch has computed with the runtime. Vector registers have sines and cosines of their own.
+    #[track_caller]
+    fn compare(&self, function: Function, found: impl Fn(usize) -> Vec<f64>) {
+        for (index, state) in self.states.iter().enumerate() {
+            let expected = self.arm.evaluate(function, &state.inputs()).unwrap_or_else(|error| panic!("{error}"));
+            let allowed = Allowed::Rounding { scale: terms(&self.arm, function, &state.inputs()) };
+            compare(&format!("{function} of a batch"), state, allowed, &found(index), &expected);
+        }
+    }
 }
 
 /// The slices of a vector.
@@ -56,8 +69,8 @@ fn written<const DOF: usize>(vector: &mut [Vec<f64>; DOF]) -> [&mut [f64]; DOF] 
 }
 
 /// The vector of a state.
-fn at<const DOF: usize>(vector: &[Vec<f64>; DOF], state: usize) -> [f64; DOF] {
-    vector.each_ref().map(|numbers| numbers[state])
+fn at<const DOF: usize>(vector: &[Vec<f64>; DOF], state: usize) -> Vec<f64> {
+    vector.iter().map(|numbers| numbers[state]).collect()
 }
 
 /// The matrix of a state, row after row.
@@ -67,15 +80,10 @@ fn matrix_at<const DOF: usize>(matrix: &[[Vec<f64>; DOF]; DOF], state: usize) ->
 
 /// Torques.
 pub fn batches_are_those_of_the_runtime<const DOF: usize, R: BatchInverseDynamics<DOF>>(robot: &R, file: &RobotFile) {
-    let (arm, motion) = (file.arm::<DOF>(), Motion::new());
+    let motion = Motion::new(file);
     let ([q, qd, qdd, _], mut tau) = (motion.slices(), motion.vector());
     robot.inverse_dynamics_batch(q, qd, qdd, written(&mut tau)).unwrap_or_else(|mismatch| panic!("{mismatch}"));
-    for (index, state) in motion.states.iter().enumerate() {
-        let expected = arm.inverse_dynamics(&state.q, &state.qd, &state.qdd);
-        // vector registers have sines and cosines of their own
-        let allowed = Allowed::Rounding { scale: scale(&arm, state) };
-        compare("inverse_dynamics_batch", state, allowed, &at(&tau, index), &expected);
-    }
+    motion.compare(Function::InverseDynamics, |state| at(&tau, state));
 }
 
 /// M(q).
@@ -83,17 +91,13 @@ pub fn mass_matrices_of_a_batch_are_those_of_the_runtime<const DOF: usize, R: Ba
     robot: &R,
     file: &RobotFile,
 ) {
-    let (arm, motion) = (file.arm::<DOF>(), Motion::new());
+    let motion = Motion::new(file);
     let ([q, ..], mut mass) = (motion.slices(), motion.matrix());
     on_large_stack(|| {
         let done = robot.mass_matrix_batch(q, mass.each_mut().map(written));
         done.unwrap_or_else(|mismatch| panic!("{mismatch}"));
     });
-    for (index, state) in motion.states.iter().enumerate() {
-        let (found, expected) = (matrix_at(&mass, index), arm.mass_matrix(&state.q));
-        let allowed = Allowed::Rounding { scale: 0.0 };
-        compare("mass_matrix_batch", state, allowed, &found, expected.as_flattened());
-    }
+    motion.compare(Function::MassMatrix, |state| matrix_at(&mass, state));
 }
 
 /// The runtime's torques for the accelerations of τ are τ, as for single calls.
@@ -104,21 +108,15 @@ pub fn accelerations_of_a_batch_need_the_torques_that_cause_them<
     robot: &R,
     file: &RobotFile,
 ) {
-    let (arm, motion) = (file.arm::<DOF>(), Motion::new());
+    let motion = Motion::new(file);
     let ([q, qd, _, tau], mut qdd) = (motion.slices(), motion.vector());
     on_large_stack(|| {
         robot.forward_dynamics_batch(q, qd, tau, written(&mut qdd)).unwrap_or_else(|mismatch| panic!("{mismatch}"));
     });
     for (index, state) in motion.states.iter().enumerate() {
-        let State { q, qd, tau, .. } = state;
-        if !are_finite(&arm.forward_dynamics(q, qd, tau)) {
-            continue;
+        if are_accelerated(&motion.arm, state) {
+            caused(&motion.arm, state, &at(&qdd, index));
         }
-        let qdd = at(&qdd, index);
-        let terms = largest(arm.mass_matrix(q).as_flattened()) * largest(&qdd);
-        let scale = terms.max(largest(&arm.bias_torques(q, qd))).max(scale(&arm, state));
-        let found = arm.inverse_dynamics(q, qd, &qdd);
-        compare("torques of forward_dynamics_batch", state, Allowed::Rounding { scale }, &found, tau);
     }
 }
 
@@ -130,17 +128,14 @@ pub fn derivatives_of_a_batch_are_those_of_the_runtime<
     robot: &R,
     file: &RobotFile,
 ) {
-    let (arm, motion) = (file.arm::<DOF>(), Motion::new());
+    let motion = Motion::new(file);
     let ([q, qd, qdd, _], mut dq, mut dqd) = (motion.slices(), motion.matrix(), motion.matrix());
     on_large_stack(|| {
         let [of_q, of_qd] = [&mut dq, &mut dqd].map(|matrix| matrix.each_mut().map(written));
         let done = robot.inverse_dynamics_derivatives_batch(q, qd, qdd, of_q, of_qd);
         done.unwrap_or_else(|mismatch| panic!("{mismatch}"));
     });
-    for (index, state) in motion.states.iter().enumerate() {
-        let allowed = Allowed::Rounding { scale: scale(&arm, state) };
-        let expected = arm.inverse_dynamics_derivatives(&state.q, &state.qd, &state.qdd);
-        compare("∂τ/∂q of a batch", state, allowed, &matrix_at(&dq, index), expected.dq.as_flattened());
-        compare("∂τ/∂q̇ of a batch", state, allowed, &matrix_at(&dqd, index), expected.dqd.as_flattened());
-    }
+    motion.compare(Function::InverseDynamicsDerivatives, |state| {
+        [matrix_at(&dq, state), matrix_at(&dqd, state)].concat()
+    });
 }

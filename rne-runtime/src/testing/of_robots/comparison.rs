@@ -27,19 +27,13 @@ pub(super) fn are_finite(numbers: &[f64]) -> bool {
 }
 
 /// The rows of a matrix times a vector.
-pub(super) fn product<const DOF: usize>(rows: &[[f64; DOF]; DOF], x: &[f64; DOF]) -> [f64; DOF] {
-    rows.map(|row| row.iter().zip(x).map(|(a, b)| a * b).sum())
+pub(super) fn product(rows: &[Vec<f64>], x: &[f64]) -> Vec<f64> {
+    rows.iter().map(|row| row.iter().zip(x).map(|(a, b)| a * b).sum()).collect()
 }
 
 /// Panics where `found` is not `expected`. What is not a number is never expected.
 #[track_caller]
-pub(super) fn compare<const DOF: usize>(
-    what: &str,
-    state: &State<DOF>,
-    allowed: Allowed,
-    found: &[f64],
-    expected: &[f64],
-) {
+pub(super) fn compare(what: &str, state: &State, allowed: Allowed, found: &[f64], expected: &[f64]) {
     assert_eq!(found.len(), expected.len(), "{what}");
     for (index, (found, wanted)) in found.iter().zip(expected).enumerate() {
         let is_met = match allowed {
