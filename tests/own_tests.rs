@@ -124,7 +124,8 @@ struct Leg;
     source: own numbers
     convention: modified
     gravity: [0, 0, -9.81]
-    floating_base: {name: trunk, link: {mass: 3.2, com: [0.01, -0.004, 0.03], inertia: {xx: 0.021, yy: 0.018, zz: 0.025}}}
+    floating_base: {name: trunk, link: {mass: 3.2, com: [0.01, -0.004, 0.03],
+      inertia: {xx: 0.021, yy: 0.018, zz: 0.025}}}
     joints:
       - {name: hip, type: revolute, dh: {alpha: -pi/2, a: 0.02, theta: 0, d: 0.06},
          link: {mass: 0.9, com: [0.09, 0.005, 0.01], inertia: {xx: 0.0006, yy: 0.004, zz: 0.0042, xy: 0.0001}}}

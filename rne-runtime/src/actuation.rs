@@ -8,11 +8,11 @@
 use rne_model::Motor;
 
 use crate::coordinates::Coordinates as _;
-use crate::definition::{Definition, definitions};
+use crate::definition::Definition;
 use crate::mechanism::Mechanism;
 use crate::per_joint::PerJoint;
 use crate::smooth_sign::SmoothSign;
-use crate::{Actuation, Arm, Constant, Dual, Scalar};
+use crate::{Constant, Scalar};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn actuator_torques<T: Scalar>(self, qd: &[T], qdd: &[T]) -> J::Of<T> {
@@ -30,26 +30,13 @@ fn torque<S: Constant, T: Scalar>(motor: &Motor<S>, qd: T, qdd: T) -> T {
     ((square * inertia).to::<T>() * qdd + (square * viscous).to::<T>() * qd) + qd.by_sign(positive, negative)
 }
 
-definitions! { Actuation<DOF> {
-    /// As [`Actuation::actuator_torques`]: the motor terms alone.
-    fn actuator_torques(qd: joints, qdd: joints) -> vector = |robot| robot.actuator_torques(qd, qdd);
-    /// As [`Actuation::actuator_torques_smooth`]: friction that changes its sign within about `width`.
-    fn actuator_torques_smooth(qd: joints, qdd: joints, width: number) -> vector =
-        |robot| robot.smooth_torques(qd, qdd, width);
-    /// As [`Actuation::actuator_torques_smooth_derivatives`].
-    fn actuator_torques_smooth_derivatives(qd: joints, width: number) -> matrix = |robot| {
-        let (still, width) = (robot.still(robot.zeros().as_ref()), Dual::constant(width));
-        robot.rows_by(qd, |qd| robot.smooth_torques(qd, still.as_ref(), width))
-    };
-} }
-
 impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
-    fn actuator_torques<T: Scalar>(self, qd: &[T], qdd: &[T]) -> J::Of<T> {
+    pub(crate) fn actuator_torques<T: Scalar>(self, qd: &[T], qdd: &[T]) -> J::Of<T> {
         let [qd, qdd] = [qd, qdd].map(|values| self.of_joints(values));
         self.coordinates.torques(self.mechanism.actuator_torques(qd.as_ref(), qdd.as_ref()))
     }
 
-    fn smooth_torques<T: Scalar>(self, qd: &[T], qdd: &[T], width: T) -> J::Of<T> {
+    pub(crate) fn smooth_torques<T: Scalar>(self, qd: &[T], qdd: &[T], width: T) -> J::Of<T> {
         let each = self.coordinates.each();
         let [qd, qdd] = [qd, qdd].map(|x| each.of(|i| SmoothSign { value: x[i], width }));
         let torques = self.actuator_torques(qd.as_ref(), qdd.as_ref());

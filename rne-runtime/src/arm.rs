@@ -5,9 +5,9 @@ use core::marker::PhantomData;
 
 use rne_model::{Contact, ContactKind, FixedFrame, Link, Model, Motor};
 
-use crate::at_tip::{AtTip, Tip};
+use crate::at_tip::Tip;
 use crate::coordinates::Joints;
-use crate::definition::{Definition, definitions};
+use crate::definition::Definition;
 use crate::floating_base::BASE;
 use crate::link_frame::{Chain, LinkFrame, Table};
 use crate::link_state::JointMotions;
@@ -16,7 +16,7 @@ use crate::mount::Mount;
 use crate::per_joint::Known;
 use crate::spin::Spins;
 use crate::trace::{self, LinkTrace, Trace};
-use crate::{BaseMotion, Constant, InverseDynamics, MovingBase, Payload, Scalar, Wrench};
+use crate::{BaseMotion, Constant, Scalar, Wrench};
 
 /// A robot at run time: the seven steps as loops over links. It answers every question that generated code answers, and
 /// is what generated code is tested against. In `f64`, without fused multiply-add, the seven steps give the same bits
@@ -143,7 +143,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
     /// Torques on a moving base: `base` replaces the model's gravity and the base at rest. `wrench` is what the last
     /// link exerts on its environment; `None` is a free tip.
     ///
-    /// Joint arrays as in [`InverseDynamics::inverse_dynamics`].
+    /// Joint arrays as in [`inverse_dynamics`](crate::InverseDynamics::inverse_dynamics).
     #[must_use]
     pub fn inverse_dynamics_on_moving_base_with_wrench<T: Scalar>(
         &self,
@@ -251,29 +251,3 @@ fn table_of<'a, const DOF: usize, S>(
     let Model { convention, rows, tool, .. } = model;
     Table { convention: *convention, rows, branches, tool, tip_on, floating_base: None }
 }
-
-definitions! { InverseDynamics<DOF> {
-    /// Torques with a free tip, τ(q, q̇, q̈).
-    fn inverse_dynamics(q: joints, qd: joints, qdd: joints) -> vector =
-        |robot| robot.torques([q, qd, qdd], AtTip::Nothing);
-    /// Torques when the last link exerts `wrench` on its environment: τ = τ_free + Jᵀ w.
-    fn inverse_dynamics_with_wrench(q: joints, qd: joints, qdd: joints, wrench: wrench) -> vector =
-        |robot| robot.torques([q, qd, qdd], AtTip::Wrench(wrench));
-    /// Torques when `payload` is fixed to the tip: those of the arm whose last link has the payload too.
-    fn inverse_dynamics_with_payload(q: joints, qd: joints, qdd: joints, payload: payload) -> vector =
-        |robot| robot.torques([q, qd, qdd], AtTip::Payload(payload));
-    /// Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints, and for joints that
-    /// follow others.
-    fn inverse_dynamics_from_sin_cos(sin: joints, cos: joints, q: joints, qd: joints, qdd: joints) -> vector =
-        |robot| robot.torques_from_turns([sin, cos], [q, qd, qdd]);
-    /// Torques that hold the arm still against gravity, τ(q, 0, 0).
-    fn gravity_torques(q: joints) -> vector = |robot| robot.gravity(q, AtTip::Nothing);
-    /// Coriolis, centrifugal and gravity torques, τ(q, q̇, 0).
-    fn bias_torques(q: joints, qd: joints) -> vector = |robot| robot.bias(q, qd, AtTip::Nothing);
-} }
-
-definitions! { MovingBase<DOF> {
-    /// Torques on a moving base with a free tip: `base` replaces the robot's gravity and the base at rest.
-    fn inverse_dynamics_on_moving_base(q: joints, qd: joints, qdd: joints, base: motion) -> vector =
-        |robot| robot.torques_on([q, qd, qdd], base, AtTip::Nothing);
-} }

@@ -14,12 +14,10 @@
 use nalgebra::Vector3;
 use rne_model::JointKind;
 
-use crate::coordinates::Coordinates as _;
-use crate::definition::definitions;
 use crate::kinematics::Placement;
 use crate::mechanism::Mechanism;
 use crate::per_joint::PerJoint;
-use crate::{Arm, CentreOfMass, Constant, Scalar};
+use crate::{Constant, Scalar};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     /// One by the mass of all links.
@@ -83,11 +81,3 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         core::array::from_fn(|row| self.per_joint.of(|i| columns.as_ref()[i][row]))
     }
 }
-
-definitions! { CentreOfMass<DOF> {
-    /// As [`CentreOfMass::centre_of_mass`].
-    fn centre_of_mass(q: joints) -> triple = |robot| robot.mechanism.centre_of_mass(robot.of_joints(q).as_ref());
-    /// As [`CentreOfMass::centre_of_mass_jacobian`]: three rows with one element per joint.
-    fn centre_of_mass_jacobian(q: joints) -> rows3 =
-        |robot| robot.coordinates.rows(robot.mechanism.centre_of_mass_jacobian(robot.of_joints(q).as_ref()));
-} }

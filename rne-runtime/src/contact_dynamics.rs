@@ -10,10 +10,10 @@
 use rne_model::Contact;
 
 use crate::at_tip::AtTip;
-use crate::definition::{Definition, definitions};
+use crate::definition::Definition;
 use crate::ldlt::{factor, solve};
 use crate::per_joint::PerJoint;
-use crate::{ArmWithTips, BaseAcceleration, Constant, ContactDynamics, Scalar, Wrench};
+use crate::{BaseAcceleration, Constant, Scalar, Wrench};
 
 fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
     a.iter().zip(b).fold(T::zero(), |sum, (&a, &b)| sum + a * b)
@@ -81,7 +81,7 @@ impl<P: PerJoint, T: Clone> AsMut<[T]> for OfTips<P, T> {
 
 impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
     #[allow(clippy::type_complexity)] // base, joints, tips
-    fn forward_dynamics_in_contact<T: Scalar>(
+    pub(crate) fn forward_dynamics_in_contact<T: Scalar>(
         self,
         [q, qd, tau]: [&[T]; 3],
         omega: &[T; 3],
@@ -121,11 +121,3 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         (base, qdd, wrenches)
     }
 }
-
-definitions! { ContactDynamics<DOF, NV, TIPS> {
-    /// As [`ContactDynamics::forward_dynamics_in_contact`]: the acceleration of the base, those of the joints, and the
-    /// wrench on the robot at each of the [tips](Self::tips).
-    fn forward_dynamics_in_contact(q: joints, qd: joints, tau: joints, omega: omega, base_rotation: rotation)
-        -> AccelerationsAndWrenches<DOF, TIPS> =
-        |robot| robot.forward_dynamics_in_contact([q, qd, tau], omega, base_rotation);
-} }

@@ -13,12 +13,10 @@
 //! the same matrix.
 
 use crate::at_tip::AtTip;
-use crate::coordinates::Coordinates as _;
-use crate::definition::definitions;
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::per_joint::{PerJoint, Square};
-use crate::{Arm, BaseMotion, Constant, CoriolisMatrix, Scalar};
+use crate::{BaseMotion, Constant, Scalar};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn coriolis_matrix<T: Scalar>(self, q: &[T], qd: &[T]) -> Square<J, T> {
@@ -39,16 +37,3 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         matrix
     }
 }
-
-definitions! { CoriolisMatrix<DOF> {
-    /// As [`CoriolisMatrix::coriolis_matrix`]: rows of C(q, q̇).
-    fn coriolis_matrix(q: joints, qd: joints) -> matrix = |robot| {
-        let [q, qd] = [q, qd].map(|values| robot.of_joints(values));
-        robot.coordinates.matrix(robot.mechanism.coriolis_matrix(q.as_ref(), qd.as_ref()))
-    };
-    /// As [`CoriolisMatrix::coriolis_torques`]: C(q, q̇) q̇.
-    fn coriolis_torques(q: joints, qd: joints) -> vector = |robot| {
-        let weightless = BaseMotion::fixed([T::zero(); 3]);
-        robot.torques_on([q, qd, robot.zeros().as_ref()], &weightless, AtTip::Nothing)
-    };
-} }

@@ -3,16 +3,12 @@
 
 use crate::at_tip::AtTip;
 use crate::coordinates::Coordinates as _;
-use crate::definition::{Definition, definitions};
+use crate::definition::Definition;
 use crate::floating_base::BASE;
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::per_joint::{PerJoint, Square};
-use crate::wrench::AllStill as _;
-use crate::{
-    Arm, ArmWithTips, BaseMotion, Constant, Dual, FloatingInverseDynamicsDerivatives, InverseDynamicsDerivatives,
-    Scalar, Wrench,
-};
+use crate::{BaseMotion, Constant, Dual, Scalar, Wrench};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     /// ∂τ/∂q and ∂τ/∂q̇ under a load that does not change.
@@ -139,17 +135,3 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         (dq, dqd, domega)
     }
 }
-
-definitions! { InverseDynamicsDerivatives<DOF> {
-    /// As [`InverseDynamicsDerivatives::inverse_dynamics_derivatives`]: rows of ∂τ/∂q and ∂τ/∂q̇.
-    fn inverse_dynamics_derivatives(q: joints, qd: joints, qdd: joints) -> TorqueDerivatives<DOF> =
-        |robot| robot.torque_derivatives([q, qd, qdd], AtTip::Nothing);
-} }
-
-definitions! { FloatingInverseDynamicsDerivatives<DOF, NV, TIPS> {
-    /// As [`FloatingInverseDynamicsDerivatives`], with one of `wrenches` for each of the [tips](Self::tips): 6 + n
-    /// rows.
-    fn floating_inverse_dynamics_derivatives(q: joints, qd: joints, qdd: joints, base: motion, wrenches: wrenches)
-        -> FloatingTorqueDerivatives<DOF, NV> =
-        |robot| robot.floating_derivatives([q, qd, qdd], base, wrenches.all_still().as_ref());
-} }

@@ -20,13 +20,13 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::definition::{Definition, definitions};
+use crate::definition::Definition;
 use crate::kinematics::Placement;
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::per_joint::PerJoint;
 use crate::seven_steps;
-use crate::{Arm, BaseMotion, BaseTwist, Constant, Energy, FloatingEnergy, Pose, Scalar};
+use crate::{BaseMotion, BaseTwist, Constant, Pose, Scalar};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     /// The kinetic energy on a base that moves as told, or stands still.
@@ -93,24 +93,8 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 }
 
-definitions! { Energy<DOF> {
-    /// As [`Energy::kinetic_energy`].
-    fn kinetic_energy(q: joints, qd: joints) -> number = |robot| robot.kinetic_energy(q, qd, None);
-    /// As [`Energy::potential_energy`].
-    fn potential_energy(q: joints) -> number = |robot| robot.mechanism.potential_energy(robot.of_joints(q).as_ref());
-} }
-
-definitions! { FloatingEnergy<DOF> {
-    /// As [`FloatingEnergy::floating_kinetic_energy`].
-    fn floating_kinetic_energy(q: joints, qd: joints, twist: twist) -> number =
-        |robot| robot.kinetic_energy(q, qd, Some(twist));
-    /// As [`FloatingEnergy::floating_potential_energy`].
-    fn floating_potential_energy(q: joints, pose: pose) -> number =
-        |robot| robot.mechanism.floating_potential_energy(robot.of_joints(q).as_ref(), pose);
-} }
-
 impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
-    fn kinetic_energy<T: Scalar>(self, q: &[T], qd: &[T], twist: Option<&BaseTwist<T>>) -> T {
+    pub(crate) fn kinetic_energy<T: Scalar>(self, q: &[T], qd: &[T], twist: Option<&BaseTwist<T>>) -> T {
         let [q, qd] = [q, qd].map(|values| self.of_joints(values));
         self.mechanism.kinetic_energy(q.as_ref(), qd.as_ref(), twist)
     }

@@ -17,15 +17,12 @@ use nalgebra::Vector3;
 
 use crate::at_tip::AtTip;
 use crate::coordinates::Coordinates as _;
-use crate::definition::{Definition, definitions};
+use crate::definition::Definition;
 use crate::ldlt::{factor, solve};
 use crate::link_state::{ForceMoment, JointMotions};
 use crate::mechanism::Mechanism;
 use crate::per_joint::{PerJoint, Square};
-use crate::{
-    ArmWithTips, BaseAcceleration, BaseMotion, BaseTwist, CentroidalMomentum, Constant, FloatingBase,
-    FloatingPayloadDynamics, Payload, Scalar, Wrench,
-};
+use crate::{BaseAcceleration, BaseMotion, Constant, Scalar, Wrench};
 
 /// Rows of the base: x, y, z, then about x, y, z.
 pub(crate) const BASE: usize = 6;
@@ -196,7 +193,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         (of_base(x), self.coordinates.each().of(|joint| x[BASE + joint]))
     }
 
-    fn centroidal_momentum_matrix<T: Scalar>(self, q: &[T]) -> [V::Of<T>; BASE] {
+    pub(crate) fn centroidal_momentum_matrix<T: Scalar>(self, q: &[T]) -> [V::Of<T>; BASE] {
         let mass = self.mechanism.floating_mass(self.of_joints(q).as_ref(), AtTip::Nothing);
         let (centre, FloatingMass { mut base, rows, .. }) = (mass.centre(), mass);
         let mut rows = self.coordinates.rows(rows);
@@ -210,56 +207,10 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         })
     }
 
-    fn centroidal_bias<T: Scalar>(self, q: &[T], qd: &[T], omega: &[T; 3]) -> [T; BASE] {
+    pub(crate) fn centroidal_bias<T: Scalar>(self, q: &[T], qd: &[T], omega: &[T; 3]) -> [T; BASE] {
         let zeros = self.zeros();
         let motion = [q, qd, zeros.as_ref()];
         let (Wrench { force, moment }, _) = self.torques_and_wrench(motion, &turning(omega), AtTip::Wrenches(&[]));
         self.mechanism.floating_mass(self.of_joints(q).as_ref(), AtTip::Nothing).centre().rate(force, moment)
     }
 }
-
-definitions! { FloatingBase<DOF, NV, TIPS> {
-    /// As [`FloatingBase::inverse_dynamics_of_floating_base`], with one of `wrenches` for each of the
-    /// [tips](Self::tips): the wrench on the base, and the torques.
-    fn inverse_dynamics_of_floating_base(q: joints, qd: joints, qdd: joints, base: motion, wrenches: wrenches)
-        -> FloatingTorques<DOF> = |robot| robot.torques_and_wrench([q, qd, qdd], base, AtTip::Wrenches(wrenches));
-    /// As [`FloatingBase::floating_mass_matrix`]: 6 + n rows.
-    fn floating_mass_matrix(q: joints) -> velocity_matrix = |robot| robot.floating_mass_matrix(q, AtTip::Nothing);
-    /// As [`FloatingBase::floating_bias`], with one of `wrenches` for each of the [tips](Self::tips): 6 + n numbers.
-    fn floating_bias(q: joints, qd: joints, omega: omega, wrenches: wrenches) -> velocities =
-        |robot| robot.floating_bias([q, qd], omega, AtTip::Wrenches(wrenches));
-    /// As [`FloatingBase::floating_forward_dynamics`], with one of `wrenches` for each of the [tips](Self::tips): the
-    /// acceleration of the base, and those of the joints.
-    fn floating_forward_dynamics(q: joints, qd: joints, tau: joints, omega: omega, wrenches: wrenches)
-        -> FloatingAccelerations<DOF> =
-        |robot| robot.floating_forward_dynamics([q, qd, tau], omega, AtTip::Wrenches(wrenches));
-} }
-
-definitions! { FloatingPayloadDynamics<DOF, NV> {
-    /// As [`FloatingPayloadDynamics::floating_inverse_dynamics_with_payload`]: the wrench on the base, and the torques.
-    fn floating_inverse_dynamics_with_payload(q: joints, qd: joints, qdd: joints, base: motion, payload: payload)
-        -> FloatingTorques<DOF> = |robot| robot.torques_and_wrench([q, qd, qdd], base, AtTip::Payload(payload));
-    /// As [`FloatingPayloadDynamics::floating_mass_matrix_with_payload`]: 6 + n rows.
-    fn floating_mass_matrix_with_payload(q: joints, payload: payload) -> velocity_matrix =
-        |robot| robot.floating_mass_matrix(q, AtTip::Payload(payload));
-    /// As [`FloatingPayloadDynamics::floating_bias_torques_with_payload`]: 6 + n numbers.
-    fn floating_bias_torques_with_payload(q: joints, qd: joints, omega: omega, payload: payload) -> velocities =
-        |robot| robot.floating_bias([q, qd], omega, AtTip::Payload(payload));
-    /// As [`FloatingPayloadDynamics::floating_forward_dynamics_with_payload`]: the acceleration of the base, and those
-    /// of the joints.
-    fn floating_forward_dynamics_with_payload(q: joints, qd: joints, tau: joints, omega: omega, payload: payload)
-        -> FloatingAccelerations<DOF> =
-        |robot| robot.floating_forward_dynamics([q, qd, tau], omega, AtTip::Payload(payload));
-} }
-
-definitions! { CentroidalMomentum<DOF, NV> {
-    /// As [`CentroidalMomentum::centroidal_momentum_matrix`]: six rows of 6 + n numbers.
-    fn centroidal_momentum_matrix(q: joints) -> velocity_rows = |robot| robot.centroidal_momentum_matrix(q);
-    /// As [`CentroidalMomentum::centroidal_bias`].
-    fn centroidal_bias(q: joints, qd: joints, omega: omega) -> six = |robot| robot.centroidal_bias(q, qd, omega);
-    /// As [`CentroidalMomentum::centroidal_momentum`].
-    fn centroidal_momentum(q: joints, qd: joints, twist: twist) -> six = |robot| {
-        let [q, qd] = [q, qd].map(|values| robot.of_joints(values));
-        robot.mechanism.centroidal_momentum(q.as_ref(), qd.as_ref(), twist)
-    };
-} }

@@ -4,7 +4,7 @@
 use core::array::from_fn;
 
 use crate::at_tip::AtTip;
-use crate::definition::{Definition, definitions};
+use crate::definition::Definition;
 use crate::floating_base::BASE;
 use crate::floating_euler_step::next_of_base;
 use crate::floating_integrator::{turn, turn_by_change};
@@ -12,11 +12,7 @@ use crate::ldlt::{factor, solve};
 use crate::per_joint::{PerJoint, Square};
 use crate::pose_log::{cross, times, transposed};
 use crate::steps::moved;
-use crate::wrench::AllStill as _;
-use crate::{
-    ArmWithTips, BaseAcceleration, BaseMotion, BaseTwist, Constant, Dual, FloatingEulerStepDerivatives, Pose, Scalar,
-    Wrench,
-};
+use crate::{BaseAcceleration, BaseMotion, BaseTwist, Constant, Dual, Pose, Scalar, Wrench};
 
 /// The motion at which the forces are derived. It has the acceleration of the base less gravity, so its field `gravity`
 /// stays zero.
@@ -131,7 +127,7 @@ type Blocks<J, V, T> = (
 );
 
 impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
-    fn floating_step_derivatives<T: Scalar>(
+    pub(crate) fn floating_step_derivatives<T: Scalar>(
         self,
         [q, qd, tau]: [&[T]; 3],
         (pose, twist): (&Pose<T>, &BaseTwist<T>),
@@ -163,13 +159,3 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         (q_dq, q_dv, q_dtau, v_dq, v_dv, v_dtau)
     }
 }
-
-definitions! { FloatingEulerStepDerivatives<DOF, NV, TIPS> {
-    /// As [`FloatingEulerStepDerivatives`], with one of `wrenches` for each of the [tips](Self::tips): 6 + n rows.
-    fn floating_euler_step_derivatives(
-        q: joints, qd: joints, tau: joints, pose: pose, twist: twist, step: number, wrenches: wrenches
-    ) -> FloatingStepDerivatives<DOF, NV> = |robot| {
-        let still = wrenches.all_still();
-        robot.floating_step_derivatives([q, qd, tau], (pose, twist), step, wrenches, still.as_ref())
-    };
-} }

@@ -1,38 +1,10 @@
 //! How the torques of a robot with a floating base change with its state, and the matrices of Pinocchio.
 
 use crate::pose_log::cross;
-use crate::{BaseMotion, FloatingTorqueDerivatives, Scalar, Wrench};
+use crate::{BaseMotion, FloatingTorqueDerivatives, Scalar};
 
 /// Columns of the base: three linear ones, then three angular ones.
 const BASE: usize = 6;
-
-/// How the torques of a robot with a floating base change with its state. The base, `NV` and the tips are those of
-/// [`FloatingBase`](crate::FloatingBase).
-pub trait FloatingInverseDynamicsDerivatives<const DOF: usize, const NV: usize, const TIPS: usize> {
-    /// The derivatives of
-    /// [`inverse_dynamics_of_floating_base`](crate::FloatingBase::inverse_dynamics_of_floating_base) by q, q̇ and the
-    /// angular velocity ω of the base, at a state.
-    ///
-    /// Each derivative leaves the other arguments as they are. Of the base these are ω̇ and a - g, the classical
-    /// acceleration of the origin of frame 0 less gravity, in axes of frame 0: its orientation, position and linear
-    /// velocity have no part. The wrenches stay the same in axes of their tips, so they turn with the joints.
-    ///
-    /// The derivative by the accelerations (a - g, ω̇, q̈) is the
-    /// [mass matrix](crate::FloatingBase::floating_mass_matrix).
-    /// [`to_pinocchio`](FloatingTorqueDerivatives::to_pinocchio) has the derivatives by position, orientation and
-    /// velocity of the base.
-    ///
-    /// Source: J. Carpentier, N. Mansard, "Analytical derivatives of rigid body dynamics algorithms", 2018.
-    #[must_use]
-    fn floating_inverse_dynamics_derivatives<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        qdd: &[T; DOF],
-        base: &BaseMotion<T>,
-        wrenches: &[Wrench<T>; TIPS],
-    ) -> FloatingTorqueDerivatives<DOF, NV, T>;
-}
 
 impl<const DOF: usize, const NV: usize, T: Scalar> FloatingTorqueDerivatives<DOF, NV, T> {
     /// ∂τ/∂q and ∂τ/∂v of Pinocchio's `computeRNEADerivatives` with a free flyer, in this order. Rows are force,

@@ -1,48 +1,13 @@
 //! The step of the semi-implicit Euler method of a robot with a floating base, with the rotation of the base as a
 //! matrix.
 
-#[cfg(feature = "arm")]
 use core::array::from_fn;
 
-#[cfg(feature = "arm")]
 use crate::pose_log::{dot, times, transposed};
-#[cfg(feature = "arm")]
 use crate::steps::moved;
-#[cfg(feature = "arm")]
-use crate::{ArmWithTips, BaseAcceleration, Constant, at_tip::AtTip, definition::definitions};
-use crate::{BaseTwist, FloatingNextState, Pose, Scalar, Wrench};
-
-/// A step of the semi-implicit Euler method of a robot with a floating base, under torques and wrenches that do not
-/// change during the step. The base, the tips and the wrenches are those of [`FloatingBase`](crate::FloatingBase).
-pub trait FloatingEulerStep<const DOF: usize, const TIPS: usize> {
-    /// The state after a step of the duration `step`, s. `pose` is that of frame 0 in the world, `twist` its velocity
-    /// in its axes. Gravity is that of the robot file, in axes of the world.
-    ///
-    /// The velocities come first, by the accelerations of [`floating_forward_dynamics`](
-    /// crate::FloatingBase::floating_forward_dynamics), those of the origin of frame 0 in world axes. Then this origin
-    /// and the joints move with the new velocities, and the base turns by the new angular velocity in its axes. The
-    /// error of a motion is of order h.
-    ///
-    /// The base turns by the unit quaternion (1 - s, 2 u) / (1 + s) with u = h ω / 4 and s = u·u. It needs no root, no
-    /// sine and no quotient by an angle, so it is smooth at ω = 0; its angle is h |ω| less (h |ω|)³ / 48, an error of
-    /// higher order than that of the method. The rotation after the step is orthogonal to rounding, however many steps
-    /// came before. A `pose` that is no rotation, or a base without mass, gives numbers without a meaning.
-    #[must_use]
-    #[allow(clippy::too_many_arguments)] // a state and what acts on it
-    fn floating_euler_step<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        tau: &[T; DOF],
-        pose: &Pose<T>,
-        twist: &BaseTwist<T>,
-        step: T,
-        wrenches: &[Wrench<T>; TIPS],
-    ) -> FloatingNextState<DOF, T>;
-}
+use crate::{BaseAcceleration, BaseTwist, Pose, Scalar};
 
 /// The pose and the velocity of the base after a step; `gravity` is in world axes.
-#[cfg(feature = "arm")]
 pub(crate) fn next_of_base<T: Scalar>(
     (pose, twist): (&Pose<T>, &BaseTwist<T>),
     acceleration: &BaseAcceleration<T>,
@@ -59,13 +24,11 @@ pub(crate) fn next_of_base<T: Scalar>(
     (Pose { rotation, translation }, BaseTwist { linear, angular })
 }
 
-#[cfg(feature = "arm")]
 fn product<T: Scalar>(a: &[[T; 3]; 3], b: &[[T; 3]; 3]) -> [[T; 3]; 3] {
     transposed(&transposed(b).map(|column| times(a, &column)))
 }
 
 /// The rotation by the unit quaternion (1 - s, 2 u) / (1 + s) with s = u·u and 4 u = `angle`.
-#[cfg(feature = "arm")]
 fn turn<T: Scalar>(angle: &[T; 3]) -> [[T; 3]; 3] {
     let one = T::one();
     let u = angle.map(|x| x * T::from_f64(0.25));
@@ -79,7 +42,6 @@ fn turn<T: Scalar>(angle: &[T; 3]) -> [[T; 3]; 3] {
 }
 
 /// B (3 - Bᵀ B) / 2: a step of Newton's method towards the rotation next to B.
-#[cfg(feature = "arm")]
 fn next_rotation<T: Scalar>(near: &[[T; 3]; 3]) -> [[T; 3]; 3] {
     let (half, columns) = (T::from_f64(0.5), transposed(near));
     let element = |row: usize, column: usize| {
@@ -88,17 +50,3 @@ fn next_rotation<T: Scalar>(near: &[[T; 3]; 3]) -> [[T; 3]; 3] {
     };
     product(near, &from_fn(|row| from_fn(|column| element(row, column))))
 }
-
-#[cfg(feature = "arm")]
-definitions! { FloatingEulerStep<DOF, TIPS> {
-    /// As [`FloatingEulerStep::floating_euler_step`], with one of `wrenches` for each of the [tips](Self::tips).
-    fn floating_euler_step(
-        q: joints, qd: joints, tau: joints, pose: pose, twist: twist, step: number, wrenches: wrenches
-    ) -> FloatingNextState<DOF> = |robot| {
-        let (base, qdd) = robot.floating_forward_dynamics([q, qd, tau], &twist.angular, AtTip::Wrenches(wrenches));
-        let (pose, twist) = next_of_base((pose, twist), &base, &robot.mechanism.gravity.map(S::to), step);
-        let [q, qd] = [q, qd].map(|x| robot.list(x));
-        let qd = moved(&qd, &qdd, step);
-        (pose, twist, moved(&q, &qd, step), qd)
-    };
-} }

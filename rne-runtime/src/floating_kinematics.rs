@@ -12,14 +12,14 @@ use nalgebra::{Matrix3, Vector3};
 use rne_model::FixedFrame;
 
 use crate::coordinates::Coordinates as _;
-use crate::definition::{Definition, definitions};
+use crate::definition::Definition;
 use crate::floating_base::{BASE, turning};
 use crate::kinematics::Placement;
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::mount::Mount;
 use crate::per_joint::PerJoint;
-use crate::{ArmWithTips, Constant, FloatingKinematics, Scalar};
+use crate::{Constant, Scalar};
 
 /// The six columns of the base in a row of a Jacobian, and those of the joints.
 type Row<J, T> = ([T; BASE], <J as PerJoint>::Of<T>);
@@ -108,12 +108,3 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         self.mechanism.tip_acceleration((q.as_ref(), qd.as_ref()), omega, matrix(base_rotation), tip)
     }
 }
-
-definitions! { FloatingKinematics<DOF, NV, TIPS> {
-    /// As [`FloatingKinematics::tip_jacobians`]: for each of the [tips](Self::tips) six rows of 6 + n numbers.
-    fn tip_jacobians(q: joints, base_rotation: rotation) -> tip_rows =
-        |robot| robot.each_tip(|tip| robot.tip_jacobian(q, base_rotation, tip));
-    /// As [`FloatingKinematics::tip_accelerations`], of the [tips](Self::tips).
-    fn tip_accelerations(q: joints, qd: joints, omega: omega, base_rotation: rotation) -> tip_vectors =
-        |robot| robot.each_tip(|tip| robot.tip_acceleration([q, qd], omega, base_rotation, tip));
-} }

@@ -16,9 +16,9 @@
 
 use crate::at_tip::AtTip;
 use crate::coordinates::Coordinates as _;
-use crate::definition::{Definition, definitions};
+use crate::definition::Definition;
 use crate::per_joint::PerJoint;
-use crate::{Arm, Constant, ForwardDynamics, Scalar};
+use crate::{Constant, Scalar};
 
 impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
     pub(crate) fn forward_dynamics<T: Scalar>(self, [q, qd, tau]: [&[T]; 3], load: AtTip<'_, T>) -> J::Of<T> {
@@ -26,9 +26,3 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         self.accelerations(q, self.coordinates.each().of(|i| tau[i] - bias.as_ref()[i]), load)
     }
 }
-
-definitions! { ForwardDynamics<DOF> {
-    /// As [`ForwardDynamics::forward_dynamics`]: accelerations, with a free tip.
-    fn forward_dynamics(q: joints, qd: joints, tau: joints) -> vector =
-        |robot| robot.forward_dynamics([q, qd, tau], AtTip::Nothing);
-} }

@@ -22,14 +22,14 @@ use nalgebra::{Matrix3, Vector3};
 use rne_model::{Convention, FixedFrame, JointKind, Row, Transform};
 
 use crate::coordinates::Coordinates as _;
-use crate::definition::{Definition, definitions};
+use crate::definition::Definition;
 use crate::joint::JointLaws;
 use crate::link_frame::{LinkFrame, rotation_of, rotation_x, rotation_z};
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::mount::Mount;
 use crate::per_joint::PerJoint;
-use crate::{Arm, BaseMotion, Constant, Kinematics, Pose, Scalar, Wrench};
+use crate::{Arm, BaseMotion, Constant, Pose, Scalar, Wrench};
 
 /// A pose in nalgebra's types.
 #[derive(Clone, Copy, Debug)]
@@ -277,29 +277,10 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
     }
 }
 
-definitions! { Kinematics<DOF> {
-    /// As [`Kinematics::forward_kinematics`]: the tip in the world.
-    fn forward_kinematics(q: joints) -> a_pose =
-        |robot| robot.mechanism.forward_kinematics(robot.of_joints(q).as_ref());
-    /// As [`Kinematics::link_poses`]: the link frames in the world, base to tip. Links whose joints follow others have
-    /// none; [`at_frame`](Self::at_frame) finds them.
-    fn link_poses(q: joints) -> poses =
-        |robot| robot.coordinates.only(robot.mechanism.link_poses(robot.of_joints(q).as_ref()));
-    /// As [`Kinematics::jacobian`]: six rows with one element per joint.
-    fn jacobian(q: joints) -> rows6 = |robot| robot.jacobian(q);
-    /// As [`Kinematics::jacobian_rate_times_velocity`]: J̇ q̇.
-    fn jacobian_rate_times_velocity(q: joints, qd: joints) -> six = |robot| {
-        let [q, qd] = [q, qd].map(|values| robot.of_joints(values));
-        robot.mechanism.jacobian_rate_times_velocity(q.as_ref(), qd.as_ref())
-    };
-    /// The joint torques Jᵀ w of a wrench; see [`Kinematics::wrench_torques`].
-    fn wrench_torques(q: joints, wrench: wrench) -> vector =
-        |robot| robot.coordinates.torques(robot.mechanism.wrench_torques(robot.of_joints(q).as_ref(), wrench));
-} }
-
 impl<const DOF: usize, S: Constant> Arm<DOF, S> {
-    /// This arm with the frame `frame` in the place of the tip: the functions of [`Kinematics`] are those of the frame,
-    /// except [`link_poses`](Kinematics::link_poses). The functions of all other traits stay those of the tip.
+    /// This arm with the frame `frame` in the place of the tip: the functions of [`Kinematics`](crate::Kinematics) are
+    /// those of the frame, except [`link_poses`](crate::Kinematics::link_poses). The functions of all other traits stay
+    /// those of the tip.
     ///
     /// `None` when `frame` is on a link that the arm does not have.
     #[must_use]

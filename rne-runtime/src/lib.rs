@@ -16,6 +16,7 @@ mod base_motion;
 mod base_parameters;
 mod base_state;
 pub mod batch;
+#[macro_use]
 mod capability;
 #[cfg(feature = "arm")]
 mod centre_of_mass;
@@ -48,16 +49,14 @@ mod floating_base;
 #[cfg(feature = "arm")]
 mod floating_change;
 mod floating_derivatives;
+#[cfg(feature = "arm")]
 mod floating_euler_step;
 mod floating_integrator;
 #[cfg(feature = "arm")]
 mod floating_kinematics;
 mod floating_runge_kutta;
-mod floating_step_derivatives;
 #[cfg(feature = "arm")]
 mod forward_dynamics;
-mod hessian;
-mod integrator;
 /// Steps and their derivatives of a robot with a floating base, with lists of joints: the Python package has robots
 /// of any number of joints.
 #[doc(hidden)]
@@ -103,8 +102,6 @@ mod operations;
 mod optimisation;
 mod payload;
 #[cfg(feature = "arm")]
-mod payload_dynamics;
-#[cfg(feature = "arm")]
 mod per_joint;
 mod pose;
 mod pose_log;
@@ -131,8 +128,6 @@ pub mod testing;
 #[cfg(feature = "rayon")]
 mod threads;
 #[cfg(feature = "arm")]
-mod tip_wrenches;
-#[cfg(feature = "arm")]
 mod trace;
 mod wrench;
 
@@ -156,14 +151,8 @@ pub use error::{LoadError, WrongJointCount, WrongLength};
 #[cfg(all(feature = "arm", feature = "std"))]
 #[doc(hidden)]
 pub use evaluate::Inputs;
-pub use floating_derivatives::FloatingInverseDynamicsDerivatives;
-pub use floating_euler_step::FloatingEulerStep;
 pub use floating_integrator::{FloatingIntegratorStep, FloatingState};
 pub use floating_runge_kutta::FloatingRungeKuttaStepDerivatives;
-pub use floating_step_derivatives::FloatingEulerStepDerivatives;
-pub use hessian::InverseDynamicsHessian;
-pub use integrator::{EulerStep, EulerStepDerivatives};
-pub use jacobian_derivatives::JacobianDerivatives;
 pub use joint_order::{JointOrderError, joint_order};
 #[doc(hidden)]
 pub use names::unknown_frame;
@@ -179,7 +168,6 @@ pub use observer::ObserverState;
 pub use operational_space::operational_space;
 pub use operational_space::{dynamically_consistent_inverse, operational_space_inertia};
 pub use operations::Operations;
-pub use optimisation::{ForwardDynamicsDerivatives, InverseDynamicsGradient};
 pub use payload::{NegativeMass, Payload};
 pub use pose::Pose;
 pub use quaternion::Quaternion;

@@ -7,12 +7,12 @@
 
 use crate::at_tip::AtTip;
 use crate::coordinates::Coordinates as _;
-use crate::definition::{Definition, definitions};
+use crate::definition::Definition;
 use crate::ldlt::{factor, inverse_of, solve};
 use crate::link_state::{ForceMoment, JointMotions};
 use crate::mechanism::Mechanism;
 use crate::per_joint::{PerJoint, Square};
-use crate::{Arm, BaseMotion, Constant, MassMatrix, Scalar};
+use crate::{BaseMotion, Constant, Scalar};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn mass_matrix<T: Scalar>(self, q: &[T], tip: AtTip<'_, T>) -> Square<J, T> {
@@ -60,13 +60,3 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         b
     }
 }
-
-definitions! { MassMatrix<DOF> {
-    /// As [`MassMatrix::mass_matrix`]: rows of M(q).
-    fn mass_matrix(q: joints) -> matrix = |robot| robot.mass_matrix(q, AtTip::Nothing);
-    /// As [`MassMatrix::inverse_mass_matrix`]: rows of M(q)⁻¹.
-    fn inverse_mass_matrix(q: joints) -> matrix = |robot| robot.inverse_mass_matrix(q, AtTip::Nothing);
-    /// As [`MassMatrix::inverse_mass_matrix_times_torques`].
-    fn inverse_mass_matrix_times_torques(q: joints, tau: joints) -> vector =
-        |robot| robot.accelerations(q, robot.list(tau), AtTip::Nothing);
-} }

@@ -27,14 +27,14 @@ use nalgebra::{Matrix3, Vector3};
 use rne_model::JointKind;
 
 use crate::coordinates::Coordinates as _;
-use crate::definition::{Definition, definitions};
+use crate::definition::Definition;
 use crate::link_frame::LinkFrame;
 use crate::link_state::{JointMotions, LinkMotion};
 use crate::mechanism::Mechanism;
 use crate::mount::Mount;
 use crate::per_joint::PerJoint;
 use crate::seven_steps;
-use crate::{Arm, BaseMotion, BaseTwist, Constant, MomentumObserver, Payload, Scalar};
+use crate::{BaseMotion, BaseTwist, Constant, Payload, Scalar};
 
 /// Link i and all that it carries, as one body.
 #[derive(Clone, Copy, Debug)]
@@ -214,9 +214,3 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         self.coordinates.rows(both).into()
     }
 }
-
-definitions! { MomentumObserver<DOF> {
-    /// As [`MomentumObserver::momentum_and_rate`]: the momentum of every joint, and its rate without external torques.
-    fn momentum_and_rate(q: joints, qd: joints, tau: joints) -> MomentumAndRate<DOF> =
-        |robot| robot.momentum_and_rate([q, qd, tau], None);
-} }

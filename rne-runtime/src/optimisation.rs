@@ -3,52 +3,15 @@
 
 use core::array::from_fn;
 
-use crate::{AccelerationDerivatives, Dual, Scalar, TorqueGradient};
+use crate::{AccelerationDerivatives, Dual, Scalar};
 #[cfg(feature = "arm")]
 use crate::{
-    Arm, Constant,
+    Constant,
     at_tip::AtTip,
     coordinates::Coordinates as _,
-    definition::{Definition, definitions},
+    definition::Definition,
     per_joint::{PerJoint, Square},
 };
-
-/// How a weighted sum of the torques changes with the motion: the product of a vector and the Jacobian of the inverse
-/// dynamics, as the gradient of a Lagrangian has it.
-pub trait InverseDynamicsGradient<const DOF: usize> {
-    /// The derivatives of λᵀτ by q, q̇ and q̈, with τ of [`inverse_dynamics`](crate::InverseDynamics::inverse_dynamics)
-    /// and the `multipliers` λ.
-    ///
-    /// They are λᵀ times the matrices of
-    /// [`inverse_dynamics_derivatives`](crate::InverseDynamicsDerivatives::inverse_dynamics_derivatives), and M(q) λ.
-    /// Code that is derived has them in reverse mode, in a few times the operations of the torques.
-    #[must_use]
-    fn torque_gradient<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        qdd: &[T; DOF],
-        multipliers: &[T; DOF],
-    ) -> TorqueGradient<DOF, T>;
-}
-
-/// How the accelerations change with the state and with the torques: the linear model that shooting methods and linear
-/// quadratic regulators take.
-pub trait ForwardDynamicsDerivatives<const DOF: usize> {
-    /// The derivatives of [`forward_dynamics`](crate::ForwardDynamics::forward_dynamics) by q, q̇ and τ, at a state.
-    ///
-    /// With the accelerations q̈ of this state, ∂q̈/∂q = -M⁻¹ ∂τ/∂q, ∂q̈/∂q̇ = -M⁻¹ ∂τ/∂q̇ and ∂q̈/∂τ = M⁻¹. A singular mass
-    /// matrix (a joint that moves nothing) gives numbers that are not finite.
-    ///
-    /// Source: J. Carpentier, N. Mansard, "Analytical derivatives of rigid body dynamics algorithms", 2018.
-    #[must_use]
-    fn forward_dynamics_derivatives<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        tau: &[T; DOF],
-    ) -> AccelerationDerivatives<DOF, T>;
-}
 
 impl<const DOF: usize, T: Scalar> AccelerationDerivatives<DOF, T> {
     /// Derivatives of accelerations by q and q̇, beside the inverse of the mass matrix.
@@ -125,18 +88,24 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         let dq = self.rows_by(q, |q| accelerations(q, still_qd.as_ref()));
         (dq, self.rows_by(qd, |qd| accelerations(still_q.as_ref(), qd)), self.inverse_mass_matrix(q, load))
     }
+
+    /// λᵀτ by q and q, by q and q̇, by q̇ and q̇, and by q and q̈.
+    #[allow(clippy::type_complexity)] // four matrices
+    pub(crate) fn torque_hessian<T: Scalar>(
+        self,
+        [q, qd, qdd]: [&[T]; 3],
+        multipliers: &[T],
+    ) -> (Square<J, T>, Square<J, T>, Square<J, T>, Square<J, T>) {
+        let each = self.coordinates.each();
+        let [still_q, still_qd, qdd, multipliers] = [q, qd, qdd, multipliers].map(|x| self.still(x));
+        let gradient = |q: &J::Of<Dual<T>>, qd: &J::Of<Dual<T>>| {
+            let (by_q, by_qd, by_qdd) =
+                self.torque_gradient([q.as_ref(), qd.as_ref(), qdd.as_ref()], multipliers.as_ref());
+            [by_q, by_qd, by_qdd].map(|row| each.of(|j| row.as_ref()[j].derivative))
+        };
+        let by_q = each.of(|i| gradient(&self.along(q, i), &still_qd));
+        let by_qd = each.of(|i| gradient(&still_q, &self.along(qd, i)));
+        let rows = |by: &J::Of<[J::Of<T>; 3]>, place: usize| each.of(|i| by.as_ref()[i][place].clone());
+        (rows(&by_q, 0), rows(&by_q, 1), rows(&by_qd, 1), rows(&by_q, 2))
+    }
 }
-
-#[cfg(feature = "arm")]
-definitions! { InverseDynamicsGradient<DOF> {
-    /// As [`InverseDynamicsGradient::torque_gradient`].
-    fn torque_gradient(q: joints, qd: joints, qdd: joints, multipliers: joints) -> TorqueGradient<DOF> =
-        |robot| robot.torque_gradient([q, qd, qdd], multipliers);
-} }
-
-#[cfg(feature = "arm")]
-definitions! { ForwardDynamicsDerivatives<DOF> {
-    /// As [`ForwardDynamicsDerivatives::forward_dynamics_derivatives`].
-    fn forward_dynamics_derivatives(q: joints, qd: joints, tau: joints) -> AccelerationDerivatives<DOF> =
-        |robot| robot.acceleration_derivatives([q, qd, tau], AtTip::Nothing, AtTip::Nothing);
-} }

@@ -19,7 +19,7 @@ use nalgebra::{Matrix3, Vector3};
 use rne_model::{Convention, Link, PER_LINK, Row};
 
 use crate::coordinates::Coordinates as _;
-use crate::definition::{Definition, definitions};
+use crate::definition::Definition;
 use crate::floating_base::BASE;
 use crate::joint::JointLaws;
 use crate::link_frame::{Chain, LinkFrame, Table, rotation_x};
@@ -27,7 +27,7 @@ use crate::link_state::{ForceMoment, JointMotions, LinkMotion};
 use crate::mechanism::Mechanism;
 use crate::mount::Mount;
 use crate::per_joint::{PerJoint, Square};
-use crate::{Arm, ArmWithTips, BaseMotion, Constant, FloatingRegressor, Regressor, Scalar};
+use crate::{ArmWithTips, BaseMotion, Constant, FloatingRegressor, Scalar};
 
 /// Row and column of Jxx, Jxy, Jxz, Jyy, Jyz, Jzz.
 const TENSOR: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
@@ -36,13 +36,13 @@ const TENSOR: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2,
 type Elements<T> = [T; PER_LINK];
 
 /// The rows of a floating base, force above moment: of the base's own parameters, and of the links.
-struct OfBase<J: PerJoint, T: Scalar> {
+pub(crate) struct OfBase<J: PerJoint, T: Scalar> {
     own: [Elements<T>; BASE],
     links: [J::Of<Elements<T>>; BASE],
 }
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    fn regressor<T: Scalar>(
+    pub(crate) fn regressor<T: Scalar>(
         self,
         joints: JointMotions<'_, T>,
         base: &BaseMotion<T>,
@@ -140,7 +140,7 @@ fn unit_wrenches<T: Scalar>(motion: &LinkMotion<T>, axes: &Matrix3<T>) -> [Force
 
 impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
     /// The rows of the base, and those of the coordinates.
-    fn regressor<T: Scalar>(
+    pub(crate) fn regressor<T: Scalar>(
         self,
         [q, qd, qdd]: [&[T]; 3],
         base: &BaseMotion<T>,
@@ -157,12 +157,6 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         (of_base, gathered)
     }
 }
-
-definitions! { Regressor<DOF> {
-    /// As [`Regressor::regressor`]: torque, link, parameter.
-    fn regressor(q: joints, qd: joints, qdd: joints) -> regressor =
-        |robot| robot.regressor([q, qd, qdd], &robot.fixed_base()).1;
-} }
 
 impl<const DOF: usize, const NV: usize, const BODIES: usize, const TIPS: usize, S: Constant>
     FloatingRegressor<DOF, NV, BODIES> for ArmWithTips<'_, DOF, NV, TIPS, S>

@@ -4,7 +4,7 @@
 use core::convert::Infallible;
 
 #[cfg(all(feature = "arm", feature = "std"))]
-use crate::{Constant, at_tip::AtTip, definition::definitions};
+use crate::at_tip::AtTip;
 use crate::{
     ForwardDynamics, ForwardDynamicsDerivatives, NextState, NextStateDerivatives, Scalar, StepDerivatives, steps,
 };
@@ -77,8 +77,7 @@ impl<const DOF: usize, R> RungeKuttaStepDerivatives<DOF> for R where
 {
 }
 
-#[cfg(all(feature = "arm", feature = "std"))]
-definitions! { @counted
+capability! { @counted
     /// As [`RungeKuttaStep::runge_kutta_step`].
     fn runge_kutta_step(q: joints, qd: joints, tau: joints, step: number) -> NextState<DOF> = |robot| {
         let accelerations =

@@ -1,10 +1,9 @@
 //! The types of arguments and results, where the number of joints is known and where it is not.
 
 /// Where the number of joints is known.
-#[cfg(feature = "arm")]
 macro_rules! known {
     (joints) => { &[T; DOF] };
-    (wrenches) => { &[Wrench<T>; TIPS] };
+    (wrenches) => { &[$crate::Wrench<T>; TIPS] };
     (vector) => { [T; DOF] };
     (matrix) => { [[T; DOF]; DOF] };
     (velocities) => { [T; NV] };
@@ -13,22 +12,21 @@ macro_rules! known {
     (rows6) => { [[T; DOF]; 6] };
     (rows3) => { [[T; DOF]; 3] };
     (matrices6) => { [[[T; DOF]; DOF]; 6] };
-    (poses) => { [Pose<T>; DOF] };
-    (joint_wrenches) => { [Wrench<T>; DOF] };
+    (poses) => { [$crate::Pose<T>; DOF] };
+    (joint_wrenches) => { [$crate::Wrench<T>; DOF] };
     (tip_rows) => { [[[T; NV]; 6]; TIPS] };
     (tip_vectors) => { [[T; 6]; TIPS] };
     (regressor) => { [[[T; 10]; DOF]; DOF] };
     ($record:ident<$($size:ident),*>) => { $crate::records::$record<$($size,)* T> };
     ($of_every_robot:ident) => { $crate::shapes::every!($of_every_robot) };
 }
-#[cfg(feature = "arm")]
 pub(crate) use known;
 
 /// As [`known`], where the number of joints is known at run time only.
 #[cfg(all(feature = "arm", feature = "std"))]
 macro_rules! counted {
     (joints) => { &[T] };
-    (wrenches) => { &[Wrench<T>] };
+    (wrenches) => { &[$crate::Wrench<T>] };
     (vector) => { Vec<T> };
     (matrix) => { Vec<Vec<T>> };
     (velocities) => { Vec<T> };
@@ -37,8 +35,8 @@ macro_rules! counted {
     (rows6) => { [Vec<T>; 6] };
     (rows3) => { [Vec<T>; 3] };
     (matrices6) => { [Vec<Vec<T>>; 6] };
-    (poses) => { Vec<Pose<T>> };
-    (joint_wrenches) => { Vec<Wrench<T>> };
+    (poses) => { Vec<$crate::Pose<T>> };
+    (joint_wrenches) => { Vec<$crate::Wrench<T>> };
     (tip_rows) => { Vec<[Vec<T>; 6]> };
     (tip_vectors) => { Vec<[T; 6]> };
     (regressor) => { Vec<Vec<[T; 10]>> };
@@ -49,19 +47,17 @@ macro_rules! counted {
 pub(crate) use counted;
 
 /// The types that are the same for every robot.
-#[cfg(feature = "arm")]
 macro_rules! every {
     (number) => { T };
     (triple) => { [T; 3] };
     (six) => { [T; 6] };
     (rotation) => { &[[T; 3]; 3] };
     (omega) => { &[T; 3] };
-    (wrench) => { &Wrench<T> };
-    (payload) => { &Payload<T> };
-    (motion) => { &BaseMotion<T> };
-    (twist) => { &BaseTwist<T> };
-    (pose) => { &Pose<T> };
-    (a_pose) => { Pose<T> };
+    (wrench) => { &$crate::Wrench<T> };
+    (payload) => { &$crate::Payload<T> };
+    (motion) => { &$crate::BaseMotion<T> };
+    (twist) => { &$crate::BaseTwist<T> };
+    (pose) => { &$crate::Pose<T> };
+    (a_pose) => { $crate::Pose<T> };
 }
-#[cfg(feature = "arm")]
 pub(crate) use every;

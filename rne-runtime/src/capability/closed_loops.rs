@@ -39,8 +39,8 @@ pub trait ClosedLoops<const DOF: usize, const PASSIVE: usize, const EQUATIONS: u
         ClosureStep { passive, residual: self.closure_step(q, &passive).residual }
     }
 
-    /// The map G: velocities of the dependent joints are G q̇, and torques at them are worth Gᵀ of them at the joints of
-    /// `q`.
+    /// The map G: velocities of the dependent joints are G q̇, and torques at them are worth Gᵀ of them at the joints
+    /// of `q`.
     #[must_use]
     fn loop_map<T: Scalar>(&self, q: &[T; DOF], passive: &[T; PASSIVE]) -> [[T; DOF]; PASSIVE];
 
@@ -96,7 +96,7 @@ pub trait ClosedLoops<const DOF: usize, const PASSIVE: usize, const EQUATIONS: u
 /// velocities and the tips are those of [`FloatingBase`].
 pub trait FloatingClosedLoops<const DOF: usize, const PASSIVE: usize, const NV: usize, const TIPS: usize> {
     /// Torques of the joints of `q`, and the wrench that must act on the base, when frame 0 moves as `base` says. See
-    /// [`inverse_dynamics_of_floating_base`](FloatingBase::inverse_dynamics_of_floating_base).
+    /// [`inverse_dynamics_of_floating_base`](crate::FloatingBase::inverse_dynamics_of_floating_base).
     #[must_use]
     fn inverse_dynamics_of_floating_loops<T: Scalar>(
         &self,
@@ -109,12 +109,12 @@ pub trait FloatingClosedLoops<const DOF: usize, const PASSIVE: usize, const NV: 
     ) -> FloatingTorques<DOF, T>;
 
     /// The mass matrix of the base and of the joints of `q`, symmetric to the last bit. See
-    /// [`floating_mass_matrix`](FloatingBase::floating_mass_matrix).
+    /// [`floating_mass_matrix`](crate::FloatingBase::floating_mass_matrix).
     #[must_use]
     fn floating_mass_matrix_of_loops<T: Scalar>(&self, q: &[T; DOF], passive: &[T; PASSIVE]) -> [[T; NV]; NV];
 
     /// Accelerations of the base and of the joints of `q` for torques of these joints, while the wrenches and gravity
-    /// act. See [`floating_forward_dynamics`](FloatingBase::floating_forward_dynamics).
+    /// act. See [`floating_forward_dynamics`](crate::FloatingBase::floating_forward_dynamics).
     #[must_use]
     fn floating_forward_dynamics_of_loops<T: Scalar>(
         &self,

@@ -2,11 +2,30 @@
 
 #[cfg(doc)]
 use super::{Energy, InverseDynamics, MassMatrix, Regressor, TipWrenches};
-use crate::{
-    AccelerationsAndWrenches, BaseMotion, BaseTwist, FloatingAccelerations, FloatingTorques, Payload, Pose, Scalar,
-    Wrench,
-};
+use crate::{BaseMotion, Scalar};
+#[cfg(feature = "arm")]
+use crate::{at_tip::AtTip, wrench::AllStill as _};
 
+/// The wrench on a base that nothing holds and the torques as a linear function of the inertial parameters, for their
+/// identification from the motion of the robot. `NV` = `DOF` + 6 rows are those of [`FloatingBase`], `BODIES` = `DOF` +
+/// 1.
+pub trait FloatingRegressor<const DOF: usize, const NV: usize, const BODIES: usize> {
+    /// Y: row i of [force, moment, torques](crate::FloatingBase::inverse_dynamics_of_floating_base), with free tips, is
+    /// Σ_j Σ_k Y\[i\]\[j\]\[k\] π_jk. The base is the first body, then come the links, each with the ten parameters of
+    /// [`regressor`](crate::Regressor::regressor); those of the base refer to frame 0.
+    ///
+    /// `base` is that of [`inverse_dynamics_of_floating_base`](crate::FloatingBase::inverse_dynamics_of_floating_base).
+    #[must_use]
+    fn floating_regressor<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        qdd: &[T; DOF],
+        base: &BaseMotion<T>,
+    ) -> [[[T; 10]; BODIES]; NV];
+}
+
+capability! {
 /// Dynamics of a robot whose base nothing holds: it walks, flies or rides. Its base is the link `floating_base` of the
 /// robot file; without that key the derive is an error, unless its attribute has `allow_lints`: then the base has no
 /// mass, and the wrench is what the mount of the robot must bear.
@@ -19,43 +38,29 @@ use crate::{
     note = "`FloatingBase` belongs into the same `derive`: `#[derive(FloatingBase)]`, and with batches \
             `#[derive(FloatingBase, BatchFloatingInverseDynamics)]`"
 )]
-pub trait FloatingBase<const DOF: usize, const NV: usize, const TIPS: usize> {
+pub trait FloatingBase<DOF, NV, TIPS> {
     /// Torques, and the wrench that must act on the base, when frame 0 moves as `base` says.
     ///
     /// `base` is what an inertial measurement unit reads: ω, ω̇, and the acceleration of the origin of frame 0 less
     /// gravity, in axes of frame 0. Only the difference `acceleration` - `gravity` counts. No orientation and no linear
     /// velocity enter.
-    #[must_use]
-    fn inverse_dynamics_of_floating_base<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        qdd: &[T; DOF],
-        base: &BaseMotion<T>,
-        wrenches: &[Wrench<T>; TIPS],
-    ) -> FloatingTorques<DOF, T>;
+    fn inverse_dynamics_of_floating_base(q: joints, qd: joints, qdd: joints, base: motion, wrenches: wrenches)
+        -> FloatingTorques<DOF> = |robot| robot.torques_and_wrench([q, qd, qdd], base, AtTip::Wrenches(wrenches));
 
     /// The mass matrix M of `NV` rows and columns: forces are M accelerations + [bias](Self::floating_bias).
     ///
-    /// Symmetric to the last bit. The block of the joints is the [mass matrix](MassMatrix::mass_matrix) of the robot
-    /// whose base is held. Elements that no state makes differ from zero are zero: those of joints on different
+    /// Symmetric to the last bit. The block of the joints is the [mass matrix](crate::MassMatrix::mass_matrix) of the
+    /// robot whose base is held. Elements that no state makes differ from zero are zero: those of joints on different
     /// branches, and of the base.
-    #[must_use]
-    fn floating_mass_matrix<T: Scalar>(&self, q: &[T; DOF]) -> [[T; NV]; NV];
+    fn floating_mass_matrix(q: joints) -> velocity_matrix = |robot| robot.floating_mass_matrix(q, AtTip::Nothing);
 
     /// The wrench on the base, force (N) above moment (N m), and the torques (N m or N) that a motion without
-    /// accelerations needs, a - g = 0, ω̇ = 0, q̈ = 0: velocity products, and what wrenches at the tips ask. No friction,
-    /// as in [`bias_torques`](InverseDynamics::bias_torques).
+    /// accelerations needs, a - g = 0, ω̇ = 0, q̈ = 0: velocity products, and what wrenches at the tips ask. No
+    /// friction, as in [`bias_torques`](crate::InverseDynamics::bias_torques).
     ///
     /// `omega`: angular velocity of the base, rad/s, in axes of frame 0.
-    #[must_use]
-    fn floating_bias<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        omega: &[T; 3],
-        wrenches: &[Wrench<T>; TIPS],
-    ) -> [T; NV];
+    fn floating_bias(q: joints, qd: joints, omega: omega, wrenches: wrenches) -> velocities =
+        |robot| robot.floating_bias([q, qd], omega, AtTip::Wrenches(wrenches));
 
     /// The accelerations that follow from torques, where nothing but gravity and the wrenches at the tips acts on the
     /// robot. `omega` as in [`floating_bias`](Self::floating_bias).
@@ -63,123 +68,88 @@ pub trait FloatingBase<const DOF: usize, const NV: usize, const TIPS: usize> {
     /// A base without mass, as that of a robot file without `floating_base`, can turn against its joints while no link
     /// moves: the mass matrix is singular then, and the numbers mean nothing or are not finite. The function never
     /// panics.
-    #[must_use]
-    fn floating_forward_dynamics<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        tau: &[T; DOF],
-        omega: &[T; 3],
-        wrenches: &[Wrench<T>; TIPS],
-    ) -> FloatingAccelerations<DOF, T>;
+    fn floating_forward_dynamics(q: joints, qd: joints, tau: joints, omega: omega, wrenches: wrenches)
+        -> FloatingAccelerations<DOF> =
+        |robot| robot.floating_forward_dynamics([q, qd, tau], omega, AtTip::Wrenches(wrenches));
+}
 }
 
+capability! {
 /// A robot with a floating base and a payload that is known when the program runs: every function is that of the robot
 /// whose last link has the payload, too. The tips exert nothing. The base and its `NV` = `DOF` + 6 velocities are those
 /// of [`FloatingBase`]; a payload of zero gives the numbers of its functions with free tips.
-pub trait FloatingPayloadDynamics<const DOF: usize, const NV: usize> {
+pub trait FloatingPayloadDynamics<DOF, NV> {
     /// Torques, and the wrench that must act on the base, when frame 0 moves as `base` says. See
-    /// [`inverse_dynamics_of_floating_base`](FloatingBase::inverse_dynamics_of_floating_base).
-    #[must_use]
-    fn floating_inverse_dynamics_with_payload<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        qdd: &[T; DOF],
-        base: &BaseMotion<T>,
-        payload: &Payload<T>,
-    ) -> FloatingTorques<DOF, T>;
+    /// [`inverse_dynamics_of_floating_base`](crate::FloatingBase::inverse_dynamics_of_floating_base).
+    fn floating_inverse_dynamics_with_payload(q: joints, qd: joints, qdd: joints, base: motion, payload: payload)
+        -> FloatingTorques<DOF> = |robot| robot.torques_and_wrench([q, qd, qdd], base, AtTip::Payload(payload));
 
-    /// The mass matrix of `NV` rows and columns. See [`floating_mass_matrix`](FloatingBase::floating_mass_matrix).
-    #[must_use]
-    fn floating_mass_matrix_with_payload<T: Scalar>(&self, q: &[T; DOF], payload: &Payload<T>) -> [[T; NV]; NV];
+    /// The mass matrix of `NV` rows and columns. See
+    /// [`floating_mass_matrix`](crate::FloatingBase::floating_mass_matrix).
+    fn floating_mass_matrix_with_payload(q: joints, payload: payload) -> velocity_matrix =
+        |robot| robot.floating_mass_matrix(q, AtTip::Payload(payload));
 
     /// The wrench on the base, force (N) above moment (N m), and the torques (N m or N) of a motion without
-    /// accelerations. See [`floating_bias`](FloatingBase::floating_bias).
-    #[must_use]
-    fn floating_bias_torques_with_payload<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        omega: &[T; 3],
-        payload: &Payload<T>,
-    ) -> [T; NV];
+    /// accelerations. See [`floating_bias`](crate::FloatingBase::floating_bias).
+    fn floating_bias_torques_with_payload(q: joints, qd: joints, omega: omega, payload: payload) -> velocities =
+        |robot| robot.floating_bias([q, qd], omega, AtTip::Payload(payload));
 
     /// The accelerations that follow from torques, where nothing but gravity acts on the robot. See
-    /// [`floating_forward_dynamics`](FloatingBase::floating_forward_dynamics).
-    #[must_use]
-    fn floating_forward_dynamics_with_payload<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        tau: &[T; DOF],
-        omega: &[T; 3],
-        payload: &Payload<T>,
-    ) -> FloatingAccelerations<DOF, T>;
+    /// [`floating_forward_dynamics`](crate::FloatingBase::floating_forward_dynamics).
+    fn floating_forward_dynamics_with_payload(q: joints, qd: joints, tau: joints, omega: omega, payload: payload)
+        -> FloatingAccelerations<DOF> =
+        |robot| robot.floating_forward_dynamics([q, qd, tau], omega, AtTip::Payload(payload));
+}
 }
 
+capability! {
 /// Momentum of a robot whose base nothing holds, about its centre of mass. `NV` velocities and accelerations, and the
 /// base, are those of [`FloatingBase`]: all vectors are in axes of frame 0. Turned by the rotation of the base, force
 /// and moment are those in world axes.
-pub trait CentroidalMomentum<const DOF: usize, const NV: usize> {
+pub trait CentroidalMomentum<DOF, NV> {
     /// The matrix A: A v is the momentum (N s), then the angular momentum about the centre of mass (N m s).
     ///
     /// Source: D. E. Orin, A. Goswami, S.-H. Lee, "Centroidal dynamics of a humanoid robot", 2013. A robot without mass
     /// gives numbers that are not finite.
-    #[must_use]
-    fn centroidal_momentum_matrix<T: Scalar>(&self, q: &[T; DOF]) -> [[T; NV]; 6];
+    fn centroidal_momentum_matrix(q: joints) -> velocity_rows = |robot| robot.centroidal_momentum_matrix(q);
 
-    /// The rate of this momentum when the accelerations (a - g, ω̇, q̈) are zero: force (N), then moment about the centre
-    /// of mass (N m). A times the accelerations, plus this rate, is what acts on the robot beside gravity.
+    /// The rate of this momentum when the accelerations (a - g, ω̇, q̈) are zero: force (N), then moment about the
+    /// centre of mass (N m). A times the accelerations, plus this rate, is what acts on the robot beside gravity.
     ///
     /// `omega`: angular velocity of the base, rad/s.
-    #[must_use]
-    fn centroidal_bias<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], omega: &[T; 3]) -> [T; 6];
+    fn centroidal_bias(q: joints, qd: joints, omega: omega) -> six = |robot| robot.centroidal_bias(q, qd, omega);
 
     /// The momentum A v (N s), then the angular momentum about the centre of mass (N m s), without the matrix.
     ///
     /// `twist`: velocity of the origin of frame 0, m/s, and angular velocity of the base, rad/s.
-    #[must_use]
-    fn centroidal_momentum<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], twist: &BaseTwist<T>) -> [T; 6];
+    fn centroidal_momentum(q: joints, qd: joints, twist: twist) -> six = |robot| {
+        let [q, qd] = [q, qd].map(|values| robot.of_joints(values));
+        robot.mechanism.centroidal_momentum(q.as_ref(), qd.as_ref(), twist)
+    };
+}
 }
 
+capability! {
 /// Energy of a robot whose base nothing holds.
-pub trait FloatingEnergy<const DOF: usize> {
-    /// Kinetic energy ½ vᵀ M v, J, with the [mass matrix](FloatingBase::floating_mass_matrix) M; rotors included in an
-    /// arm with its rotors.
+pub trait FloatingEnergy<DOF> {
+    /// Kinetic energy ½ vᵀ M v, J, with the [mass matrix](crate::FloatingBase::floating_mass_matrix) M; rotors included
+    /// in an arm with its rotors.
     ///
     /// `twist`: velocity of the origin of frame 0, m/s, and angular velocity of the base, rad/s, in axes of frame 0.
-    #[must_use]
-    fn floating_kinetic_energy<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], twist: &BaseTwist<T>) -> T;
+    fn floating_kinetic_energy(q: joints, qd: joints, twist: twist) -> number =
+        |robot| robot.kinetic_energy(q, qd, Some(twist));
 
     /// Potential energy -Σ m g·c, J, with c from the origin of the world to each centre of mass: zero where all masses
     /// are there.
     ///
     /// `pose` of frame 0 in the world, whose axes are those in which the robot file has gravity. Where `pose` is no
-    /// rotation and no translation, this is the [potential energy](Energy::potential_energy).
-    #[must_use]
-    fn floating_potential_energy<T: Scalar>(&self, q: &[T; DOF], pose: &Pose<T>) -> T;
+    /// rotation and no translation, this is the [potential energy](crate::Energy::potential_energy).
+    fn floating_potential_energy(q: joints, pose: pose) -> number =
+        |robot| robot.mechanism.floating_potential_energy(robot.of_joints(q).as_ref(), pose);
+}
 }
 
-/// The wrench on a base that nothing holds and the torques as a linear function of the inertial parameters, for their
-/// identification from the motion of the robot. `NV` = `DOF` + 6 rows are those of [`FloatingBase`], `BODIES` = `DOF` +
-/// 1.
-pub trait FloatingRegressor<const DOF: usize, const NV: usize, const BODIES: usize> {
-    /// Y: row i of [force, moment, torques](FloatingBase::inverse_dynamics_of_floating_base), with free tips, is Σ_j
-    /// Σ_k Y\[i\]\[j\]\[k\] π_jk. The base is the first body, then come the links, each with the ten parameters of
-    /// [`regressor`](Regressor::regressor); those of the base refer to frame 0.
-    ///
-    /// `base` is that of [`inverse_dynamics_of_floating_base`](FloatingBase::inverse_dynamics_of_floating_base).
-    #[must_use]
-    fn floating_regressor<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        qdd: &[T; DOF],
-        base: &BaseMotion<T>,
-    ) -> [[[T; 10]; BODIES]; NV];
-}
-
+capability! {
 /// Jacobians and accelerations of the tips of a robot whose base nothing holds, for controllers of its whole body.
 ///
 /// The tips are those of [`TipWrenches`]; the base and its `NV` = `DOF` + 6 velocities are those of [`FloatingBase`]:
@@ -190,54 +160,69 @@ pub trait FloatingRegressor<const DOF: usize, const NV: usize, const BODIES: usi
 /// columns are the axes of frame 0 in the world: the results are in world axes then, as `LOCAL_WORLD_ALIGNED` of other
 /// libraries. The identity gives axes of the base. The transpose of the rotation of a tip in frame 0 gives axes of this
 /// tip. A matrix that is no rotation gives numbers without a meaning.
-pub trait FloatingKinematics<const DOF: usize, const NV: usize, const TIPS: usize> {
+pub trait FloatingKinematics<DOF, NV, TIPS> {
     /// The Jacobian of each tip: times the velocities, it is the velocity of the origin of the tip, m/s, in three rows,
     /// then the angular velocity of its link, rad/s.
     ///
     /// Elements that no state makes differ from zero are zero: those of joints that do not move the tip.
-    #[must_use]
-    fn tip_jacobians<T: Scalar>(&self, q: &[T; DOF], base_rotation: &[[T; 3]; 3]) -> [[[T; NV]; 6]; TIPS];
+    fn tip_jacobians(q: joints, base_rotation: rotation) -> tip_rows =
+        |robot| robot.each_tip(|tip| robot.tip_jacobian(q, base_rotation, tip));
 
     /// J̇ v of each tip: the classical acceleration of its origin, m/s², then its angular acceleration, rad/s², where
     /// the acceleration of the origin of frame 0, the angular acceleration of the base and those of the joints are
     /// zero. At other accelerations, those of the tip are its Jacobian times them, plus this.
     ///
     /// `omega`: angular velocity of the base, rad/s, in axes of frame 0. The linear velocity of the base has no part.
-    #[must_use]
-    fn tip_accelerations<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        omega: &[T; 3],
-        base_rotation: &[[T; 3]; 3],
-    ) -> [[T; 6]; TIPS];
+    fn tip_accelerations(q: joints, qd: joints, omega: omega, base_rotation: rotation) -> tip_vectors =
+        |robot| robot.each_tip(|tip| robot.tip_acceleration([q, qd], omega, base_rotation, tip));
+}
 }
 
+capability! {
 /// Motion of a robot whose base nothing holds while contacts hold some of its tips: a robot that stands or walks.
 ///
 /// The contacts are those of the list `contacts` of the robot file; without it nothing is held. A `point` holds the
 /// origin of its tip, a `weld` its orientation, too. The base, `NV` and the tips are those of [`FloatingBase`].
-pub trait ContactDynamics<const DOF: usize, const NV: usize, const TIPS: usize> {
+pub trait ContactDynamics<DOF, NV, TIPS> {
     /// The accelerations that follow from torques while the tips of the contacts do not accelerate in the world, and
     /// what the contacts exert ON the robot, in world axes. The moment of a point, and all of a tip without a contact,
     /// is zero.
     ///
     /// Contacts pull as well as push, and have no limit of friction: a caller looks at the forces. `omega` as in
-    /// [`floating_bias`](FloatingBase::floating_bias), `base_rotation` as in [`FloatingKinematics`]. Gravity is that of
-    /// the robot file, in the world.
+    /// [`floating_bias`](crate::FloatingBase::floating_bias), `base_rotation` as in [`FloatingKinematics`]. Gravity is
+    /// that of the robot file, in the world.
     ///
     /// Solves M x = (0, τ) - bias + Jᵀ f and J x + J̇ v + g = 0 by M = Lᵀ D L and a factorisation of J M⁻¹ Jᵀ + μ 1,
     /// with μ = 1e-8 in 1/kg and 1/(kg m²). So contacts that hold more than the robot can move, such as four points of
     /// a foot, have finite forces in `f64`; in `f32`, μ is lost beside the other numbers, and such contacts need `f64`.
     ///
     /// Source of the equations: R. Featherstone, "Rigid Body Dynamics Algorithms", 2008, section 11.
-    #[must_use]
-    fn forward_dynamics_in_contact<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        qd: &[T; DOF],
-        tau: &[T; DOF],
-        omega: &[T; 3],
-        base_rotation: &[[T; 3]; 3],
-    ) -> AccelerationsAndWrenches<DOF, TIPS, T>;
+    fn forward_dynamics_in_contact(q: joints, qd: joints, tau: joints, omega: omega, base_rotation: rotation)
+        -> AccelerationsAndWrenches<DOF, TIPS> =
+        |robot| robot.forward_dynamics_in_contact([q, qd, tau], omega, base_rotation);
+}
+}
+
+capability! {
+/// How the torques of a robot with a floating base change with its state. The base, `NV` and the tips are those of
+/// [`FloatingBase`](crate::FloatingBase).
+pub trait FloatingInverseDynamicsDerivatives<DOF, NV, TIPS> {
+    /// The derivatives of
+    /// [`inverse_dynamics_of_floating_base`](crate::FloatingBase::inverse_dynamics_of_floating_base) by q, q̇ and the
+    /// angular velocity ω of the base, at a state.
+    ///
+    /// Each derivative leaves the other arguments as they are. Of the base these are ω̇ and a - g, the classical
+    /// acceleration of the origin of frame 0 less gravity, in axes of frame 0: its orientation, position and linear
+    /// velocity have no part. The wrenches stay the same in axes of their tips, so they turn with the joints.
+    ///
+    /// The derivative by the accelerations (a - g, ω̇, q̈) is the [mass
+    /// matrix](crate::FloatingBase::floating_mass_matrix).
+    /// [`to_pinocchio`](crate::FloatingTorqueDerivatives::to_pinocchio) has the derivatives by position, orientation
+    /// and velocity of the base.
+    ///
+    /// Source: J. Carpentier, N. Mansard, "Analytical derivatives of rigid body dynamics algorithms", 2018.
+    fn floating_inverse_dynamics_derivatives(q: joints, qd: joints, qdd: joints, base: motion, wrenches: wrenches)
+        -> FloatingTorqueDerivatives<DOF, NV> =
+        |robot| robot.floating_derivatives([q, qd, qdd], base, wrenches.all_still().as_ref());
+}
 }

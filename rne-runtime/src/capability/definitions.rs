@@ -1,0 +1,90 @@
+//! The macro that declares a trait beside the definition of its functions.
+
+/// A trait, and its functions by their definitions: those of [`Arm`](crate::Arm), of an arm with its tips, and the
+/// methods of `DynArm`. `or` precedes what a type of the user has without a function of its own.
+macro_rules! capability {
+    // whether a list has one element for each joint, or for each tip
+    (@checked $robot:ident, $argument:ident, joints) => {
+        $robot.has_length(stringify!($argument), $argument)?
+    };
+    (@checked $robot:ident, $argument:ident, wrenches) => {
+        $robot.has_tips($argument)?
+    };
+    (@checked $robot:ident, $argument:ident, $other:ident) => {};
+    (@method $(#[$doc:meta])* $name:ident($($arg:ident: $kind:ident),*) -> $result:ty) => {
+        $(#[$doc])*
+        #[must_use]
+        #[allow(clippy::too_many_arguments)] // a state and what acts on it
+        fn $name<T: $crate::Scalar>(&self, $($arg: $crate::shapes::known!($kind)),*) -> $result;
+    };
+    (@method $(#[$doc:meta])* $name:ident($($arg:ident: $kind:ident),*) -> $result:ty, $this:ident $default:block) => {
+        $(#[$doc])*
+        #[must_use]
+        #[allow(clippy::too_many_arguments)] // a state and what acts on it
+        fn $name<T: $crate::Scalar>(&self, $($arg: $crate::shapes::known!($kind)),*) -> $result {
+            let $this = self;
+            $default
+        }
+    };
+    (@known [$($size:ident),*] $trait:path; $robot_type:ty; $(
+        $(#[$doc:meta])* fn $name:ident($($arg:ident: $kind:ident),*) -> $shape:ident $(<$($of:ident),*>)?
+            $(or |$this:ident| $default:block)? = |$robot:ident| $body:expr;
+    )*) => {
+        #[cfg(feature = "arm")]
+        impl<$(const $size: usize,)* S: $crate::Constant> $trait for $robot_type {
+            $(fn $name<T: $crate::Scalar>(
+                &self,
+                $($arg: $crate::shapes::known!($kind)),*
+            ) -> $crate::shapes::known!($shape $(<$($of),*>)?) {
+                let $robot = self.definition();
+                From::from($body)
+            })*
+        }
+    };
+    (@counted $(
+        $(#[$doc:meta])* fn $name:ident($($arg:ident: $kind:ident),*) -> $shape:ident $(<$($of:ident),*>)?
+            $(or |$this:ident| $default:block)? = |$robot:ident| $body:expr;
+    )*) => {
+        #[cfg(all(feature = "arm", feature = "std"))]
+        impl<S: $crate::Constant> $crate::DynArm<S> { $(
+            $(#[$doc])*
+            ///
+            /// # Errors
+            /// When an argument does not have one element per joint, or `wrenches` not one element per tip.
+            #[allow(clippy::too_many_arguments)] // a state and what acts on it
+            #[allow(clippy::type_complexity)] // as wide as the result is
+            pub fn $name<T: $crate::Scalar>(
+                &self,
+                $($arg: $crate::shapes::counted!($kind)),*
+            ) -> Result<$crate::shapes::counted!($shape $(<$($of),*>)?), $crate::WrongLength> {
+                $(capability! { @checked self, $arg, $kind })*
+                let $robot = self.definition();
+                Ok(From::from($body))
+            }
+        )* }
+    };
+    (@trait $(#[$about:meta])* $trait:ident<$($size:ident),*> $(
+        $(#[$doc:meta])* fn $name:ident($($arg:ident: $kind:ident),*) -> $shape:ident $(<$($of:ident),*>)?
+            $(or |$this:ident| $default:block)? = |$robot:ident| $body:expr;
+    )*) => {
+        $(#[$about])*
+        pub trait $trait<$(const $size: usize),*> { $(
+            capability! { @method
+                $(#[$doc])* $name($($arg: $kind),*) -> $crate::shapes::known!($shape $(<$($of),*>)?)
+                    $(, $this $default)?
+            }
+        )* }
+    };
+    ($(#[$about:meta])* pub trait $trait:ident<DOF> { $($functions:tt)* }) => {
+        capability! { @trait $(#[$about])* $trait<DOF> $($functions)* }
+        capability! { @known [DOF] $trait<DOF>; $crate::Arm<DOF, S>; $($functions)* }
+        capability! { @counted $($functions)* }
+    };
+    ($(#[$about:meta])* pub trait $trait:ident<$($size:ident),*> { $($functions:tt)* }) => {
+        capability! { @trait $(#[$about])* $trait<$($size),*> $($functions)* }
+        capability! {
+            @known [DOF, NV, TIPS] $trait<$($size),*>; $crate::ArmWithTips<'_, DOF, NV, TIPS, S>; $($functions)*
+        }
+        capability! { @counted $($functions)* }
+    };
+}
