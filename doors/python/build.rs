@@ -14,9 +14,7 @@ fn main() -> io::Result<()> {
     for function in Function::ALL {
         write(&mut methods, function, function.name());
         // a pose of the tip has the name that it has at a frame, too
-        if let Some(other) =
-            function.of_frame().filter(|name| function.name() == "forward_kinematics" && *name == "pose")
-        {
+        if let Some(other) = function.of_frame().filter(|name| *name != function.name()) {
             write(&mut methods, function, other);
         }
     }

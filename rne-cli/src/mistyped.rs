@@ -4,7 +4,7 @@
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgAction, Command, CommandFactory as _};
-use rne_codegen::Function;
+use rne_codegen::{Function, What};
 use rne_model::did_you_mean;
 
 use crate::commands::Arguments;
@@ -119,16 +119,6 @@ fn of_libraries(error: &clap::Error) -> Option<String> {
     of_matrices.or_else(|| choice::composed(value))
 }
 
-/// Names of functions in Python and in other programs, with those of the commands.
-const OTHER_NAMES: [(&str, &str); 6] = [
-    ("torques", "inverse_dynamics"),
-    ("pose", "forward_kinematics"),
-    ("fk", "forward_kinematics"),
-    ("rnea", "inverse_dynamics"),
-    ("crba", "mass_matrix"),
-    ("aba", "forward_dynamics"),
-];
-
 /// The function whose C code contains the observer.
 const OBSERVER: &str = "momentum_and_rate";
 
@@ -146,7 +136,7 @@ fn of_other_name(error: &clap::Error) -> Option<String> {
              {TYPED}--function {OBSERVER}{TYPED:#}, or {TYPED}--observer{TYPED:#} of {TYPED}rne certify{TYPED:#}"
         ));
     }
-    let other = OTHER_NAMES.into_iter().find(|(known, _)| value.eq_ignore_ascii_case(known)).map(|(_, name)| name);
+    let other = What::of_alias(&value.to_ascii_lowercase()).map(What::name);
     let meant = valid.iter().find(|name| name.eq_ignore_ascii_case(value) || other == Some(name.as_str()))?;
     Some(format!("`{value}` is not a valid value of {TYPED}{option}{TYPED:#}; did you mean {TYPED}{meant}{TYPED:#}?"))
 }

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, HashSet};
 use std::fmt;
 
 use rne_codegen::{
-    Argument, Cause, Causes, Constant, Expression, Fold, FoldReport, Form, Function, Name, Place, Program, Quantity,
-    Resolution, ResolvedAs, Sign, SineCosine, Statement, Step, WithRespectTo,
+    Argument, Cause, Causes, Constant, Expression, Fold, FoldReport, Form, Function, Length, Name, Place, Program,
+    Quantity, Record, Resolution, ResolvedAs, Shape, Sign, SineCosine, Statement, Step, WithRespectTo,
 };
 use rne_model::{Joint, JointKind, Robot, one_line};
 
@@ -206,7 +206,7 @@ pub fn listing<'a>(robot: &Robot, program: &'a Program, what: Selection) -> List
     // only what returns torques keeps to joints and steps; the code of a floating base does not, its explanation does
     let keeps_to_steps = program.form == Form::SevenSteps
         && (program.function.returns_torques()
-            || program.function == Function::JointWrenches
+            || matches!(program.function.shape(), Shape::Array(Length::Joints, Shape::Record(Record::Wrench, _)))
             || what.explain && program.function == Function::InverseDynamicsOfFloatingBase);
     let mut sections = if keeps_to_steps { by_steps(robot, program, what) } else { in_order(robot, program, what) };
     sections.retain(|section| !section.lines.is_empty());

@@ -10,7 +10,7 @@ use crate::{Entry, Inertia, InertiaElement, InertiaReference, Link, lint, matter
 pub(crate) fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, InertiaReference))> {
     read_mapping!(cx, node, "a link", {
         mass: or(0.0) "mass" |cx, node| mass(cx, node, joint),
-        com: or([0.0; 3]) "com" |cx, node| centre_of_mass(cx, node, joint),
+        com: or([0.0; 3]) "com" |cx, node| com(cx, node, joint),
         _moment: optional "first_moment" |_, _| Some(()),
         written: or(Inertia::default()) "inertia" |cx, node| tensor(cx, node, joint),
         about: or(InertiaReference::Com) "inertia_about" inertia_reference,
@@ -68,10 +68,10 @@ fn no_body(
     Some(InertiaReference::Origin)
 }
 
-fn centre_of_mass(cx: &Context, node: &Node, joint: usize) -> Option<[f64; 3]> {
+fn com(cx: &Context, node: &Node, joint: usize) -> Option<[f64; 3]> {
     list(cx, node, "[x, y, z] (m)", |cx, node, axis| {
         let value = entry(Entry::Com(joint, axis))(cx, node)?;
-        lint::centre_of_mass(cx, node, value);
+        lint::com(cx, node, value);
         Some(value)
     })
 }

@@ -131,7 +131,7 @@ pub(crate) fn gravity_upwards(cx: &Context, node: &Node, [x, y, z]: [f64; 3], ba
 }
 
 /// Millimetres taken for metres, in a centre of mass.
-pub(crate) fn centre_of_mass(cx: &Context, node: &Node, value: f64) {
+pub(crate) fn com(cx: &Context, node: &Node, value: f64) {
     if value.abs() > FARTHEST {
         let shown = cx.shown(node, value);
         let message = format!("the centre of mass lies {shown} m from the origin of the link frame, over {FARTHEST} m");

@@ -26,7 +26,7 @@ pub(crate) fn mass(cx: &Context, node: &Node) -> Option<f64> {
 pub(crate) fn com(cx: &Context, node: &Node) -> Option<[f64; 3]> {
     list(cx, node, "[x, y, z] (m)", |cx, node, _| {
         let value = fixed("the centre of mass")(cx, node)?;
-        lint::centre_of_mass(cx, node, value);
+        lint::com(cx, node, value);
         Some(value)
     })
 }

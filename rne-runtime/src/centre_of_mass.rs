@@ -41,7 +41,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         Placement { translation: Vector3::zeros(), ..Placement::constant(self.base) }
     }
 
-    pub(crate) fn centre_of_mass<T: Scalar>(self, q: &[T]) -> [T; 3] {
+    pub(crate) fn mass_centre<T: Scalar>(self, q: &[T]) -> [T; 3] {
         let links = self.placements(self.turned_base(), q);
         let (base, inverse) = (self.chain.base::<T>(), self.inverse_of_mass::<T>());
         let mut centre = base.com * (base.mass * inverse);
@@ -55,7 +55,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         (centre + Vector3::from(self.base.xyz).map(S::to)).into()
     }
 
-    pub(crate) fn centre_of_mass_jacobian<T: Scalar>(self, q: &[T]) -> [J::Of<T>; 3] {
+    pub(crate) fn mass_centre_jacobian<T: Scalar>(self, q: &[T]) -> [J::Of<T>; 3] {
         let base = self.turned_base();
         let (links, inverse) = (self.placements(base, q), self.inverse_of_mass());
         // of what each link carries

@@ -30,7 +30,7 @@ use crate::{BaseMotion, BaseTwist, Constant, Pose, Scalar};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     /// The kinetic energy on a base that moves as told, or stands still.
-    pub(crate) fn kinetic_energy<T: Scalar>(self, q: &[T], qd: &[T], twist: Option<&BaseTwist<T>>) -> T {
+    pub(crate) fn kinetic<T: Scalar>(self, q: &[T], qd: &[T], twist: Option<&BaseTwist<T>>) -> T {
         let zeros = self.zeros();
         let joints = JointMotions::new(q, qd, zeros.as_ref());
         let base = twist.map_or_else(BaseMotion::default, BaseTwist::motion);
@@ -66,20 +66,20 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         twice * T::from_f64(0.5)
     }
 
-    pub(crate) fn potential_energy<T: Scalar>(self, q: &[T]) -> T {
-        self.potential_energy_in(q, &Vector3::from(*self.gravity).map(S::to::<T>))
+    pub(crate) fn potential<T: Scalar>(self, q: &[T]) -> T {
+        self.potential_in(q, &Vector3::from(*self.gravity).map(S::to::<T>))
     }
 
     /// `pose` of frame 0 in the world.
-    pub(crate) fn floating_potential_energy<T: Scalar>(self, q: &[T], pose: &Pose<T>) -> T {
+    pub(crate) fn floating_potential<T: Scalar>(self, q: &[T], pose: &Pose<T>) -> T {
         let gravity = Vector3::from(*self.gravity).map(S::to::<T>);
         let mass = self.chain.links::<T>().fold(self.chain.base::<T>().mass, |mass, link| mass + link.mass);
         let (back, origin) = (Matrix3::from(pose.rotation), Vector3::from(pose.translation));
-        self.potential_energy_in(q, &(back * gravity)) - mass * gravity.dot(&origin)
+        self.potential_in(q, &(back * gravity)) - mass * gravity.dot(&origin)
     }
 
     /// `gravity` in frame 0.
-    fn potential_energy_in<T: Scalar>(self, q: &[T], gravity: &Vector3<T>) -> T {
+    fn potential_in<T: Scalar>(self, q: &[T], gravity: &Vector3<T>) -> T {
         let links = self.placements(Placement::identity(), q);
         let base = self.chain.base::<T>();
         let mut sum = base.mass * gravity.dot(&base.com);
@@ -94,8 +94,8 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
 }
 
 impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
-    pub(crate) fn kinetic_energy<T: Scalar>(self, q: &[T], qd: &[T], twist: Option<&BaseTwist<T>>) -> T {
+    pub(crate) fn kinetic<T: Scalar>(self, q: &[T], qd: &[T], twist: Option<&BaseTwist<T>>) -> T {
         let [q, qd] = [q, qd].map(|values| self.of_joints(values));
-        self.mechanism.kinetic_energy(q.as_ref(), qd.as_ref(), twist)
+        self.mechanism.kinetic(q.as_ref(), qd.as_ref(), twist)
     }
 }

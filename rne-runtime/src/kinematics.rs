@@ -145,7 +145,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         false
     }
 
-    pub(crate) fn forward_kinematics<T: Scalar>(self, q: &[T]) -> Pose<T> {
+    pub(crate) fn tip_pose<T: Scalar>(self, q: &[T]) -> Pose<T> {
         let base = Placement::constant(self.base);
         self.tip(base, self.placements(base, q).as_ref()).pose()
     }

@@ -27,8 +27,6 @@ mod computed_torque;
 mod contact_dynamics;
 #[cfg(feature = "arm")]
 mod coordinates;
-#[cfg(feature = "arm")]
-mod coriolis_matrix;
 #[cfg(all(feature = "arm", feature = "std"))]
 mod couplings;
 #[cfg(feature = "arm")]

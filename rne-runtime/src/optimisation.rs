@@ -58,11 +58,7 @@ pub(crate) fn along<T: Scalar>(x: &[T], i: usize, j: usize) -> Dual<T> {
 #[cfg(feature = "arm")]
 impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
     /// λᵀτ by q, by q̇ and by q̈.
-    pub(crate) fn torque_gradient<T: Scalar>(
-        self,
-        motion: [&[T]; 3],
-        multipliers: &[T],
-    ) -> (J::Of<T>, J::Of<T>, J::Of<T>) {
+    pub(crate) fn gradient<T: Scalar>(self, motion: [&[T]; 3], multipliers: &[T]) -> (J::Of<T>, J::Of<T>, J::Of<T>) {
         let still = motion.map(|x| self.still(x));
         let by = |place: usize| {
             self.coordinates.each().of(|j| {
@@ -91,7 +87,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
 
     /// λᵀτ by q and q, by q and q̇, by q̇ and q̇, and by q and q̈.
     #[allow(clippy::type_complexity)] // four matrices
-    pub(crate) fn torque_hessian<T: Scalar>(
+    pub(crate) fn hessian<T: Scalar>(
         self,
         [q, qd, qdd]: [&[T]; 3],
         multipliers: &[T],
@@ -99,8 +95,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         let each = self.coordinates.each();
         let [still_q, still_qd, qdd, multipliers] = [q, qd, qdd, multipliers].map(|x| self.still(x));
         let gradient = |q: &J::Of<Dual<T>>, qd: &J::Of<Dual<T>>| {
-            let (by_q, by_qd, by_qdd) =
-                self.torque_gradient([q.as_ref(), qd.as_ref(), qdd.as_ref()], multipliers.as_ref());
+            let (by_q, by_qd, by_qdd) = self.gradient([q.as_ref(), qd.as_ref(), qdd.as_ref()], multipliers.as_ref());
             [by_q, by_qd, by_qdd].map(|row| each.of(|j| row.as_ref()[j].derivative))
         };
         let by_q = each.of(|i| gradient(&self.along(q, i), &still_qd));

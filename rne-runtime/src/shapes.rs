@@ -13,7 +13,7 @@ macro_rules! known {
     (rows3) => { [[T; DOF]; 3] };
     (matrices6) => { [[[T; DOF]; DOF]; 6] };
     (poses) => { [$crate::Pose<T>; DOF] };
-    (joint_wrenches) => { [$crate::Wrench<T>; DOF] };
+    (loads) => { [$crate::Wrench<T>; DOF] };
     (tip_rows) => { [[[T; NV]; 6]; TIPS] };
     (tip_vectors) => { [[T; 6]; TIPS] };
     (regressor) => { [[[T; 10]; DOF]; DOF] };
@@ -36,7 +36,7 @@ macro_rules! counted {
     (rows3) => { [Vec<T>; 3] };
     (matrices6) => { [Vec<Vec<T>>; 6] };
     (poses) => { Vec<$crate::Pose<T>> };
-    (joint_wrenches) => { Vec<$crate::Wrench<T>> };
+    (loads) => { Vec<$crate::Wrench<T>> };
     (tip_rows) => { Vec<[Vec<T>; 6]> };
     (tip_vectors) => { Vec<[T; 6]> };
     (regressor) => { Vec<Vec<[T; 10]>> };

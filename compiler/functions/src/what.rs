@@ -8,7 +8,7 @@ use crate::{Capability, fixed_base as fixed, floating_base as floating, named};
 macro_rules! whats {
     ($(
         $(#[$doc:meta])*
-        $what:ident = $name:literal:
+        $what:ident = $name:literal $(| $alias:literal)*:
             [$($fixed_trait:ident $($fixed:ident)::+)?] [$($floating_trait:ident $($floating:ident)::+)?];
     )*) => {
         named! {
@@ -17,6 +17,15 @@ macro_rules! whats {
         }
 
         impl What {
+            /// The result that other programs, or a function at a frame, have under a name.
+            #[must_use]
+            pub fn of_alias(name: &str) -> Option<Self> {
+                match name {
+                    $($($alias => Some(Self::$what),)*)*
+                    _ => None,
+                }
+            }
+
             /// The entry for a base.
             pub(crate) const fn entry(self, base: Base) -> Entry {
                 let [fixed, floating] = match self {
@@ -35,7 +44,7 @@ macro_rules! whats {
 
 whats! {
     /// Torques from motion.
-    InverseDynamics = "inverse_dynamics": [InverseDynamics Entry::TORQUES] [FloatingBase floating::TORQUES];
+    InverseDynamics = "inverse_dynamics" | "torques" | "rnea": [InverseDynamics Entry::TORQUES] [FloatingBase floating::TORQUES];
     /// Torques from motion, with the sines and cosines of the positions as arguments.
     InverseDynamicsFromSinCos = "inverse_dynamics_from_sin_cos": [InverseDynamics Entry::TORQUES] [];
     /// Torques that hold the robot still.
@@ -45,7 +54,7 @@ whats! {
     /// C(q, q̇) q̇: torques where nothing accelerates or weighs.
     CoriolisTorques = "coriolis_torques": [CoriolisMatrix fixed::CORIOLIS_TORQUES] [];
     /// M(q).
-    MassMatrix = "mass_matrix": [MassMatrix fixed::MASS_MATRIX] [FloatingBase floating::MASS_MATRIX];
+    MassMatrix = "mass_matrix" | "crba": [MassMatrix fixed::MASS_MATRIX] [FloatingBase floating::MASS_MATRIX];
     /// M(q)⁻¹.
     InverseMassMatrix = "inverse_mass_matrix": [MassMatrix fixed::INVERSE_MASS_MATRIX] [];
     /// M(q)⁻¹ τ.
@@ -54,13 +63,13 @@ whats! {
     /// C(q, q̇).
     CoriolisMatrix = "coriolis_matrix": [CoriolisMatrix fixed::CORIOLIS_MATRIX] [];
     /// Accelerations from torques.
-    ForwardDynamics = "forward_dynamics":
+    ForwardDynamics = "forward_dynamics" | "aba":
         [ForwardDynamics fixed::FORWARD_DYNAMICS] [FloatingBase floating::ACCELERATIONS];
     /// Accelerations from torques while contacts hold some of the tips.
     ForwardDynamicsInContact = "forward_dynamics_in_contact":
         [] [ContactDynamics floating::FORWARD_DYNAMICS_IN_CONTACT];
     /// The pose of the tip.
-    ForwardKinematics = "forward_kinematics": [Kinematics fixed::FORWARD_KINEMATICS] [];
+    ForwardKinematics = "forward_kinematics" | "pose" | "fk": [Kinematics fixed::FORWARD_KINEMATICS] [];
     /// The poses of all links.
     LinkPoses = "link_poses": [Kinematics fixed::LINK_POSES] [];
     /// The Jacobian J of the tip.

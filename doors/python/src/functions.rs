@@ -8,7 +8,7 @@ use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PySlice, PyTuple};
 use rne::compiled::{Arguments, CompiledArm, Destination, EvaluationError, Function, Number};
-use rne_codegen::{Length, Record, Shape, Sizes};
+use rne_codegen::{Answer, Length, Record, Shape, Sizes};
 
 use crate::arrays::{Given, Held, are_single, memory, room, states, writable};
 use crate::errors::of_evaluation;
@@ -115,8 +115,8 @@ fn evaluate_in<'py, T: Element + Number>(
     {
         let mut writable = writable(&result)?;
         let numbers = writable.as_slice_mut().map_err(|_| PyValueError::new_err("`out` is not contiguous"))?;
-        let computed = py.detach(|| match function {
-            Function::ForwardKinematics | Function::LinkPoses => {
+        let computed = py.detach(|| match function.answer() {
+            Answer::Poses => {
                 let compiled = arm.function(function)?.outputs();
                 let mut rows = vec![T::zero(); compiled * count];
                 run(arm, function, count, &arguments, &mut rows)?;

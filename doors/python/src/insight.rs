@@ -27,8 +27,8 @@ fn rows(py: Python<'_>, parameters: Vec<[f64; 10]>) -> PyResult<Bound<'_, PyAny>
 fn is_no_composition(function: &str) -> PyResult<()> {
     let instead = match function {
         "runge_kutta_step" | "runge_kutta_step_derivatives" => {
-            "CasADi composes a step of Runge-Kutta from `arm.casadi(\"forward_dynamics\")`; \
-             `arm.casadi(\"euler_step\")` is a step by itself"
+            "CasADi composes a step of Runge-Kutta from `arm.casadi(\"forward_dynamics\")`; a step of \
+             Euler's method is a function by itself"
         }
         "floating_runge_kutta_step" | "floating_runge_kutta_step_derivatives" => {
             "it takes and returns poses, and CasADi calls functions of vectors"
@@ -171,7 +171,7 @@ impl Arm {
             return Err(PyValueError::new_err(
                 "CasADi cannot call this: it calls functions that take vectors and return a number, a vector or a \
                  matrix, such as inverse_dynamics. Derivatives come from these, such as \
-                 `arm.casadi(\"euler_step\").jacobian()`",
+                 `arm.casadi(\"forward_dynamics\").jacobian()`",
             ));
         }
         let prefix = Prefix::of(self.robot());

@@ -436,8 +436,7 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
     }
     let (is_for_casadi, has_frames) = (arguments.casadi && robot.closed.is_empty(), !arguments.frames.is_empty());
     let is_asked = |function: &Function| match asked.as_slice() {
-        _ if arguments.acados && matches!(function, Function::ForwardDynamics | Function::TorqueHessian) => true,
-        _ if arguments.runge_kutta && *function == Function::ForwardDynamics => true,
+        _ if (arguments.acados || arguments.runge_kutta) && *function == Function::ForwardDynamics => true,
         // with its derivatives
         [] if arguments.runge_kutta && *function == Function::ForwardDynamicsDerivatives => true,
         // each option adds its functions

@@ -29,7 +29,7 @@ use crate::values::state;
 #[command(after_help = "\
 Examples:
   rne explain functions     functions of a robot, the values of --function
-  rne explain euler_step    what one function computes, and its options
+  rne explain mass_matrix   what one function computes, and its options
   rne explain arguments     options of `rne eval` for each function
   rne explain tricks        simplifications of code, the values of --without
   rne explain quantities    quantities that `rne show --keep` can keep
@@ -79,7 +79,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let meant = did_you_mean(word, topics.iter().copied().chain(functions))
             .map_or_else(String::new, |meant| format!(" (did you mean {TYPED}{meant}{TYPED:#}?)"));
         Failure::usage(format_args!(
-            "there is no topic `{word}`{meant}; expected {}, a function such as euler_step, a link parameter such as \
+            "there is no topic `{word}`{meant}; expected {}, a function such as mass_matrix, a link parameter such as \
              Jzz3, or a name in the code of a robot and its file, as in {TYPED}rne explain w2_z puma560{TYPED:#}",
             topics.join(", ")
         ))

@@ -79,18 +79,7 @@ fn at_frame<'a>(robot: &Robot, program: &Program, arm: &'a DynArm) -> Cow<'a, Dy
 /// How large the terms of a function are: lengths and directions are about one, dynamics has the torques on a base that
 /// moves in all directions under a gravity that no axis is parallel to.
 fn size(function: Function, state: &State, arm: &DynArm) -> Result<f64, Failure> {
-    let is_kinematic = matches!(
-        function,
-        Function::ForwardKinematics
-            | Function::LinkPoses
-            | Function::Jacobian
-            | Function::JacobianRateTimesVelocity
-            | Function::JacobianRate
-            | Function::JacobianDerivatives
-            | Function::CentreOfMass
-            | Function::CentreOfMassJacobian
-    );
-    if is_kinematic {
+    if function.entry().is_geometry {
         return Ok(1.0);
     }
     let torques = if function.is_of_closed_loops() {

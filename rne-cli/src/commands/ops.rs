@@ -32,8 +32,8 @@ rne counts a subtraction as an addition, and x·x as one multiplication. A
 negation counts nothing. The column `sincos` counts the angles whose sine or
 cosine the code uses. Divisions have a column of their own if there are any, and
 are not in the total. The column `before folding` counts the operations of a
-loop over 3-vectors, before rne simplifies the code. The function
-actuator_torques is listed only if the robot has motors.")]
+loop over 3-vectors, before rne simplifies the code. Functions of motors are
+listed only if the robot has motors.")]
 pub(crate) struct Arguments {
     /// Robot files, or names from `rne list`
     #[arg(required = true, value_name = "FILE")]

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use rne_codegen::CheckFor as _;
 use rne_codegen::plan::Trick;
-use rne_codegen::{Argument, Form, Function, Order, Quantity, Step};
+use rne_codegen::{Argument, Capability, Form, Function, Order, Quantity, Step};
 use rne_model::{Convention, Robot};
 
 use crate::outcome::Failure;
@@ -204,16 +204,15 @@ pub(crate) fn of_loops(function: Function, robot: &Robot) -> Function {
     }
 }
 
-/// The functions that a robot has something to compute for, in the order of the traits: without motors,
-/// `actuator_torques` is zero, and there for who asks for it by name. With couplings, there is no
-/// `regressor`, and without contacts no motion in contact. Without
-/// named tips, a function with a wrench at each tip is the one with a wrench at the tip. Functions of a floating base
-/// are for robots that have one.
+/// The functions that a robot has something to compute for, in the order of the traits. Without motors, the torques of
+/// motors are zero, and there for who asks for them by name. With couplings, there is no `regressor`, and without
+/// contacts no motion in contact. Without named tips, a function with a wrench at each tip is the one with a wrench at
+/// the tip. Functions of a floating base are for robots that have one.
 pub(crate) fn functions_of(robot: &Robot) -> impl Iterator<Item = Function> {
     let has_motors = robot.joints.iter().any(|joint| joint.motor.is_some());
     let has_tips = !robot.tips.is_empty();
     rne_codegen::functions_of(robot).filter(move |function| {
-        (*function != Function::ActuatorTorques || has_motors)
+        (function.capability() != Capability::Actuation || has_motors)
             && function.check_for(robot).is_ok()
             && (has_tips || function.is_of_floating_base() || !function.takes(Argument::Wrenches))
     })

@@ -18,7 +18,7 @@ pub(crate) fn kinetic<'s>(
 ) -> Symbol<'s> {
     let builder = arm.builder;
     let of_base = base.zip(arm.floating_base.as_ref()).map(|(motion, body)| {
-        builder.joint(0).within(Quantity::KineticEnergy, || {
+        builder.joint(0).within(Quantity::Kinetic, || {
             let momentum = body.inertia * motion.turning.omega;
             motion.c_dot.dot(motion.c_dot) * body.mass + motion.turning.omega.dot(momentum)
         })
@@ -26,7 +26,7 @@ pub(crate) fn kinetic<'s>(
     let mut twice = of_base.unwrap_or_else(|| builder.constant(0.0, Cause::Arithmetic));
     for (index, (link, motion)) in arm.links.iter().zip(motions).enumerate() {
         let omega = motion.turning.omega;
-        twice = builder.joint(index + 1).within(Quantity::KineticEnergy, || {
+        twice = builder.joint(index + 1).within(Quantity::Kinetic, || {
             let momentum = link.body.inertia * omega;
             let of_link = motion.c_dot.dot(motion.c_dot) * link.body.mass + omega.dot(momentum);
             let twice = twice + of_link;
@@ -38,7 +38,7 @@ pub(crate) fn kinetic<'s>(
     }
     for (index, (link, state)) in arm.links.iter().zip(states).enumerate() {
         if let Some(rotor) = link.rotor {
-            twice = builder.joint(index + 1).within(Quantity::KineticEnergy, || twice + rotor * (state.qd * state.qd));
+            twice = builder.joint(index + 1).within(Quantity::Kinetic, || twice + rotor * (state.qd * state.qd));
         }
     }
     for spin in &arm.spins {
@@ -46,17 +46,17 @@ pub(crate) fn kinetic<'s>(
         let carrier = spin.on.map_or(base, |link| Some(&motions[link]));
         let omega = carrier.map(|motion| motion.turning.omega);
         let line = builder.joint(spin.on.map_or(1, |link| link + 1));
-        twice = line.within(Quantity::KineticEnergy, || twice + spin.twice_energy(rate, omega));
+        twice = line.within(Quantity::Kinetic, || twice + spin.twice_energy(rate, omega));
     }
     let half = builder.entry(Name::scalar(Quantity::Half, 0), 0.5);
-    let energy = builder.joint(motions.len()).within(Quantity::KineticEnergy, || twice * half);
-    builder.name(Name::scalar(Quantity::KineticEnergy, 0), energy)
+    let energy = builder.joint(motions.len()).within(Quantity::Kinetic, || twice * half);
+    builder.name(Name::scalar(Quantity::Kinetic, 0), energy)
 }
 
 /// `frames` in frame 0, where gravity is given.
 pub(crate) fn potential<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Symbol<'s> {
     let lost = lost(arm, arm.gravity, frames, centres);
-    arm.builder.name(Name::scalar(Quantity::PotentialEnergy, 0), -lost)
+    arm.builder.name(Name::scalar(Quantity::Potential, 0), -lost)
 }
 
 /// The potential energy where the base stands in the world at `pose`; gravity in world axes, `frames` in frame 0.
@@ -67,15 +67,15 @@ pub(crate) fn floating_potential<'s>(
     centres: &[Vector<'s>],
 ) -> Symbol<'s> {
     let line = arm.builder.joint(0);
-    let gravity = line.within(Quantity::PotentialEnergy, || pose.rotation.transpose() * arm.gravity);
+    let gravity = line.within(Quantity::Potential, || pose.rotation.transpose() * arm.gravity);
     let lost = lost(arm, gravity, frames, centres);
-    let energy = line.within(Quantity::PotentialEnergy, || {
+    let energy = line.within(Quantity::Potential, || {
         let of_base = arm.floating_base.as_ref().map(|base| base.mass);
         let masses = of_base.into_iter().chain(arm.links.iter().map(|link| link.body.mass));
         let mass = masses.reduce(|sum, mass| sum + mass).unwrap_or_else(|| arm.builder.zero());
         -(lost + arm.gravity.dot(pose.origin) * mass)
     });
-    arm.builder.name(Name::scalar(Quantity::PotentialEnergy, 0), energy)
+    arm.builder.name(Name::scalar(Quantity::Potential, 0), energy)
 }
 
 /// Σ m g · c, in frame 0.
@@ -86,7 +86,7 @@ fn lost<'s>(arm: &Arm<'s>, gravity: Vector<'s>, frames: &Frames<'s>, centres: &[
     for (index, ((link, frame), d)) in arm.links.iter().zip(&frames.joints).zip(centres).enumerate() {
         let line = builder.joint(index + 1);
         let centre = line.vector(Quantity::ComPosition, || frame.rotation * *d + frame.origin);
-        lost = line.within(Quantity::PotentialEnergy, || {
+        lost = line.within(Quantity::Potential, || {
             let lost = lost + gravity.dot(centre) * link.body.mass;
             link.body.first_moment.map_or(lost, |h| lost + gravity.dot(frame.rotation * h))
         });

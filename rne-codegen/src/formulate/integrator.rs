@@ -24,7 +24,7 @@ pub(crate) fn duration(builder: &Builder) -> Symbol<'_> {
 }
 
 /// The next positions, then the next velocities, by the accelerations of the coordinates.
-pub(crate) fn euler_step<'s>(
+pub(crate) fn step<'s>(
     builder: &'s Builder,
     coordinates: &Coordinates,
     accelerations: &[(Name, Symbol<'s>)],
@@ -44,7 +44,7 @@ pub(crate) fn euler_step<'s>(
 
 /// The pose, the velocity and the angular velocity of a base that nothing holds after a step, then the positions and
 /// the velocities of the joints; by the accelerations of the base, less gravity, and of the coordinates.
-pub(crate) fn floating_euler_step<'s>(
+pub(crate) fn floating_step<'s>(
     builder: &'s Builder,
     coordinates: &Coordinates,
     gravity: Vector<'s>,
@@ -70,7 +70,7 @@ pub(crate) fn floating_euler_step<'s>(
     }
     let parts = [(Quantity::NextOrigin, origin), (Quantity::NextVelocity, velocity), (Quantity::NextOmega, omega)];
     outputs.extend(parts.into_iter().flat_map(|(part, vector)| components(Name::scalar(part, 0), vector)));
-    outputs.extend(euler_step(builder, coordinates, of_joints));
+    outputs.extend(self::step(builder, coordinates, of_joints));
     outputs
 }
 

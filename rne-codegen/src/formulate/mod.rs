@@ -64,13 +64,13 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         What::MassMatrix => mass_matrix(derivation.coordinates(), &derivation.upper_half()),
         What::CoriolisMatrix => derivation.coriolis_matrix(),
         What::ForwardDynamics => derivation.accelerations(),
-        What::EulerStep if is_floating => integrator::floating_euler_step(
+        What::EulerStep if is_floating => integrator::floating_step(
             builder,
             derivation.coordinates(),
             derivation.arm.gravity,
             &derivation.accelerations(),
         ),
-        What::EulerStep => integrator::euler_step(builder, derivation.coordinates(), &derivation.accelerations()),
+        What::EulerStep => integrator::step(builder, derivation.coordinates(), &derivation.accelerations()),
         What::EulerStepDerivatives if is_floating => derivation.derivatives_of_floating_step(),
         What::ForwardDynamicsDerivatives | What::EulerStepDerivatives => {
             derivation.derivatives_of_accelerations(function)
@@ -391,18 +391,18 @@ impl<'s, 'r> Derivation<'s, 'r> {
     fn kinetic_energy(&self) -> Outputs<'s> {
         let base = self.builder.function.is_of_floating_base().then_some(&self.base);
         let energy = energy::kinetic(&self.arm, &self.states, (base, &self.motions()));
-        vec![(Name::scalar(Quantity::KineticEnergy, 0), energy)]
+        vec![(Name::scalar(Quantity::Kinetic, 0), energy)]
     }
 
     fn potential_energy(&self) -> Outputs<'s> {
         let energy = energy::potential(&self.arm, &self.frames_in_frame_0(), &self.centres());
-        vec![(Name::scalar(Quantity::PotentialEnergy, 0), energy)]
+        vec![(Name::scalar(Quantity::Potential, 0), energy)]
     }
 
     fn floating_potential_energy(&self) -> Outputs<'s> {
         let pose = pose_of_base(self.builder);
         let energy = energy::floating_potential(&self.arm, &pose, &self.frames_in_frame_0(), &self.centres());
-        vec![(Name::scalar(Quantity::PotentialEnergy, 0), energy)]
+        vec![(Name::scalar(Quantity::Potential, 0), energy)]
     }
 
     fn frames_in_frame_0(&self) -> Frames<'s> {

@@ -76,28 +76,13 @@ pub fn own(function: Function, quantity: Quantity) -> Option<&'static Own> {
     let payload = PAYLOAD.iter().filter(|_| axes.load == Load::Payload);
     let rows =
         OWN.iter().filter(|(whats, base, _)| whats.contains(&axes.what) && base.is_none_or(|base| base == axes.base));
-    rows.flat_map(|(.., all)| *all).chain(payload).find(|own| own.quantity == quantity)
+    let floating = FLOATING.iter().filter(|_| axes.base == Base::Floating);
+    let all = rows.flat_map(|(.., all)| *all).chain(payload).chain(floating).chain(&ANY);
+    all.into_iter().find(|own| own.quantity == quantity)
 }
 
-/// The quantities of what is computed, on one kind of base or on all.
+/// The quantities of several functions that mean something else in some of them.
 static OWN: &[(&[What], Option<Base>, &[Own])] = &[
-    (
-        &[What::MomentumAndRate],
-        None,
-        &[
-            Own::of(Quantity::Momentum, |joint| format!("momentum of joint {joint}: row {joint} of M q̇")),
-            Own::of(Quantity::MomentumRate, |joint| {
-                format!("its rate at joint {joint} without external torques: τ + ∂T/∂q - ∂V/∂q")
-            }),
-        ],
-    ),
-    (
-        &[What::CoriolisMatrix],
-        None,
-        &[Own::of(Quantity::CoriolisElement, |joint| {
-            format!("row {joint} of the Coriolis matrix: ½ ∂(bias torques)/∂q̇")
-        })],
-    ),
     (
         &[What::Jacobian],
         None,
@@ -112,17 +97,9 @@ static OWN: &[(&[What], Option<Base>, &[Own])] = &[
         &[Own::of(Quantity::TipAcceleration, |_| "acceleration of the tip where q̈ = 0".to_owned())],
     ),
     (
-        &[What::KineticEnergy],
-        None,
-        &[Own::of(Quantity::KineticEnergy, |_| "kinetic energy: ½ Σ (m ċ · ċ + ω · I ω)".to_owned())],
-    ),
-    (
         &[What::PotentialEnergy],
         None,
-        &[
-            Own::of(Quantity::ComPosition, |joint| format!("centre of mass of link {joint}, in frame 0")),
-            Own::of(Quantity::PotentialEnergy, |_| "potential energy: -Σ m g · c".to_owned()),
-        ],
+        &[Own::of(Quantity::ComPosition, |joint| format!("centre of mass of link {joint}, in frame 0"))],
     ),
     (
         &[What::CentreOfMass],
@@ -150,12 +127,6 @@ static OWN: &[(&[What], Option<Base>, &[Own])] = &[
             ),
         ],
     ),
-    (&[What::Regressor], None, &[Own::of(Quantity::RegressorElement, |joint| format!("torque {joint} per parameter"))]),
-    (
-        &[What::ActuatorTorques],
-        None,
-        &[Own::of(Quantity::ActuatorTorque, |joint| format!("motor {joint}: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇)"))],
-    ),
     (
         &[What::InverseMassMatrix],
         None,
@@ -171,31 +142,6 @@ static OWN: &[(&[What], Option<Base>, &[Own])] = &[
             Own::meaning(Quantity::Scaled, "element (i, j) of D⁻¹ L⁻¹", |joint| {
                 format!("row {joint} of D⁻¹ L⁻¹")
             }),
-        ],
-    ),
-    (&[What::TorqueGradient], None, &[Own::of(Quantity::WeightedTorque, |_| "derivatives of λᵀτ".to_owned())]),
-    (
-        &[What::JacobianRate],
-        None,
-        &[
-            Own::of(Quantity::JacobianLinearRate, |joint| format!("column {joint} of the rate of the Jacobian")),
-            Own::of(Quantity::JacobianAngularRate, |joint| format!("column {joint} of the rate of the Jacobian")),
-        ],
-    ),
-    (
-        &[What::TorqueHessian],
-        None,
-        &[
-            Own::of(Quantity::WeightedByPosition, |joint| format!("second derivatives of λᵀτ, by q{joint}")),
-            Own::of(Quantity::WeightedByRate, |joint| format!("second derivatives of λᵀτ, by q̇{joint}")),
-        ],
-    ),
-    (
-        &[What::EulerStep, What::EulerStepDerivatives],
-        None,
-        &[
-            Own::of(Quantity::NextRate, |joint| format!("velocity of joint {joint} after the step")),
-            Own::of(Quantity::NextPosition, |joint| format!("position of joint {joint} after the step")),
         ],
     ),
     (
@@ -217,7 +163,6 @@ static OWN: &[(&[What], Option<Base>, &[Own])] = &[
             Own::of(Quantity::BaseMoment, |_| "moment on the base per parameter".to_owned()),
         ],
     ),
-    (&[What::KineticEnergy], Some(Base::Floating), &[ORIGIN_VELOCITY]),
     (
         &[What::PotentialEnergy],
         Some(Base::Floating),
@@ -282,14 +227,6 @@ static OWN: &[(&[What], Option<Base>, &[Own])] = &[
         ],
     ),
     (
-        &[What::ForwardDynamicsInContact],
-        None,
-        &[
-            Own::of(Quantity::ContactForce, |tip| format!("force of the contact at tip {tip}")),
-            Own::of(Quantity::ContactMoment, |tip| format!("moment of the contact at tip {tip}")),
-        ],
-    ),
-    (
         &[What::EulerStep, What::EulerStepDerivatives],
         Some(Base::Floating),
         &[
@@ -323,22 +260,33 @@ static OWN: &[(&[What], Option<Base>, &[Own])] = &[
             Own::of(Quantity::NextTurn, |_| "turn of the base after the step".to_owned()),
         ],
     ),
-    (
-        &[What::ClosureStep],
-        None,
-        &[
-            Own::of(Quantity::ClosedPosition, |joint| format!("position of joint {joint} after the step")),
-            Own::of(Quantity::Residual, |_| "what is left of the equations of the loops".to_owned()),
-        ],
-    ),
-    (
-        &[What::LoopMap],
-        None,
-        &[Own::of(Quantity::LoopMap, |joint| format!("velocity of joint {joint} per velocity of the others"))],
-    ),
-    (
-        &[What::LoopMapRateTimesVelocity],
-        None,
-        &[Own::of(Quantity::LoopBias, |joint| format!("acceleration of joint {joint} where q̈ is 0"))],
-    ),
+];
+
+/// Quantities of a floating base.
+static FLOATING: [Own; 1] = [ORIGIN_VELOCITY];
+
+/// Quantities that mean the same in each function.
+static ANY: [Own; 20] = [
+    Own::of(Quantity::Momentum, |joint| format!("momentum of joint {joint}: row {joint} of M q̇")),
+    Own::of(Quantity::MomentumRate, |joint| {
+        format!("its rate at joint {joint} without external torques: τ + ∂T/∂q - ∂V/∂q")
+    }),
+    Own::of(Quantity::CoriolisElement, |joint| format!("row {joint} of the Coriolis matrix: ½ ∂(bias torques)/∂q̇")),
+    Own::of(Quantity::Kinetic, |_| "kinetic energy: ½ Σ (m ċ · ċ + ω · I ω)".to_owned()),
+    Own::of(Quantity::Potential, |_| "potential energy: -Σ m g · c".to_owned()),
+    Own::of(Quantity::RegressorElement, |joint| format!("torque {joint} per parameter")),
+    Own::of(Quantity::ActuatorTorque, |joint| format!("motor {joint}: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇)")),
+    Own::of(Quantity::WeightedTorque, |_| "derivatives of λᵀτ".to_owned()),
+    Own::of(Quantity::JacobianLinearRate, |joint| format!("column {joint} of the rate of the Jacobian")),
+    Own::of(Quantity::JacobianAngularRate, |joint| format!("column {joint} of the rate of the Jacobian")),
+    Own::of(Quantity::WeightedByPosition, |joint| format!("second derivatives of λᵀτ, by q{joint}")),
+    Own::of(Quantity::WeightedByRate, |joint| format!("second derivatives of λᵀτ, by q̇{joint}")),
+    Own::of(Quantity::NextRate, |joint| format!("velocity of joint {joint} after the step")),
+    Own::of(Quantity::NextPosition, |joint| format!("position of joint {joint} after the step")),
+    Own::of(Quantity::ContactForce, |tip| format!("force of the contact at tip {tip}")),
+    Own::of(Quantity::ContactMoment, |tip| format!("moment of the contact at tip {tip}")),
+    Own::of(Quantity::ClosedPosition, |joint| format!("position of joint {joint} after the step")),
+    Own::of(Quantity::Residual, |_| "what is left of the equations of the loops".to_owned()),
+    Own::of(Quantity::LoopMap, |joint| format!("velocity of joint {joint} per velocity of the others")),
+    Own::of(Quantity::LoopBias, |joint| format!("acceleration of joint {joint} where q̈ is 0")),
 ];

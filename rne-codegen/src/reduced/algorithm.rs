@@ -14,7 +14,7 @@ use crate::reduced::backward::{torques, torques_of_floating_base};
 use crate::reduced::crba::ExpressedIn;
 use crate::reduced::forward::motions;
 use crate::reduced::rnea_derivatives::sensitivity;
-use crate::reduced::{Arm, Wrench, aba, crba, momentum, torque_hessian};
+use crate::reduced::{Arm, Wrench, aba, crba, hessian, momentum};
 
 /// How a function is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -232,9 +232,9 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
         (What::ForwardDynamics, _) => accelerations()?,
         (What::EulerStep, _) if is_floating => {
             let gravity = builder.unnamed(|| gravity(builder, robot));
-            integrator::floating_euler_step(builder, coordinates, gravity, &accelerations()?)
+            integrator::floating_step(builder, coordinates, gravity, &accelerations()?)
         }
-        (What::EulerStep, _) => integrator::euler_step(builder, coordinates, &accelerations()?),
+        (What::EulerStep, _) => integrator::step(builder, coordinates, &accelerations()?),
         (What::InverseDynamicsDerivatives, _) if is_floating => {
             let names: Vec<_> = formulate::on_base([builder.no_vector(); 2])
                 .into_iter()
@@ -287,7 +287,7 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
             adjoint::gradient(builder, coordinates, &coordinates.torques(&recursion(arm, algorithm)))
         }
         (What::TorqueHessian, Algorithm::Crba(_)) => {
-            let adjoint::Hessian { dq_dq, dq_dqd, dqd_dqd, dq_dqdd } = torque_hessian::hessian(arm);
+            let adjoint::Hessian { dq_dq, dq_dqd, dqd_dqd, dq_dqdd } = hessian::hessian(arm);
             let upper = |rows: Vec<Vec<Symbol<'s>>>| {
                 let rows = rows.into_iter().enumerate().map(|(at, row)| row[at..].to_vec());
                 coordinates.upper_half(builder, rows.collect())

@@ -16,6 +16,7 @@ pub(crate) mod choices;
 pub(crate) mod crba;
 pub(crate) mod forward;
 pub(crate) mod gyrostats;
+pub(crate) mod hessian;
 pub(crate) mod inward;
 pub(crate) mod joint_frames;
 pub(crate) mod joint_motion;
@@ -25,7 +26,6 @@ pub(crate) mod payload;
 pub(crate) mod regrouping;
 pub(crate) mod rnea_derivatives;
 pub(crate) mod siblings;
-pub(crate) mod torque_hessian;
 pub(crate) mod wrench;
 
 pub(crate) use algorithm::Algorithm;

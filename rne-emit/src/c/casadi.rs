@@ -49,6 +49,11 @@ pub fn casadi_derivatives(function: Function) -> Vec<Function> {
     derivatives.map(of_derivatives).unwrap_or_default()
 }
 
+/// The second derivatives of weighted torques, where the file has them.
+pub(super) fn hessian<'a>(file: &File<'a>) -> Option<&'a Program> {
+    file.programs.iter().find(|program| program.function == Function::TorqueHessian)
+}
+
 fn derivatives(function: Function) -> Option<Derivatives> {
     const fn source(blocks: &'static [(&'static str, usize)]) -> Source {
         Source { function: Function::InverseDynamicsDerivatives, blocks }
@@ -265,8 +270,8 @@ impl Writer<'_> {
         derivatives: &Derivatives,
     ) -> Option<Interface> {
         let (prefix, dof, count) = (self.file.prefix, self.file.robot.dof(), arrays.len());
-        let program = self.find(Function::TorqueHessian)?;
-        let Layout::Record(record, _) = program.layout() else { return None };
+        let hessian = hessian(self.file)?;
+        let Layout::Record(record, _) = hessian.layout() else { return None };
         let call = self.call(Function::TorqueHessian, arrays, &["&by".to_owned()]);
         let columns = count + 2;
         // by q, q̇ and q̈: the rows of the Hessian, of which those of a function of fewer arguments are the first
@@ -275,10 +280,7 @@ impl Writer<'_> {
         let places: Vec<_> = places.into_iter().filter(|(row, column, ..)| (*row).max(*column) < count).collect();
         let patterns: Vec<String> = places
             .iter()
-            .map(|&(.., block, is_transposed)| {
-                let program = self.file.programs.iter().find(|program| program.function == Function::TorqueHessian);
-                program.map_or_else(String::new, |program| self.block(program, block * dof * dof, is_transposed))
-            })
+            .map(|&(.., block, is_transposed)| self.block(hessian, block * dof * dof, is_transposed))
             .collect();
         let mut body = String::new();
         let wanted: Vec<_> =

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use rne_codegen::{Function, Program};
 
-use super::casadi::{Writer, is_there};
+use super::casadi::{Writer, hessian, is_there};
 use super::casadi_interface::Interface;
 
 /// The helper, and the beginning of the derivatives of `adj1_forward_dynamics`.
@@ -59,7 +59,7 @@ impl Writer<'_> {
     /// Where the derivatives of the accelerations are not zero, if the file has them.
     pub(super) fn motion(&self) -> Option<Motion> {
         let of_motion = self.find(Function::ForwardDynamicsDerivatives)?;
-        let of_torques = self.find(Function::TorqueHessian)?;
+        let of_torques = hessian(self.file)?;
         let first @ [dq, dqd, dtau] = &[0, 1, 2].map(|block| Presence::of(of_motion, block));
         let [dq_dq, dq_dqd, dqd_dqd, dq_dqdd] = [0, 1, 2, 3].map(|block| Presence::of(of_torques, block));
         let through_motion = dq_dqdd.times(dq);

@@ -9,7 +9,7 @@ mod joint_functions;
 mod motors;
 mod observer;
 mod prefix;
-mod runge_kutta;
+pub(crate) mod runge_kutta;
 mod signature;
 mod source;
 

@@ -28,13 +28,16 @@ fn has_derivatives(file: &File) -> bool {
     file.programs.iter().any(|program| program.function == Function::ForwardDynamicsDerivatives)
 }
 
+/// The steps, and the functions whose arguments and results they have.
+pub(crate) const STEPS: [(&str, Function); 2] =
+    [("runge_kutta_step", Function::EulerStep), ("runge_kutta_step_derivatives", Function::EulerStepDerivatives)];
+
 /// The layouts of the results.
 pub(super) fn layouts(file: &File) -> Vec<Layout> {
     let sizes = rne_codegen::sizes_of(file.robot);
     let is_there = accelerations(file).is_some();
-    let step = is_there.then_some(Function::EulerStep);
-    let derivatives = (is_there && has_derivatives(file)).then_some(Function::EulerStepDerivatives);
-    step.into_iter().chain(derivatives).map(|function| function.layout(sizes)).collect()
+    let count = usize::from(is_there) * (1 + usize::from(has_derivatives(file)));
+    STEPS[..count].iter().map(|(_, function)| function.layout(sizes)).collect()
 }
 
 /// The head of a function whose result is that of a step of another method.
@@ -53,10 +56,7 @@ fn head(file: &File, program: &Program, name: &str, of: Function) -> String {
 
 /// The heads of the step and of its derivatives.
 fn heads(file: &File, program: &Program) -> [String; 2] {
-    [
-        head(file, program, "runge_kutta_step", Function::EulerStep),
-        head(file, program, "runge_kutta_step_derivatives", Function::EulerStepDerivatives),
-    ]
+    STEPS.map(|(name, of)| head(file, program, name, of))
 }
 
 /// The declarations for the header.

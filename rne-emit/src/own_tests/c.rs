@@ -7,6 +7,7 @@ use rne_model::Robot;
 
 use super::{Golden, Law, floor, program, results};
 use crate::Precision;
+use crate::c::runge_kutta::STEPS;
 use crate::c::{
     Additions, JointFriction, Prefix, array_name, element_type, elements_of, inputs, layout_elements, result_elements,
 };
@@ -39,10 +40,8 @@ pub fn c_tests(
     functions.extend(Law::of(programs).filter_map(|law| tests.law(law)));
     functions.extend(additions.friction.into_iter().flat_map(|frictions| tests.friction(frictions)));
     functions.extend(additions.limits.then(|| tests.limits()));
-    let steps =
-        [("runge_kutta_step", Function::EulerStep), ("runge_kutta_step_derivatives", Function::EulerStepDerivatives)];
     let is_there = |at: &usize| additions.runge_kutta && (*at == 0 || tests.has(Function::ForwardDynamicsDerivatives));
-    functions.extend((0..2).filter(is_there).filter_map(|at| tests.step(at, steps[at])));
+    functions.extend((0..2).filter(is_there).filter_map(|at| tests.step(at, STEPS[at])));
     let (mut bodies, mut calls) = (String::new(), String::new());
     for (name, body) in &functions {
         let _ = write!(bodies, "\n{body}");
@@ -351,10 +350,10 @@ impl Tests<'_> {
                 "{}        for (i = 0u; i < {dof}u; ++i) {{\n            for (j = 0u; j < i; ++j) {{\n                \
                  test_compare(\"{words}\", state, {dof}u * i + j, (double)mass[{dof}u * i + j],\n                    \
                  (double)mass[{dof}u * j + i], 0.0);\n            }}\n        }}\n",
-                self.call_of(Function::MassMatrix, &[], "mass")?
+                self.call_of(law.functions()[0], &[], "mass")?
             ),
             Law::Linearity => {
-                let torques = |qdd: &str, name: &str| self.call_of(Function::InverseDynamics, &[("qdd", qdd)], name);
+                let torques = |qdd: &str, name: &str| self.call_of(law.functions()[0], &[("qdd", qdd)], name);
                 format!(
                     "        {real} sum[{dof}];\n        double scale;\n{}{}{}        \
                      for (i = 0u; i < {dof}u; ++i) {{ sum[i] = test_qdd[state][i] + test_tau[state][i]; }}\n        \
@@ -378,11 +377,11 @@ impl Tests<'_> {
                      test_compare(\"{words}\", state, i, (double)found[i], (double)expected[i], test_tolerance * \
                      scale);\n        }}\n",
                     self.call_of(function, &[], "found")?,
-                    self.call_of(Function::InverseDynamics, &others, "expected")?,
-                    self.call_of(Function::InverseDynamics, &[], "moving")?
+                    self.call_of(law.functions()[0], &others, "expected")?,
+                    self.call_of(law.functions()[0], &[], "moving")?
                 )
             }
-            Law::KineticEnergy => format!(
+            Law::Kinetic => format!(
                 "        double energy = 0.0, scale = 0.0;\n{}{}        \
                  for (i = 0u; i < {dof}u; ++i) {{\n            for (j = 0u; j < {dof}u; ++j) {{\n                \
                  const double term = 0.5 * (double)mass[{dof}u * i + j] * (double)test_qd[state][i] \
@@ -391,8 +390,8 @@ impl Tests<'_> {
                  energy += term;\n                scale += (term > 0.0) ? term : \
                  -term;\n            }}\n        }}\n        \
                  test_compare(\"{words}\", state, 0u, (double)found[0], energy, test_tolerance * scale);\n",
-                self.call_of(Function::MassMatrix, &[], "mass")?,
-                self.call_of(Function::KineticEnergy, &[], "found")?
+                self.call_of(law.functions()[0], &[], "mass")?,
+                self.call_of(law.functions()[1], &[], "found")?
             ),
         };
         let name = format!("test_{}", law.name());

@@ -53,14 +53,13 @@ enum Law {
     /// C(q, q̇) q̇ + g(q) = τ(q, q̇, 0).
     Bias,
     /// T = ½ q̇ᵀ M q̇.
-    KineticEnergy,
+    Kinetic,
     /// q̇ᵀ τ is the rate of kinetic and potential energy.
     Power,
 }
 
 impl Law {
-    const ALL: [Self; 6] =
-        [Self::Symmetry, Self::Linearity, Self::Gravity, Self::Bias, Self::KineticEnergy, Self::Power];
+    const ALL: [Self; 6] = [Self::Symmetry, Self::Linearity, Self::Gravity, Self::Bias, Self::Kinetic, Self::Power];
 
     /// The functions that the law contains.
     const fn functions(self) -> &'static [Function] {
@@ -69,7 +68,7 @@ impl Law {
             Self::Linearity => &[Function::InverseDynamics],
             Self::Gravity => &[Function::InverseDynamics, Function::GravityTorques],
             Self::Bias => &[Function::InverseDynamics, Function::BiasTorques],
-            Self::KineticEnergy => &[Function::MassMatrix, Function::KineticEnergy],
+            Self::Kinetic => &[Function::MassMatrix, Function::KineticEnergy],
             Self::Power => &[Function::InverseDynamics, Function::KineticEnergy, Function::PotentialEnergy],
         }
     }
@@ -89,7 +88,7 @@ impl Law {
             Self::Linearity => "torques_are_linear_in_accelerations",
             Self::Gravity => "gravity_torques_are_torques_at_rest",
             Self::Bias => "bias_torques_are_torques_without_accelerations",
-            Self::KineticEnergy => "kinetic_energy_is_that_of_the_mass_matrix",
+            Self::Kinetic => "kinetic_energy_is_that_of_the_mass_matrix",
             Self::Power => "power_is_the_rate_of_energy",
         }
     }

@@ -28,7 +28,7 @@ pub trait InverseDynamicsGradient<DOF> {
     /// [`inverse_dynamics_derivatives`](crate::InverseDynamicsDerivatives::inverse_dynamics_derivatives), and M(q) λ.
     /// Code that is derived has them in reverse mode, in a few times the operations of the torques.
     fn torque_gradient(q: joints, qd: joints, qdd: joints, multipliers: joints) -> TorqueGradient<DOF> =
-        |robot| robot.torque_gradient([q, qd, qdd], multipliers);
+        |robot| robot.gradient([q, qd, qdd], multipliers);
 }
 }
 
@@ -43,7 +43,7 @@ pub trait InverseDynamicsHessian<DOF> {
     /// in the reduced form has them by composite bodies. A robot with joints that follow others has rows and columns of
     /// those that follow no other.
     fn torque_hessian(q: joints, qd: joints, qdd: joints, multipliers: joints) -> TorqueHessian<DOF> =
-        |robot| robot.torque_hessian([q, qd, qdd], multipliers);
+        |robot| robot.hessian([q, qd, qdd], multipliers);
 }
 }
 

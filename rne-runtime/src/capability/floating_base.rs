@@ -137,7 +137,7 @@ pub trait FloatingEnergy<DOF> {
     ///
     /// `twist`: velocity of the origin of frame 0, m/s, and angular velocity of the base, rad/s, in axes of frame 0.
     fn floating_kinetic_energy(q: joints, qd: joints, twist: twist) -> number =
-        |robot| robot.kinetic_energy(q, qd, Some(twist));
+        |robot| robot.kinetic(q, qd, Some(twist));
 
     /// Potential energy -Σ m g·c, J, with c from the origin of the world to each centre of mass: zero where all masses
     /// are there.
@@ -145,7 +145,7 @@ pub trait FloatingEnergy<DOF> {
     /// `pose` of frame 0 in the world, whose axes are those in which the robot file has gravity. Where `pose` is no
     /// rotation and no translation, this is the [potential energy](crate::Energy::potential_energy).
     fn floating_potential_energy(q: joints, pose: pose) -> number =
-        |robot| robot.mechanism.floating_potential_energy(robot.of_joints(q).as_ref(), pose);
+        |robot| robot.mechanism.floating_potential(robot.of_joints(q).as_ref(), pose);
 }
 }
 

@@ -11,7 +11,7 @@ capability! {
 pub trait Kinematics<DOF> {
     /// The pose of the tip frame (`tool` included) in the world.
     fn forward_kinematics(q: joints) -> a_pose =
-        |robot| robot.mechanism.forward_kinematics(robot.of_joints(q).as_ref());
+        |robot| robot.mechanism.tip_pose(robot.of_joints(q).as_ref());
 
     /// The poses of the link frames of the table in the world: at the far end of link i in a standard table, on joint i
     /// in a modified one. The tool is not included.

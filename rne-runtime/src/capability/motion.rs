@@ -84,11 +84,11 @@ capability! {
 /// is taken with them: `#[robot(rotors)]`, `with_rotors`.
 pub trait Energy<DOF> {
     /// ½ q̇ᵀ M(q) q̇, as ½ Σ (m ċ·ċ + ω·Iω).
-    fn kinetic_energy(q: joints, qd: joints) -> number = |robot| robot.kinetic_energy(q, qd, None);
+    fn kinetic_energy(q: joints, qd: joints) -> number = |robot| robot.kinetic(q, qd, None);
 
     /// -Σ m g·c, with c from the origin of frame 0 to each centre of mass: zero where all masses are there. Where the
     /// base stands in the world does not matter.
-    fn potential_energy(q: joints) -> number = |robot| robot.mechanism.potential_energy(robot.of_joints(q).as_ref());
+    fn potential_energy(q: joints) -> number = |robot| robot.mechanism.potential(robot.of_joints(q).as_ref());
 }
 }
 
@@ -97,11 +97,11 @@ capability! {
 /// included. An arm without mass gives numbers that are not finite.
 pub trait CentreOfMass<DOF> {
     /// Σ m c / Σ m, m.
-    fn centre_of_mass(q: joints) -> triple = |robot| robot.mechanism.centre_of_mass(robot.of_joints(q).as_ref());
+    fn centre_of_mass(q: joints) -> triple = |robot| robot.mechanism.mass_centre(robot.of_joints(q).as_ref());
 
     /// Its Jacobian: J q̇ is the velocity of the centre of mass, m/s, in world axes.
     fn centre_of_mass_jacobian(q: joints) -> rows3 =
-        |robot| robot.coordinates.rows(robot.mechanism.centre_of_mass_jacobian(robot.of_joints(q).as_ref()));
+        |robot| robot.coordinates.rows(robot.mechanism.mass_centre_jacobian(robot.of_joints(q).as_ref()));
 }
 }
 

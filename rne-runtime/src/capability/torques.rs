@@ -152,7 +152,7 @@ pub trait JointWrenches<DOF> {
     ///
     /// J_i is fixed to link i-1: the origin of frame i-1 in a standard table; in a modified one the foot of the common
     /// normal on axis i. Moment in N m, force in N.
-    fn joint_wrenches(q: joints, qd: joints, qdd: joints) -> joint_wrenches = |robot| {
+    fn joint_wrenches(q: joints, qd: joints, qdd: joints) -> loads = |robot| {
         let [q, qd, qdd] = [q, qd, qdd].map(|values| robot.of_joints(values));
         robot.coordinates.only(robot.mechanism.joint_wrenches(q.as_ref(), qd.as_ref(), qdd.as_ref()))
     };

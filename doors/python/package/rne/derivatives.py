@@ -38,6 +38,10 @@ class Point:
         """A function with other arguments in place of some; rates and accelerations that are not given are zero."""
         return self.compute(name, {"qd": self.zeros, "qdd": self.zeros, **self.given, **others})
 
+    def of_weighted_torques(self, multipliers, **others):
+        """The derivatives of λᵀτ by q, q̇ and q̈."""
+        return self.with_("torque_gradient", multipliers=multipliers, **others)
+
     def of_each(self, name, **rows):
         """A function for each row of some arguments: a new axis behind the leading ones."""
         given = {"qd": self.zeros, "qdd": self.zeros, **self.given}
@@ -100,8 +104,8 @@ def _of_product_with_inverse_mass(at):
 def _of_kinetic_energy(at):
     """½ q̇ᵀ ∂M/∂q q̇, from multipliers q̇: of torques at the acceleration ½ q̇ from rest, less those that hold the arm."""
     qd = at.given["qd"]
-    moved = at.with_("torque_gradient", qd=at.zeros, qdd=qd / 2, multipliers=qd)[0]
-    return moved - at.with_("torque_gradient", qd=at.zeros, qdd=at.zeros, multipliers=qd)[0]
+    moved = at.of_weighted_torques(qd, qd=at.zeros, qdd=qd / 2)[0]
+    return moved - at.of_weighted_torques(qd, qd=at.zeros, qdd=at.zeros)[0]
 
 
 def _of_pose(at):

@@ -132,7 +132,7 @@ def _gradients(one, given, wanted, gradients):
     point = Point(compute, given, torch, one.frame is None)
     name, found = one.signature.name, {}
     if name in _TORQUES and wanted.keys() <= {"q", "qd", "qdd"}:
-        product = point.with_("torque_gradient", multipliers=gradients[0])
+        product = point.of_weighted_torques(gradients[0])
         return {argument: product[at].sum_to_size(given[argument].shape)
                 for at, argument in enumerate(("q", "qd", "qdd")) if argument in wanted}
     for argument in wanted:
