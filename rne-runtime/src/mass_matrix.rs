@@ -44,17 +44,17 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
 
     /// The Coriolis matrix C(q, q̇) of Christoffel, by the seven steps.
     ///
-    /// Without gravity and at q̈ = 0 the torques are a quadratic form in the velocities, b(x) = B(x, x) with B bilinear and
-    /// symmetric, B(x, y)_i = Σ_jk Γ_ijk x_j y_k with Christoffel's symbols Γ_ijk = ½ (∂M_ij/∂q_k + ∂M_ik/∂q_j -
-    /// ∂M_jk/∂q_i). Christoffel's matrix is C_ij = Σ_k Γ_ijk q̇_k. So its column j is the polar form with the unit vector
-    /// e_j,
+    /// Without gravity and at q̈ = 0 the torques are a quadratic form in the velocities, b(x) = B(x, x) with B bilinear
+    /// and symmetric, B(x, y)_i = Σ_jk Γ_ijk x_j y_k with Christoffel's symbols Γ_ijk = ½ (∂M_ij/∂q_k + ∂M_ik/∂q_j -
+    /// ∂M_jk/∂q_i). Christoffel's matrix is C_ij = Σ_k Γ_ijk q̇_k. So its column j is the polar form with the unit
+    /// vector e_j,
     ///
     /// ```text
     /// C e_j = B(q̇, e_j) = (b(q̇ + e_j) - b(q̇ - e_j)) / 4
     /// ```
     ///
-    /// an identity and no difference quotient: it is exact up to rounding. Half the derivative of b with respect to q̇ is
-    /// the same matrix.
+    /// an identity and no difference quotient: it is exact up to rounding. Half the derivative of b with respect to q̇
+    /// is the same matrix.
     pub(crate) fn coriolis_matrix<T: Scalar>(self, q: &[T], qd: &[T]) -> Square<J, T> {
         let weightless = BaseMotion::fixed([T::zero(); 3]);
         let zeros = self.zeros();

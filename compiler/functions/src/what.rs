@@ -44,7 +44,8 @@ macro_rules! whats {
 
 whats! {
     /// Torques from motion.
-    InverseDynamics = "inverse_dynamics" | "torques" | "rnea": [InverseDynamics Entry::TORQUES] [FloatingBase floating::TORQUES];
+    InverseDynamics = "inverse_dynamics" | "torques" | "rnea":
+        [InverseDynamics Entry::TORQUES] [FloatingBase floating::TORQUES];
     /// Torques from motion, with the sines and cosines of the positions as arguments.
     InverseDynamicsFromSinCos = "inverse_dynamics_from_sin_cos": [InverseDynamics Entry::TORQUES] [];
     /// Torques that hold the robot still.
