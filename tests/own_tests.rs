@@ -90,7 +90,7 @@ struct Coupled;
 struct Hand;
 
 /// Closed loops.
-#[derive(rne::ClosedLoops)]
+#[derive(rne::ClosedLoops, rne::ClosedLoopsPayloadDynamics)]
 #[robot(path = "../benches/trees/loops/four_bar.yaml", form = "reduced", tests)]
 struct FourBar;
 
@@ -194,7 +194,8 @@ fn each_derive_has_its_tests() {
         ("rod_inverse_dynamics_tests", 8),
         ("rod_golden_tests", 1),
         ("puma560_golden_tests", 0),
-        ("four_bar_closed_loops_tests", 7),
+        ("four_bar_closed_loops_tests", 9),
+        ("four_bar_closed_loops_payload_dynamics_tests", 5),
         ("leg_floating_closed_loops_tests", 3),
         ("hopper_floating_base_tests", 4),
         ("hopper_contact_dynamics_tests", 1),

@@ -4,7 +4,7 @@ use std::fmt;
 
 use rne_model::Robot;
 
-use crate::function::{Capability, Function};
+use crate::function::{Axes, Capability, Function, Load};
 use crate::ir::Name;
 
 /// Why a robot cannot be compiled.
@@ -363,20 +363,11 @@ impl fmt::Display for CompileError {
                     "`{function}` is not computed for robots with closed loops, and the robot has the loop `{name}`: \
                      the positions of its dependent joints are arguments, too. "
                 )?;
-                match function {
-                    Function::MassMatrix => f.write_str("Use `mass_matrix_of_loops`"),
-                    Function::ForwardDynamics => f.write_str("Use `forward_dynamics_of_loops`"),
-                    Function::InverseDynamicsWithWrenches => {
-                        f.write_str("Use `inverse_dynamics_of_loops_with_wrenches`")
-                    }
-                    Function::InverseDynamicsWithWrench => {
-                        f.write_str("Use `inverse_dynamics_of_loops_with_wrenches`, which takes a wrench at each tip")
-                    }
-                    Function::InverseDynamicsOfFloatingBase => f.write_str("Use `inverse_dynamics_of_floating_loops`"),
-                    Function::FloatingMassMatrix => f.write_str("Use `floating_mass_matrix_of_loops`"),
-                    Function::FloatingForwardDynamics => f.write_str("Use `floating_forward_dynamics_of_loops`"),
-                    Function::InverseDynamics => f.write_str("Use `inverse_dynamics_of_loops`"),
-                    _ => f.write_str("docs/closed-loops.md lists the functions of closed loops"),
+                let axes = function.axes().of_loops();
+                let load = if axes.load == Load::Wrench { Load::Wrenches } else { axes.load };
+                match Function::find(Axes { load, ..axes }) {
+                    Some(of_loops) => write!(f, "Use `{of_loops}`"),
+                    None => f.write_str("docs/closed-loops.md lists the functions of closed loops"),
                 }
             }
             Self::NoClosedLoops { function } => write!(

@@ -13,8 +13,10 @@
 use nalgebra::{Matrix3, Vector3};
 use rne_model::{ClosedLoops, Cut, FixedFrame, JointKind, Pivot, Robot};
 
+use crate::at_tip::AtTip;
 use crate::coordinates::Coordinates as _;
 use crate::floating_base::{BASE, of_base, solve_from_the_ends, turning};
+use crate::ldlt::{factor, solve};
 use crate::{
     BaseMotion, Constant, DynArm, DynClosureStep, DynFloatingAccelerations, DynFloatingTorques, Scalar, Wrench,
     WrongLength,
@@ -77,9 +79,6 @@ impl<S> Loops<S> {
     }
 }
 
-/// G, and positions, velocities and accelerations of the joints of the tree that follow none by a coupling.
-type OfTree<T> = (Vec<Vec<T>>, [Vec<T>; 3]);
-
 /// The equations of the loops in one state.
 struct Equations<T> {
     residuals: Vec<T>,
@@ -95,171 +94,106 @@ impl<S: Constant> DynArm<S> {
         self.closed.passive.len()
     }
 
-    /// As [`ClosedLoops::closure_step`](crate::ClosedLoops::closure_step): the positions of the dependent joints after
-    /// a Newton step, and what is left of the equations before it.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn closure_step<T: Scalar>(&self, q: &[T], passive: &[T]) -> Result<DynClosureStep<T>, WrongLength> {
-        let equations = self.equations(q, passive, None)?;
+    /// What the functions of loops are asked of.
+    pub(crate) const fn itself(&self) -> &Self {
+        self
+    }
+
+    /// The positions of the dependent joints after a Newton step, and what is left of the equations before it.
+    pub(crate) fn newton<T: Scalar>(&self, q: &[T], passive: &[T]) -> DynClosureStep<T> {
+        let equations = self.equations(q, passive, None);
         let changes = self.solved(&equations.rows, &equations.residuals);
         let passive = passive.iter().zip(changes).map(|(&p, change)| p + change).collect();
-        Ok(DynClosureStep { passive, residual: equations.residuals })
+        DynClosureStep { passive, residual: equations.residuals }
     }
 
-    /// As [`ClosedLoops::loop_map`](crate::ClosedLoops::loop_map): a row for each dependent joint.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn loop_map<T: Scalar>(&self, q: &[T], passive: &[T]) -> Result<Vec<Vec<T>>, WrongLength> {
-        Ok(self.map_of(&self.equations(q, passive, None)?))
+    /// G, a row for each dependent joint.
+    pub(crate) fn map<T: Scalar>(&self, q: &[T], passive: &[T]) -> Vec<Vec<T>> {
+        let equations = self.equations(q, passive, None);
+        let column = |&place: &usize| {
+            self.solved(&equations.rows, &equations.rows.iter().map(|row| row[place]).collect::<Vec<_>>())
+        };
+        let columns: Vec<Vec<T>> = self.closed.coordinates.iter().map(column).collect();
+        (0..self.closed.passive.len()).map(|row| columns.iter().map(|column| column[row]).collect()).collect()
     }
 
-    /// As [`ClosedLoops::loop_map_rate_times_velocity`](crate::ClosedLoops::loop_map_rate_times_velocity).
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn loop_map_rate_times_velocity<T: Scalar>(
+    /// Ġ q̇.
+    pub(crate) fn map_rate<T: Scalar>(&self, q: &[T], passive: &[T], qd: &[T]) -> Vec<T> {
+        let rates = product(&self.map(q, passive), qd);
+        let equations = self.equations(q, passive, Some((qd, &rates)));
+        self.solved(&equations.rows, &equations.biases)
+    }
+
+    /// The wrench that must act on the base, and the torques: those of the tree, that the dependent joints add theirs
+    /// to.
+    pub(crate) fn torques_of_loops<T: Scalar>(
         &self,
-        q: &[T],
-        passive: &[T],
-        qd: &[T],
-    ) -> Result<Vec<T>, WrongLength> {
-        let rates = product(&self.loop_map(q, passive)?, self.of_closed("qd", qd)?);
-        let equations = self.equations(q, passive, Some((qd, &rates)))?;
-        Ok(self.solved(&equations.rows, &equations.biases))
-    }
-
-    /// As [`ClosedLoops::inverse_dynamics_of_loops`](crate::ClosedLoops::inverse_dynamics_of_loops).
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn inverse_dynamics_of_loops<T: Scalar>(
-        &self,
-        q: &[T],
-        passive: &[T],
-        qd: &[T],
-        qdd: &[T],
-    ) -> Result<Vec<T>, WrongLength> {
-        let free = vec![Wrench::zero(); self.tips().len()];
-        self.inverse_dynamics_of_loops_with_wrenches(q, passive, qd, qdd, &free)
-    }
-
-    /// As [`ClosedLoops::inverse_dynamics_of_loops_with_wrenches`](
-    /// crate::ClosedLoops::inverse_dynamics_of_loops_with_wrenches): `wrenches` at the [tips](Self::tips).
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint or tip.
-    pub fn inverse_dynamics_of_loops_with_wrenches<T: Scalar>(
-        &self,
-        q: &[T],
-        passive: &[T],
-        qd: &[T],
-        qdd: &[T],
-        wrenches: &[Wrench<T>],
-    ) -> Result<Vec<T>, WrongLength> {
-        let (map, [q, qd, qdd]) = self.of_open_tree(q, passive, qd, qdd)?;
-        let of_tree = self.inverse_dynamics_with_wrenches(&q, &qd, &qdd, wrenches)?;
-        Ok(self.by_coordinates(&map, &of_tree))
-    }
-
-    /// As [`ClosedLoops::mass_matrix_of_loops`](crate::ClosedLoops::mass_matrix_of_loops), by rows.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn mass_matrix_of_loops<T: Scalar>(&self, q: &[T], passive: &[T]) -> Result<Vec<Vec<T>>, WrongLength> {
-        let map = self.loop_map(q, passive)?;
-        let of_tree = self.mass_matrix(&self.closed.of_tree(q, passive))?;
-        Ok(self.projected(&map, 0, &of_tree))
-    }
-
-    /// As [`ClosedLoops::forward_dynamics_of_loops`](crate::ClosedLoops::forward_dynamics_of_loops).
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn forward_dynamics_of_loops<T: Scalar>(
-        &self,
-        q: &[T],
-        passive: &[T],
-        qd: &[T],
-        tau: &[T],
-    ) -> Result<Vec<T>, WrongLength> {
-        let still = vec![T::zero(); q.len()];
-        let bias = self.inverse_dynamics_of_loops(q, passive, qd, &still)?;
-        let mut rows = self.mass_matrix_of_loops(q, passive)?;
-        let mut x: Vec<T> = self.of_closed("tau", tau)?.iter().zip(bias).map(|(&tau, bias)| tau - bias).collect();
-        let mut inverse = vec![T::zero(); rows.len()];
-        crate::ldlt::factor(&mut rows, &mut inverse);
-        crate::ldlt::solve(&rows, &inverse, &mut x);
-        Ok(x)
-    }
-
-    /// As [`FloatingClosedLoops::inverse_dynamics_of_floating_loops`](
-    /// crate::FloatingClosedLoops::inverse_dynamics_of_floating_loops), with one of `wrenches` for each of the
-    /// [tips](Self::tips): the wrench on the base, and the torques.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint or tip.
-    pub fn inverse_dynamics_of_floating_loops<T: Scalar>(
-        &self,
-        q: &[T],
-        passive: &[T],
-        qd: &[T],
-        qdd: &[T],
+        [q, passive, qd, qdd]: [&[T]; 4],
         base: &BaseMotion<T>,
-        wrenches: &[Wrench<T>],
-    ) -> Result<DynFloatingTorques<T>, WrongLength> {
-        let (map, [q, qd, qdd]) = self.of_open_tree(q, passive, qd, qdd)?;
-        let of_tree = self.inverse_dynamics_of_floating_base(&q, &qd, &qdd, base, wrenches)?;
-        Ok(DynFloatingTorques { tau: self.by_coordinates(&map, &of_tree.tau), ..of_tree })
+        load: AtTip<'_, T>,
+    ) -> DynFloatingTorques<T> {
+        let map = self.map(q, passive);
+        let rates = product(&map, qd);
+        let bias = self.map_rate(q, passive, qd);
+        let accelerations: Vec<T> = product(&map, qdd).into_iter().zip(bias).map(|(a, b)| a + b).collect();
+        let [q, qd, qdd] =
+            [(q, passive), (qd, &rates), (qdd, &accelerations)].map(|(own, other)| self.closed.of_tree(own, other));
+        let (wrench, of_tree) = self.definition().torques_and_wrench([&q, &qd, &qdd], base, load);
+        DynFloatingTorques { wrench, tau: self.by_coordinates(&map, &of_tree) }
     }
 
-    /// As [`FloatingClosedLoops::floating_mass_matrix_of_loops`](
-    /// crate::FloatingClosedLoops::floating_mass_matrix_of_loops): 6 + n rows.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn floating_mass_matrix_of_loops<T: Scalar>(&self, q: &[T], passive: &[T]) -> Result<Vec<Vec<T>>, WrongLength> {
-        let map = self.loop_map(q, passive)?;
-        let of_tree = self.floating_mass_matrix(&self.closed.of_tree(q, passive))?;
-        Ok(self.projected(&map, BASE, &of_tree))
+    /// The torques on a base at rest where nothing accelerates.
+    pub(crate) fn bias_of_loops<T: Scalar>(&self, state: [&[T]; 3], load: AtTip<'_, T>) -> Vec<T> {
+        let ([q, passive, qd], still) = (state, vec![T::zero(); state[0].len()]);
+        self.torques_of_loops([q, passive, qd, &still], &self.fixed_base(), load).tau
     }
 
-    /// As [`FloatingClosedLoops::floating_forward_dynamics_of_loops`](
-    /// crate::FloatingClosedLoops::floating_forward_dynamics_of_loops), with one of `wrenches` for each of the
-    /// [tips](Self::tips): the acceleration of the base, and those of the joints.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint or tip.
-    pub fn floating_forward_dynamics_of_loops<T: Scalar>(
+    /// The torques on a base at rest where nothing moves.
+    pub(crate) fn gravity_of_loops<T: Scalar>(&self, q: &[T], passive: &[T], load: AtTip<'_, T>) -> Vec<T> {
+        self.bias_of_loops([q, passive, &vec![T::zero(); q.len()]], load)
+    }
+
+    pub(crate) fn mass_of_loops<T: Scalar>(&self, q: &[T], passive: &[T], load: AtTip<'_, T>) -> Vec<Vec<T>> {
+        let of_tree = self.definition().mass_matrix(&self.closed.of_tree(q, passive), load);
+        self.projected(&self.map(q, passive), 0, &of_tree)
+    }
+
+    pub(crate) fn accelerations_of_loops<T: Scalar>(
         &self,
-        q: &[T],
-        passive: &[T],
-        qd: &[T],
-        tau: &[T],
+        [q, passive, qd, tau]: [&[T]; 4],
+        load: AtTip<'_, T>,
+    ) -> Vec<T> {
+        let bias = self.bias_of_loops([q, passive, qd], load);
+        let mut rows = self.mass_of_loops(q, passive, load);
+        let mut x: Vec<T> = tau.iter().zip(bias).map(|(&tau, bias)| tau - bias).collect();
+        let mut inverse = vec![T::zero(); rows.len()];
+        factor(&mut rows, &mut inverse);
+        solve(&rows, &inverse, &mut x);
+        x
+    }
+
+    /// The mass matrix with the rows of a floating base.
+    pub(crate) fn floating_mass_of_loops<T: Scalar>(&self, q: &[T], passive: &[T]) -> Vec<Vec<T>> {
+        let of_tree = self.definition().floating_mass_matrix(&self.closed.of_tree(q, passive), AtTip::Nothing);
+        self.projected(&self.map(q, passive), BASE, &of_tree)
+    }
+
+    /// The accelerations of a floating base and of the joints.
+    pub(crate) fn floating_accelerations_of_loops<T: Scalar>(
+        &self,
+        [q, passive, qd, tau]: [&[T]; 4],
         omega: &[T; 3],
-        wrenches: &[Wrench<T>],
-    ) -> Result<DynFloatingAccelerations<T>, WrongLength> {
+        load: AtTip<'_, T>,
+    ) -> DynFloatingAccelerations<T> {
         let still = vec![T::zero(); q.len()];
         let DynFloatingTorques { wrench: Wrench { force, moment }, tau: of_joints } =
-            self.inverse_dynamics_of_floating_loops(q, passive, qd, &still, &turning(omega), wrenches)?;
+            self.torques_of_loops([q, passive, qd, &still], &turning(omega), load);
         let bias = force.into_iter().chain(moment).chain(of_joints);
-        let applied = [T::zero(); BASE].into_iter().chain(self.of_closed("tau", tau)?.iter().copied());
+        let applied = [T::zero(); BASE].into_iter().chain(tau.iter().copied());
         let mut x: Vec<T> = applied.zip(bias).map(|(applied, bias)| applied - bias).collect();
-        let mut matrix = self.floating_mass_matrix_of_loops(q, passive)?;
+        let mut matrix = self.floating_mass_of_loops(q, passive);
         solve_from_the_ends(&mut matrix, &mut vec![T::zero(); x.len()], &mut x);
-        Ok(DynFloatingAccelerations { base: of_base(&x), qdd: x.split_off(BASE) })
-    }
-
-    fn of_open_tree<T: Scalar>(&self, q: &[T], passive: &[T], qd: &[T], qdd: &[T]) -> Result<OfTree<T>, WrongLength> {
-        let map = self.loop_map(q, passive)?;
-        let bias = self.loop_map_rate_times_velocity(q, passive, qd)?;
-        let rates = product(&map, qd);
-        let accelerations: Vec<T> =
-            product(&map, self.of_closed("qdd", qdd)?).into_iter().zip(bias).map(|(a, b)| a + b).collect();
-        let of_tree =
-            [(q, passive), (qd, &rates), (qdd, &accelerations)].map(|(own, other)| self.closed.of_tree(own, other));
-        Ok((map, of_tree))
+        DynFloatingAccelerations { base: of_base(&x), qdd: x.split_off(BASE) }
     }
 
     /// The symmetric matrix of the coordinates, by that of the tree; `of_base` rows and columns are those of the tree.
@@ -275,8 +209,14 @@ impl<S: Constant> DynArm<S> {
         matrix
     }
 
-    fn of_closed<'a, T>(&self, argument: &'static str, values: &'a [T]) -> Result<&'a [T], WrongLength> {
+    /// Whether a list has one element for each joint that moves by itself.
+    pub(crate) fn has_coordinates<T>(&self, argument: &'static str, values: &[T]) -> Result<(), WrongLength> {
         has_length(argument, values, self.closed.coordinates.len())
+    }
+
+    /// Whether a list has one element for each dependent joint.
+    pub(crate) fn has_passive<T>(&self, argument: &'static str, values: &[T]) -> Result<(), WrongLength> {
+        has_length(argument, values, self.closed.passive.len())
     }
 
     /// Gᵀ of numbers of the tree: those of the coordinates, and what their dependent joints add.
@@ -286,14 +226,6 @@ impl<S: Constant> DynArm<S> {
             passive.fold(of_tree[place], |sum, (&passive, row)| sum + row[at] * of_tree[passive])
         };
         self.closed.coordinates.iter().enumerate().map(of_coordinate).collect()
-    }
-
-    fn map_of<T: Scalar>(&self, equations: &Equations<T>) -> Vec<Vec<T>> {
-        let column = |&place: &usize| {
-            self.solved(&equations.rows, &equations.rows.iter().map(|row| row[place]).collect::<Vec<_>>())
-        };
-        let columns: Vec<Vec<T>> = self.closed.coordinates.iter().map(column).collect();
-        (0..self.closed.passive.len()).map(|row| columns.iter().map(|column| column[row]).collect()).collect()
     }
 
     /// -K_p⁻¹ b, by dependent joint: Gauss's elimination in the order of the robot file.
@@ -327,20 +259,12 @@ impl<S: Constant> DynArm<S> {
     }
 
     /// The equations in a state; without rates they have no biases.
-    fn equations<T: Scalar>(
-        &self,
-        q: &[T],
-        passive: &[T],
-        rates: Option<(&[T], &[T])>,
-    ) -> Result<Equations<T>, WrongLength> {
-        has_length("passive", passive, self.closed.passive.len())?;
-        let q = self.closed.of_tree(self.of_closed("q", q)?, passive);
+    fn equations<T: Scalar>(&self, q: &[T], passive: &[T], rates: Option<(&[T], &[T])>) -> Equations<T> {
+        let q = self.closed.of_tree(q, passive);
         let q = self.couplings.of_joints(&q).into_owned();
         let zero = vec![T::zero(); q.len()];
         let qd = match rates {
-            Some((qd, passive)) => {
-                self.couplings.of_joints(&self.closed.of_tree(self.of_closed("qd", qd)?, passive)).into_owned()
-            }
+            Some((qd, passive)) => self.couplings.of_joints(&self.closed.of_tree(qd, passive)).into_owned(),
             None => zero.clone(),
         };
         let mut equations = Equations { residuals: Vec::new(), rows: Vec::new(), biases: Vec::new() };
@@ -373,7 +297,7 @@ impl<S: Constant> DynArm<S> {
                 equations.biases.push(turning + moving.dot(&(other.omega - one.omega)));
             }
         }
-        Ok(equations)
+        equations
     }
 }
 
@@ -423,11 +347,9 @@ impl<S: Constant> DynArm<S> {
     }
 }
 
-fn has_length<'a, T>(argument: &'static str, values: &'a [T], expected: usize) -> Result<&'a [T], WrongLength> {
-    if values.len() == expected {
-        return Ok(values);
-    }
-    Err(WrongLength { argument, expected, found: values.len() })
+fn has_length<T>(argument: &'static str, values: &[T], expected: usize) -> Result<(), WrongLength> {
+    let found = values.len();
+    if found == expected { Ok(()) } else { Err(WrongLength { argument, expected, found }) }
 }
 
 fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {

@@ -77,7 +77,7 @@ impl<const DOF: usize, R> RungeKuttaStepDerivatives<DOF> for R where
 {
 }
 
-capability! { @counted
+capability! { @counted definition
     /// As [`RungeKuttaStep::runge_kutta_step`].
     fn runge_kutta_step(q: joints, qd: joints, tau: joints, step: number) -> NextState<DOF> = |robot| {
         let accelerations =

@@ -3,6 +3,10 @@
 /// Where the number of joints is known.
 macro_rules! known {
     (joints) => { &[T; DOF] };
+    (coordinates) => { &[T; DOF] };
+    (passive) => { &[T; PASSIVE] };
+    (passive_vector) => { [T; PASSIVE] };
+    (passive_rows) => { [[T; DOF]; PASSIVE] };
     (wrenches) => { &[$crate::Wrench<T>; TIPS] };
     (vector) => { [T; DOF] };
     (matrix) => { [[T; DOF]; DOF] };
@@ -26,6 +30,10 @@ pub(crate) use known;
 #[cfg(all(feature = "arm", feature = "std"))]
 macro_rules! counted {
     (joints) => { &[T] };
+    (coordinates) => { &[T] };
+    (passive) => { &[T] };
+    (passive_vector) => { Vec<T> };
+    (passive_rows) => { Vec<Vec<T>> };
     (wrenches) => { &[$crate::Wrench<T>] };
     (vector) => { Vec<T> };
     (matrix) => { Vec<Vec<T>> };

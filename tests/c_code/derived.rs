@@ -76,6 +76,7 @@ struct Inputs<'a, const DOF: usize, T> {
 macro_rules! call {
     ([$what:ident.of_loops] $($call:tt)*) => { unreachable!("of closed loops") };
     ([$what:ident.floating.of_loops] $($call:tt)*) => { unreachable!("of closed loops") };
+    ([$what:ident.with_payload.of_loops] $($call:tt)*) => { unreachable!("of closed loops") };
     ([$what:ident.with_wrenches.of_loops] $($call:tt)*) => { unreachable!("of closed loops") };
     ([$what:ident.floating.with_wrenches.of_loops] $($call:tt)*) => { unreachable!("of closed loops") };
     ([$what:ident $(. $axis:ident)*] $robot:ident.$name:ident($($argument:expr),*) to $numbers:ident) => {

@@ -4,16 +4,20 @@
 use std::collections::BTreeMap;
 
 use rne::compiled::{Arguments as Numbers, Array, CompiledArm, Destination};
-use rne::{BaseMotion, BaseTwist, ClosedLoops, DynArm, FloatingClosedLoops, Payload, Pose, VectorUnit, Wrench};
-use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter};
+use rne::{
+    BaseMotion, BaseTwist, ClosedLoops, ClosedLoopsPayloadDynamics, DynArm, FloatingClosedLoops, Payload, Pose,
+    VectorUnit, Wrench,
+};
+use rne_codegen::{Argument, Arguments, Axes, Compiler, Form, Function, Interpreter, Load};
 use rne_model::{Reader, Robot};
 use rne_runtime::Inputs;
 use serde_json::Value;
 
 use crate::check::ROOT;
+use crate::payload::carrying;
 
 /// A trunk with one leg of a four-bar.
-#[derive(rne::ClosedLoops, rne::FloatingClosedLoops)]
+#[derive(rne::ClosedLoops, rne::ClosedLoopsPayloadDynamics, rne::FloatingClosedLoops)]
 #[robot(path = "../../benches/trees/loops/floating_four_bar_leg.yaml", form = "reduced")]
 struct FourBarLeg;
 
@@ -54,6 +58,11 @@ fn read(path: &str) -> Vec<u8> {
     std::fs::read(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
+/// A payload of each robot.
+fn payload() -> Payload<f64> {
+    Payload::from_array([0.7, 0.02, -0.05, 0.04, 0.003, 0.004, 0.002, 0.0005, -0.0003, 0.0002])
+}
+
 /// A state of a golden file.
 struct State<'a>(&'a Value);
 
@@ -87,9 +96,14 @@ impl State<'_> {
         numbers
     }
 
-    /// What a function returns, and what its error is measured by.
-    fn expected(&self, function: Function) -> (Vec<f64>, f64) {
+    /// What a function returns, and what its error is measured by. With a payload, it is what the runtime returns for
+    /// the robot with a link that has the payload.
+    fn expected(&self, robot: &Robot, function: Function) -> (Vec<f64>, f64) {
+        let without = Function::find(Axes { load: Load::Free, ..function.axes() });
         let numbers = match function {
+            _ if function.takes(Argument::Payload) => {
+                of_runtime(&carrying(robot, &payload()), without.expect("a function without a payload"), self)
+            }
             Function::ClosureStep => self.numbers("passive"),
             Function::LoopMap => self.numbers("loop_map"),
             Function::LoopMapRateTimesVelocity => self.numbers("passive_accelerations_bias"),
@@ -97,6 +111,8 @@ impl State<'_> {
             Function::InverseDynamicsOfLoopsWithWrenches => self.numbers("inverse_dynamics_with_wrench"),
             Function::MassMatrixOfLoops => self.numbers("mass_matrix"),
             Function::ForwardDynamicsOfLoops => self.numbers("forward_dynamics"),
+            Function::GravityTorquesOfLoops => self.numbers("gravity_torques"),
+            Function::BiasTorquesOfLoops => self.numbers("bias_torques"),
             Function::InverseDynamicsOfFloatingLoops => self.numbers("inverse_dynamics_of_floating_loops_with_wrench"),
             Function::FloatingMassMatrixOfLoops => self.numbers("floating_mass_matrix_of_loops"),
             Function::FloatingForwardDynamicsOfLoops => self.numbers("floating_forward_dynamics_of_loops_with_wrench"),
@@ -114,8 +130,8 @@ impl State<'_> {
     }
 
     /// The largest error, which is allowed.
-    fn is_near(&self, function: Function, found: &[f64], maker: &str) -> f64 {
-        let (expected, scale) = self.expected(function);
+    fn is_near(&self, robot: &Robot, function: Function, found: &[f64], maker: &str) -> f64 {
+        let (expected, scale) = self.expected(robot, function);
         // behind the positions stand the equations, which are closed
         let (found, rest) = found.split_at(expected.len());
         assert!(rest.iter().all(|left| left.abs() < 1e-12), "{maker}, {function}: {rest:?} are left");
@@ -145,7 +161,7 @@ fn of_runtime(arm: &DynArm, function: Function, state: &State<'_>) -> Vec<f64> {
         multipliers: &[],
         wrench: &wrench,
         wrenches: &[wrench],
-        payload: &Payload::default(),
+        payload: &payload(),
         base: &base,
         omega: &base.omega,
         twist: &BaseTwist::default(),
@@ -163,8 +179,12 @@ fn check(name: &str, robot: &Robot, states: &[Value]) -> BTreeMap<Function, f64>
     for function in State(&states[0]).functions(robot) {
         let worst = errors.entry(function).or_insert(0.0_f64);
         for state in states.iter().map(State) {
-            *worst =
-                worst.max(state.is_near(function, &of_runtime(&arm, function, &state), &format!("{name}, runtime")));
+            *worst = worst.max(state.is_near(
+                robot,
+                function,
+                &of_runtime(&arm, function, &state),
+                &format!("{name}, runtime"),
+            ));
         }
         for form in Form::ALL {
             let program = compiler.compile(function, form).unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -176,13 +196,14 @@ fn check(name: &str, robot: &Robot, states: &[Value]) -> BTreeMap<Function, f64>
                     passive: &passive,
                     tau: &tau,
                     wrenches: &[wrench],
+                    payload: payload().to_array(),
                     base: state
                         .base()
                         .map_or([[0.0; 3]; 4], |base| [base.omega, base.omega_dot, base.acceleration, base.gravity]),
                     ..Arguments::of_joints(&q, &qd, &qdd, 0.0)
                 };
                 let found = interpreter.run(&arguments, |x| x, f64::sin_cos).expect("all arguments");
-                *worst = worst.max(state.is_near(function, &found, &format!("{name}, {form}")));
+                *worst = worst.max(state.is_near(robot, function, &found, &format!("{name}, {form}")));
             }
         }
     }
@@ -254,6 +275,7 @@ fn random_mechanisms_float() {
 fn derived_closed_loops_float() {
     let golden: Vec<Value> =
         serde_json::from_slice(&read("tests/golden/loops/floating_four_bar_leg.json")).expect("JSON");
+    let leg = robot(&read("benches/trees/loops/floating_four_bar_leg.yaml"));
     for state in golden.iter().map(State) {
         let of = |key: &str| <[f64; 2]>::try_from(state.numbers(key)).expect("two numbers");
         let [q, passive, qd, qdd, tau] = ["q", "passive", "qd", "qdd", "tau"].map(of);
@@ -261,15 +283,17 @@ fn derived_closed_loops_float() {
         let wrenches = [Wrench { force: [x, y, z], moment: [about_x, about_y, about_z] }];
         let base = state.base().expect("a floating base");
         let closed = FourBarLeg.close(&q, &passive.map(|p| p + 1e-3));
-        state.is_near(Function::ClosureStep, &[&closed.passive[..], &closed.residual].concat(), "derived");
+        let carried = FourBarLeg.forward_dynamics_of_loops_with_payload(&q, &passive, &qd, &tau, &payload());
+        state.is_near(&leg, Function::ForwardDynamicsOfLoopsWithPayload, &carried, "derived");
+        state.is_near(&leg, Function::ClosureStep, &[&closed.passive[..], &closed.residual].concat(), "derived");
         let torques = FourBarLeg.inverse_dynamics_of_floating_loops(&q, &passive, &qd, &qdd, &base, &wrenches);
         let torques = [&torques.wrench.force[..], &torques.wrench.moment, &torques.tau].concat();
-        state.is_near(Function::InverseDynamicsOfFloatingLoops, &torques, "derived");
+        state.is_near(&leg, Function::InverseDynamicsOfFloatingLoops, &torques, "derived");
         let mass = FourBarLeg.floating_mass_matrix_of_loops(&q, &passive);
-        state.is_near(Function::FloatingMassMatrixOfLoops, mass.as_flattened(), "derived");
+        state.is_near(&leg, Function::FloatingMassMatrixOfLoops, mass.as_flattened(), "derived");
         let moved = FourBarLeg.floating_forward_dynamics_of_loops(&q, &passive, &qd, &tau, &base.omega, &wrenches);
         let moved = [&moved.base.linear[..], &moved.base.angular, &moved.qdd].concat();
-        state.is_near(Function::FloatingForwardDynamicsOfLoops, &moved, "derived");
+        state.is_near(&leg, Function::FloatingForwardDynamicsOfLoops, &moved, "derived");
     }
 }
 
@@ -291,6 +315,8 @@ fn the_machine_computes_closed_loops() {
         let all = |key: &str| golden.iter().flat_map(|state| State(state).numbers(key)).collect::<Vec<f64>>();
         let [q, passive, qd, qdd, tau, wrenches] = ["q", "passive", "qd", "qdd", "tau", "wrench"].map(all);
         let arguments = Numbers::new().q(Array::Rows(&q)).passive(Array::Rows(&passive)).qd(Array::Rows(&qd));
+        let payload = payload().to_array();
+        let arguments = arguments.payload(Array::Same(&payload));
         let arguments = arguments.qdd(Array::Rows(&qdd)).tau(Array::Rows(&tau)).wrenches(Array::Rows(&wrenches));
         let of_base = |part: fn(&BaseMotion<f64>) -> [f64; 3]| {
             golden.iter().filter_map(|state| State(state).base()).flat_map(|base| part(&base)).collect::<Vec<f64>>()
@@ -311,7 +337,7 @@ fn the_machine_computes_closed_loops() {
             let results = Destination::Rows(&mut numbers);
             compiled.run(VectorUnit::widest(), golden.len(), &arguments, results).expect("arrays of one length");
             for (state, found) in golden.iter().map(State).zip(numbers.chunks(width)) {
-                state.is_near(function, found, &format!("{name}, machine"));
+                state.is_near(arm.robot(), function, found, &format!("{name}, machine"));
             }
         }
     }

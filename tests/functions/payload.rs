@@ -37,12 +37,13 @@ fn lumped(link: &Link, tool: (Rotation3<f64>, Vector3<f64>), payload: &Payload<f
     Link { mass, com: centre.into(), inertia, ..Link::default() }
 }
 
-/// The runtime's arm whose last link has the payload.
-fn carrying(robot: &Robot, payload: &Payload<f64>) -> DynArm {
+/// The runtime's arm whose link with the tip has the payload.
+pub(crate) fn carrying(robot: &Robot, payload: &Payload<f64>) -> DynArm {
     let [roll, pitch, yaw] = robot.tool.rpy.map(|angle| angle.radians);
     let tool = (Rotation3::from_euler_angles(roll, pitch, yaw), Vector3::from(robot.tool.xyz));
     let mut robot = robot.clone();
-    let link = &mut robot.joints.last_mut().expect("a joint").row.link;
+    let on = robot.tip_on.unwrap_or(robot.joints.len() - 1);
+    let link = &mut robot.joints[on].row.link;
     *link = lumped(link, tool, payload);
     DynArm::from_robot(&robot)
 }

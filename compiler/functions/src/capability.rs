@@ -96,6 +96,11 @@ macro_rules! capabilities {
                  known when the program runs.",
                 "The base is the link `floating_base` of the robot file; a file without that key is an error, unless \
                  the attribute has `allow_lints`: then the base has no mass.";
+            ClosedLoopsPayloadDynamics:
+                "torques, gravity, bias, mass matrix and accelerations of a robot with closed loops and a payload that \
+                 is known when the program runs.",
+                "It belongs beside [`ClosedLoops`](macro@ClosedLoops), whose functions close the loops. The payload \
+                 (mass, centre of mass, inertia) is at the tip.";
         }
     };
 }

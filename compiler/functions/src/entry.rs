@@ -85,6 +85,7 @@ impl Entry {
     pub(crate) const fn for_robot(self, Axes { base, load, loops, .. }: Axes) -> Self {
         let capability = match (loops, base, load) {
             (true, Base::Floating, _) => Capability::FloatingClosedLoops,
+            (true, _, Load::Payload) => Capability::ClosedLoopsPayloadDynamics,
             (true, _, _) => Capability::ClosedLoops,
             (false, Base::Moving, _) => Capability::MovingBase,
             // the trait of an arm has its torques with a payload, too

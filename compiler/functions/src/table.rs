@@ -420,6 +420,40 @@ macro_rules! functions {
                 "Accelerations of a floating base and of the joints for torques `tau`, with a payload at the tip.",
                 "payload: as in inverse_dynamics_with_payload. omega, base, qdd: as in floating_forward_dynamics. The \
                  tips exert nothing.";
+            GravityTorquesOfLoops [GravityTorques.of_loops] = gravity_torques_of_loops(q: Positions, passive: Passive) -> Vector:
+                "Torques that hold a robot with closed loops still against gravity, of the joints that move by themselves.",
+                "passive: as in loop_map. tau: Gᵀ times the gravity torques of the tree.";
+            BiasTorquesOfLoops [BiasTorques.of_loops] = bias_torques_of_loops(
+                q: Positions, passive: Passive, qd: Rates
+            ) -> Vector:
+                "Coriolis, centrifugal and gravity torques of a robot with closed loops: its torques at q̈ = 0.",
+                "passive: as in loop_map. tau: of the joints of q; the dependent joints accelerate by Ġ q̇.";
+            InverseDynamicsOfLoopsWithPayload [InverseDynamics.with_payload.of_loops] = inverse_dynamics_of_loops_with_payload(
+                q: Positions, passive: Passive, qd: Rates, qdd: Accelerations, payload: Payload
+            ) -> Vector:
+                "Torques of a robot with closed loops when a payload is fixed to the tip.",
+                "passive: as in loop_map. payload: as in inverse_dynamics_with_payload. tau: as in \
+                 inverse_dynamics_of_loops.";
+            GravityTorquesOfLoopsWithPayload [GravityTorques.with_payload.of_loops] = gravity_torques_of_loops_with_payload(
+                q: Positions, passive: Passive, payload: Payload
+            ) -> Vector:
+                "Torques that hold a robot with closed loops and a payload at its tip still against gravity.",
+                "passive, tau: as in gravity_torques_of_loops. payload: as in inverse_dynamics_with_payload.";
+            BiasTorquesOfLoopsWithPayload [BiasTorques.with_payload.of_loops] = bias_torques_of_loops_with_payload(
+                q: Positions, passive: Passive, qd: Rates, payload: Payload
+            ) -> Vector:
+                "Coriolis, centrifugal and gravity torques of a robot with closed loops and a payload at its tip.",
+                "passive, tau: as in bias_torques_of_loops. payload: as in inverse_dynamics_with_payload.";
+            MassMatrixOfLoopsWithPayload [MassMatrix.with_payload.of_loops] = mass_matrix_of_loops_with_payload(
+                q: Positions, passive: Passive, payload: Payload
+            ) -> Matrix:
+                "The mass matrix of a robot with closed loops and a payload at its tip: symmetric.",
+                "passive, mass[i][j]: as in mass_matrix_of_loops. payload: as in inverse_dynamics_with_payload.";
+            ForwardDynamicsOfLoopsWithPayload [ForwardDynamics.with_payload.of_loops] = forward_dynamics_of_loops_with_payload(
+                q: Positions, passive: Passive, qd: Rates, tau: Torques, payload: Payload
+            ) -> Vector:
+                "Accelerations of a robot with closed loops and a payload at its tip for torques `tau`.",
+                "passive, qdd: as in forward_dynamics_of_loops. payload: as in inverse_dynamics_with_payload.";
         }
     };
 }

@@ -2,10 +2,9 @@
 
 use std::str::FromStr;
 
-use rne::{BaseMotion, BaseTwist, DynArm, Payload, Pose, Quaternion, Wrench, WrongLength};
+use rne::{BaseMotion, BaseTwist, DynArm, Inputs, Payload, Pose, Quaternion, Wrench, WrongLength};
 use rne_codegen::{Argument, Capability, Function};
 use rne_model::{Robot, nearest_name};
-use rne_runtime::Inputs;
 
 use crate::outcome::Failure;
 use crate::values::closure;

@@ -84,6 +84,16 @@ pub fn own(function: Function, quantity: Quantity) -> Option<&'static Own> {
 /// The quantities of several functions that mean something else in some of them.
 static OWN: &[(&[What], Option<Base>, &[Own])] = &[
     (
+        &[What::MomentumAndRate],
+        None,
+        &[
+            Own::of(Quantity::Momentum, |joint| format!("momentum of joint {joint}: row {joint} of M q̇")),
+            Own::of(Quantity::MomentumRate, |joint| {
+                format!("its rate at joint {joint} without external torques: τ + ∂T/∂q - ∂V/∂q")
+            }),
+        ],
+    ),
+    (
         &[What::Jacobian],
         None,
         &[
@@ -266,11 +276,7 @@ static OWN: &[(&[What], Option<Base>, &[Own])] = &[
 static FLOATING: [Own; 1] = [ORIGIN_VELOCITY];
 
 /// Quantities that mean the same in each function.
-static ANY: [Own; 20] = [
-    Own::of(Quantity::Momentum, |joint| format!("momentum of joint {joint}: row {joint} of M q̇")),
-    Own::of(Quantity::MomentumRate, |joint| {
-        format!("its rate at joint {joint} without external torques: τ + ∂T/∂q - ∂V/∂q")
-    }),
+static ANY: [Own; 18] = [
     Own::of(Quantity::CoriolisElement, |joint| format!("row {joint} of the Coriolis matrix: ½ ∂(bias torques)/∂q̇")),
     Own::of(Quantity::Kinetic, |_| "kinetic energy: ½ Σ (m ċ · ċ + ω · I ω)".to_owned()),
     Own::of(Quantity::Potential, |_| "potential energy: -Σ m g · c".to_owned()),

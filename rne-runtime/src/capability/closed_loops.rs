@@ -2,8 +2,10 @@
 
 #[cfg(doc)]
 use super::{FloatingBase, TipWrenches};
-use crate::{BaseMotion, ClosureStep, FloatingAccelerations, FloatingTorques, Scalar, Wrench};
+#[cfg(feature = "arm")]
+use crate::at_tip::AtTip;
 
+capability! {
 /// A robot with closed loops: an ankle that two rods drive, a four-bar linkage, a delta robot.
 ///
 /// `q`, `qd`, `qdd` and `tau` have `DOF` elements, of the joints that move by themselves. `passive` has the positions
@@ -17,12 +19,47 @@ use crate::{BaseMotion, ClosureStep, FloatingAccelerations, FloatingTorques, Sca
 /// `rne show` prints the order.
 ///
 /// Source of the equations: W. Khalil, J.-F. Kleinfinger, "Dynamic modeling of closed-loop robots", 1987.
-pub trait ClosedLoops<const DOF: usize, const PASSIVE: usize, const EQUATIONS: usize, const TIPS: usize> {
+pub trait ClosedLoops<DOF, PASSIVE, EQUATIONS, TIPS> of loops {
     /// One step of Newton's method from the guess `passive`: the positions after the step, and what is left of the
     /// equations before it.
-    #[must_use]
-    fn closure_step<T: Scalar>(&self, q: &[T; DOF], passive: &[T; PASSIVE]) -> ClosureStep<PASSIVE, EQUATIONS, T>;
+    fn closure_step(q: coordinates, passive: passive) -> ClosureStep<PASSIVE, EQUATIONS> =
+        |robot| robot.newton(q, passive);
 
+    /// The map G: velocities of the dependent joints are G q̇, and torques at them are worth Gᵀ of them at the joints
+    /// of `q`.
+    fn loop_map(q: coordinates, passive: passive) -> passive_rows = |robot| robot.map(q, passive);
+
+    /// Ġ q̇, rad/s² or m/s²: the accelerations of the dependent joints are G q̈ + Ġ q̇.
+    fn loop_map_rate_times_velocity(q: coordinates, passive: passive, qd: coordinates) -> passive_vector =
+        |robot| robot.map_rate(q, passive, qd);
+
+    /// Torques of the joints of `q`, N m or N: the dependent joints have no actuators.
+    fn inverse_dynamics_of_loops(q: coordinates, passive: passive, qd: coordinates, qdd: coordinates) -> vector =
+        |robot| robot.torques_of_loops([q, passive, qd, qdd], &robot.fixed_base(), AtTip::Nothing).tau;
+
+    /// Torques when the robot exerts a wrench on its environment at each of its tips, in axes of the tip. The tips are
+    /// those of [`TipWrenches`].
+    fn inverse_dynamics_of_loops_with_wrenches(
+        q: coordinates, passive: passive, qd: coordinates, qdd: coordinates, wrenches: wrenches
+    ) -> vector =
+        |robot| robot.torques_of_loops([q, passive, qd, qdd], &robot.fixed_base(), AtTip::Wrenches(wrenches)).tau;
+
+    /// Torques that hold the robot still against gravity, N m or N.
+    fn gravity_torques_of_loops(q: coordinates, passive: passive) -> vector =
+        |robot| robot.gravity_of_loops(q, passive, AtTip::Nothing);
+
+    /// Coriolis, centrifugal and gravity torques, N m or N: the torques where the joints of `q` do not accelerate.
+    fn bias_torques_of_loops(q: coordinates, passive: passive, qd: coordinates) -> vector =
+        |robot| robot.bias_of_loops([q, passive, qd], AtTip::Nothing);
+
+    /// The mass matrix of the joints of `q`, symmetric to the last bit; kg m², kg m or kg.
+    fn mass_matrix_of_loops(q: coordinates, passive: passive) -> matrix =
+        |robot| robot.mass_of_loops(q, passive, AtTip::Nothing);
+
+    /// Accelerations of the joints of `q`, rad/s² or m/s², for their torques `tau`.
+    fn forward_dynamics_of_loops(q: coordinates, passive: passive, qd: coordinates, tau: coordinates) -> vector =
+        |robot| robot.accelerations_of_loops([q, passive, qd, tau], AtTip::Nothing);
+} with {
     /// Closes the loops from a guess by five steps of Newton's method, without a branch. The result has the residual of
     /// the equations at its positions.
     ///
@@ -31,98 +68,74 @@ pub trait ClosedLoops<const DOF: usize, const PASSIVE: usize, const EQUATIONS: u
     /// closes the loops. A loop can be closed in several ways, such as a
     /// four-bar linkage with its elbow up or down; the guess decides which of them is found.
     #[must_use]
-    fn close<T: Scalar>(&self, q: &[T; DOF], guess: &[T; PASSIVE]) -> ClosureStep<PASSIVE, EQUATIONS, T> {
+    fn close<T: crate::Scalar>(
+        &self,
+        q: &[T; DOF],
+        guess: &[T; PASSIVE],
+    ) -> crate::ClosureStep<PASSIVE, EQUATIONS, T> {
         let mut passive = *guess;
         for _ in 0..5 {
             passive = self.closure_step(q, &passive).passive;
         }
-        ClosureStep { passive, residual: self.closure_step(q, &passive).residual }
+        crate::ClosureStep { passive, residual: self.closure_step(q, &passive).residual }
     }
-
-    /// The map G: velocities of the dependent joints are G q̇, and torques at them are worth Gᵀ of them at the joints
-    /// of `q`.
-    #[must_use]
-    fn loop_map<T: Scalar>(&self, q: &[T; DOF], passive: &[T; PASSIVE]) -> [[T; DOF]; PASSIVE];
-
-    /// Ġ q̇, rad/s² or m/s²: the accelerations of the dependent joints are G q̈ + Ġ q̇.
-    #[must_use]
-    fn loop_map_rate_times_velocity<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        passive: &[T; PASSIVE],
-        qd: &[T; DOF],
-    ) -> [T; PASSIVE];
-
-    /// Torques of the joints of `q`, N m or N: the dependent joints have no actuators.
-    #[must_use]
-    fn inverse_dynamics_of_loops<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        passive: &[T; PASSIVE],
-        qd: &[T; DOF],
-        qdd: &[T; DOF],
-    ) -> [T; DOF];
-
-    /// Torques when the robot exerts a wrench on its environment at each of its tips, in axes of the tip. The tips are
-    /// those of [`TipWrenches`].
-    #[must_use]
-    fn inverse_dynamics_of_loops_with_wrenches<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        passive: &[T; PASSIVE],
-        qd: &[T; DOF],
-        qdd: &[T; DOF],
-        wrenches: &[Wrench<T>; TIPS],
-    ) -> [T; DOF];
-
-    /// The mass matrix of the joints of `q`, symmetric to the last bit; kg m², kg m or kg.
-    #[must_use]
-    fn mass_matrix_of_loops<T: Scalar>(&self, q: &[T; DOF], passive: &[T; PASSIVE]) -> [[T; DOF]; DOF];
-
-    /// Accelerations of the joints of `q`, rad/s² or m/s², for their torques `tau`.
-    #[must_use]
-    fn forward_dynamics_of_loops<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        passive: &[T; PASSIVE],
-        qd: &[T; DOF],
-        tau: &[T; DOF],
-    ) -> [T; DOF];
+}
 }
 
+capability! {
+/// A robot with closed loops and a payload that is known when the program runs: the payload is fixed to the tip, as in
+/// [`PayloadDynamics`](crate::PayloadDynamics). The loops are those of [`ClosedLoops`], whose functions close them. A
+/// payload of zero gives the numbers of the function without a payload.
+pub trait ClosedLoopsPayloadDynamics<DOF, PASSIVE> of loops {
+    /// Torques, N m or N. See [`inverse_dynamics_of_loops`](ClosedLoops::inverse_dynamics_of_loops).
+    fn inverse_dynamics_of_loops_with_payload(
+        q: coordinates, passive: passive, qd: coordinates, qdd: coordinates, payload: payload
+    ) -> vector =
+        |robot| robot.torques_of_loops([q, passive, qd, qdd], &robot.fixed_base(), AtTip::Payload(payload)).tau;
+
+    /// Torques that hold the robot and the payload still against gravity, N m or N.
+    fn gravity_torques_of_loops_with_payload(q: coordinates, passive: passive, payload: payload) -> vector =
+        |robot| robot.gravity_of_loops(q, passive, AtTip::Payload(payload));
+
+    /// Coriolis, centrifugal and gravity torques, N m or N. See
+    /// [`bias_torques_of_loops`](ClosedLoops::bias_torques_of_loops).
+    fn bias_torques_of_loops_with_payload(q: coordinates, passive: passive, qd: coordinates, payload: payload)
+        -> vector = |robot| robot.bias_of_loops([q, passive, qd], AtTip::Payload(payload));
+
+    /// The mass matrix, symmetric to the last bit. See [`mass_matrix_of_loops`](ClosedLoops::mass_matrix_of_loops).
+    fn mass_matrix_of_loops_with_payload(q: coordinates, passive: passive, payload: payload) -> matrix =
+        |robot| robot.mass_of_loops(q, passive, AtTip::Payload(payload));
+
+    /// Accelerations, rad/s² or m/s². See [`forward_dynamics_of_loops`](ClosedLoops::forward_dynamics_of_loops).
+    fn forward_dynamics_of_loops_with_payload(
+        q: coordinates, passive: passive, qd: coordinates, tau: coordinates, payload: payload
+    ) -> vector = |robot| robot.accelerations_of_loops([q, passive, qd, tau], AtTip::Payload(payload));
+}
+}
+
+capability! {
 /// A robot with closed loops whose base nothing holds: a humanoid whose ankles are driven by rods.
 ///
 /// `q`, `passive` and the loops are those of [`ClosedLoops`], whose functions close them. The base, `NV` = `DOF` + 6
 /// velocities and the tips are those of [`FloatingBase`].
-pub trait FloatingClosedLoops<const DOF: usize, const PASSIVE: usize, const NV: usize, const TIPS: usize> {
+pub trait FloatingClosedLoops<DOF, PASSIVE, NV, TIPS> of loops {
     /// Torques of the joints of `q`, and the wrench that must act on the base, when frame 0 moves as `base` says. See
     /// [`inverse_dynamics_of_floating_base`](crate::FloatingBase::inverse_dynamics_of_floating_base).
-    #[must_use]
-    fn inverse_dynamics_of_floating_loops<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        passive: &[T; PASSIVE],
-        qd: &[T; DOF],
-        qdd: &[T; DOF],
-        base: &BaseMotion<T>,
-        wrenches: &[Wrench<T>; TIPS],
-    ) -> FloatingTorques<DOF, T>;
+    fn inverse_dynamics_of_floating_loops(
+        q: coordinates, passive: passive, qd: coordinates, qdd: coordinates, base: motion, wrenches: wrenches
+    ) -> FloatingTorques<DOF> =
+        |robot| robot.torques_of_loops([q, passive, qd, qdd], base, AtTip::Wrenches(wrenches));
 
     /// The mass matrix of the base and of the joints of `q`, symmetric to the last bit. See
     /// [`floating_mass_matrix`](crate::FloatingBase::floating_mass_matrix).
-    #[must_use]
-    fn floating_mass_matrix_of_loops<T: Scalar>(&self, q: &[T; DOF], passive: &[T; PASSIVE]) -> [[T; NV]; NV];
+    fn floating_mass_matrix_of_loops(q: coordinates, passive: passive) -> velocity_matrix =
+        |robot| robot.floating_mass_of_loops(q, passive);
 
     /// Accelerations of the base and of the joints of `q` for torques of these joints, while the wrenches and gravity
     /// act. See [`floating_forward_dynamics`](crate::FloatingBase::floating_forward_dynamics).
-    #[must_use]
-    fn floating_forward_dynamics_of_loops<T: Scalar>(
-        &self,
-        q: &[T; DOF],
-        passive: &[T; PASSIVE],
-        qd: &[T; DOF],
-        tau: &[T; DOF],
-        omega: &[T; 3],
-        wrenches: &[Wrench<T>; TIPS],
-    ) -> FloatingAccelerations<DOF, T>;
+    fn floating_forward_dynamics_of_loops(
+        q: coordinates, passive: passive, qd: coordinates, tau: coordinates, omega: omega, wrenches: wrenches
+    ) -> FloatingAccelerations<DOF> =
+        |robot| robot.floating_accelerations_of_loops([q, passive, qd, tau], omega, AtTip::Wrenches(wrenches));
+}
 }

@@ -10,6 +10,12 @@ macro_rules! capability {
     (@checked $robot:ident, $argument:ident, wrenches) => {
         $robot.has_tips($argument)?
     };
+    (@checked $robot:ident, $argument:ident, coordinates) => {
+        $robot.has_coordinates(stringify!($argument), $argument)?
+    };
+    (@checked $robot:ident, $argument:ident, passive) => {
+        $robot.has_passive(stringify!($argument), $argument)?
+    };
     (@checked $robot:ident, $argument:ident, $other:ident) => {};
     (@method $(#[$doc:meta])* $name:ident($($arg:ident: $kind:ident),*) -> $result:ty) => {
         $(#[$doc])*
@@ -41,7 +47,7 @@ macro_rules! capability {
             })*
         }
     };
-    (@counted $(
+    (@counted $definition:ident $(
         $(#[$doc:meta])* fn $name:ident($($arg:ident: $kind:ident),*) -> $shape:ident $(<$($of:ident),*>)?
             $(or |$this:ident| $default:block)? = |$robot:ident| $body:expr;
     )*) => {
@@ -58,12 +64,12 @@ macro_rules! capability {
                 $($arg: $crate::shapes::counted!($kind)),*
             ) -> Result<$crate::shapes::counted!($shape $(<$($of),*>)?), $crate::WrongLength> {
                 $(capability! { @checked self, $arg, $kind })*
-                let $robot = self.definition();
+                let $robot = self.$definition();
                 Ok(From::from($body))
             }
         )* }
     };
-    (@trait $(#[$about:meta])* $trait:ident<$($size:ident),*> $(
+    (@trait { $($more:tt)* } $(#[$about:meta])* $trait:ident<$($size:ident),*> $(
         $(#[$doc:meta])* fn $name:ident($($arg:ident: $kind:ident),*) -> $shape:ident $(<$($of:ident),*>)?
             $(or |$this:ident| $default:block)? = |$robot:ident| $body:expr;
     )*) => {
@@ -73,18 +79,24 @@ macro_rules! capability {
                 $(#[$doc])* $name($($arg: $kind),*) -> $crate::shapes::known!($shape $(<$($of),*>)?)
                     $(, $this $default)?
             }
-        )* }
+        )* $($more)* }
+    };
+    // of an arm whose joints are known when the program runs, alone; `with` precedes functions that others are made of
+    ($(#[$about:meta])* pub trait $trait:ident<$($size:ident),*> of loops { $($functions:tt)* }
+        $(with { $($more:tt)* })?) => {
+        capability! { @trait { $($($more)*)? } $(#[$about])* $trait<$($size),*> $($functions)* }
+        capability! { @counted itself $($functions)* }
     };
     ($(#[$about:meta])* pub trait $trait:ident<DOF> { $($functions:tt)* }) => {
-        capability! { @trait $(#[$about])* $trait<DOF> $($functions)* }
+        capability! { @trait {} $(#[$about])* $trait<DOF> $($functions)* }
         capability! { @known [DOF] $trait<DOF>; $crate::Arm<DOF, S>; $($functions)* }
-        capability! { @counted $($functions)* }
+        capability! { @counted definition $($functions)* }
     };
     ($(#[$about:meta])* pub trait $trait:ident<$($size:ident),*> { $($functions:tt)* }) => {
-        capability! { @trait $(#[$about])* $trait<$($size),*> $($functions)* }
+        capability! { @trait {} $(#[$about])* $trait<$($size),*> $($functions)* }
         capability! {
             @known [DOF, NV, TIPS] $trait<$($size),*>; $crate::ArmWithTips<'_, DOF, NV, TIPS, S>; $($functions)*
         }
-        capability! { @counted $($functions)* }
+        capability! { @counted definition $($functions)* }
     };
 }

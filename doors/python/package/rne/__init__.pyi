@@ -348,7 +348,7 @@ class Arm:
         """Accelerations of the dependent joints of closed loops where the others do not accelerate: Ġ q̇."""
     def inverse_dynamics_of_loops(
         self, q: Joints, passive: Joints, qd: Joints, qdd: Joints, *,
-        parameters: Parameters = ..., out: Floats | None = ...,
+        payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Torques of a robot with closed loops, of the joints that move by themselves."""
     def inverse_dynamics_of_loops_with_wrenches(
@@ -358,12 +358,12 @@ class Arm:
         """Torques of a robot with closed loops when it exerts a force and a moment at each tip."""
     def mass_matrix_of_loops(
         self, q: Joints, passive: Joints, *,
-        parameters: Parameters = ..., out: Floats | None = ...,
+        payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """The mass matrix of a robot with closed loops, of the joints that move by themselves: symmetric."""
     def forward_dynamics_of_loops(
         self, q: Joints, passive: Joints, qd: Joints, tau: Joints, *,
-        parameters: Parameters = ..., out: Floats | None = ...,
+        payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Accelerations of a robot with closed loops for torques `tau` of the joints that move by themselves."""
     def inverse_dynamics_of_floating_loops(
@@ -475,6 +475,41 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
         """Accelerations of a floating base and of the joints for torques `tau`, with a payload at the tip."""
+    def gravity_torques_of_loops(
+        self, q: Joints, passive: Joints, *,
+        payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Torques that hold a robot with closed loops still against gravity, of the joints that move by themselves."""
+    def bias_torques_of_loops(
+        self, q: Joints, passive: Joints, qd: Joints, *,
+        payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Coriolis, centrifugal and gravity torques of a robot with closed loops: its torques at q̈ = 0."""
+    def inverse_dynamics_of_loops_with_payload(
+        self, q: Joints, passive: Joints, qd: Joints, qdd: Joints, payload: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Torques of a robot with closed loops when a payload is fixed to the tip."""
+    def gravity_torques_of_loops_with_payload(
+        self, q: Joints, passive: Joints, payload: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Torques that hold a robot with closed loops and a payload at its tip still against gravity."""
+    def bias_torques_of_loops_with_payload(
+        self, q: Joints, passive: Joints, qd: Joints, payload: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Coriolis, centrifugal and gravity torques of a robot with closed loops and a payload at its tip."""
+    def mass_matrix_of_loops_with_payload(
+        self, q: Joints, passive: Joints, payload: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """The mass matrix of a robot with closed loops and a payload at its tip: symmetric."""
+    def forward_dynamics_of_loops_with_payload(
+        self, q: Joints, passive: Joints, qd: Joints, tau: Joints, payload: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Accelerations of a robot with closed loops and a payload at its tip for torques `tau`."""
     # <!-- end -->
     def runge_kutta_step(
         self, q: Joints, qd: Joints, tau: Joints, step: ArrayLike, *, steps: int = ...,
