@@ -94,7 +94,7 @@ impl<S: Constant> DynArm<S> {
         self.closed.passive.len()
     }
 
-    /// What the functions of loops are asked of.
+    /// The robot itself, of which functions of loops are made.
     pub(crate) const fn itself(&self) -> &Self {
         self
     }
