@@ -33,6 +33,7 @@ mod momentum;
 mod motors;
 mod operational_space;
 mod operations;
+mod own_tests;
 mod payload;
 mod peers;
 mod published;

@@ -5,12 +5,13 @@ use rne_model::Robot;
 
 use super::RobotFile;
 use super::comparison::{Allowed, are_finite, compare, largest};
-use super::state::moved_states;
+use super::random::Random;
+use super::state::states;
 use crate::numbers::Numbers;
 use crate::{DynArm, Inputs};
 
-/// Numbers change by this part for [`condition`].
-const PART: u64 = 10_000_000;
+/// How much arguments change, of themselves, to see how much a function does.
+const PART: f64 = 1e-7;
 
 /// A list of as many elements as the argument of a function has.
 ///
@@ -39,16 +40,17 @@ pub fn is_that_of_the_runtime(file: &RobotFile, function: &str, call: impl Fn(&I
     let (robot, arm) = file.robot();
     let function = Function::named(function).unwrap_or_else(|| panic!("no function {function}"));
     let has_bits = file.seven_steps && has_bits(&robot, function);
-    let mut compared = 0;
-    for [state, moved] in moved_states::<PART>(&robot, &arm) {
+    let (mut compared, changes) = (0, Random::new(0xC4A5, |number| number));
+    for state in states(&robot, &arm) {
         compared += 1;
-        let [expected, beside] = [&state, &moved]
+        let changed = state.changed(|number| number * (1.0 + changes.number(PART)));
+        let [expected, beside] = [&state, &changed]
             .map(|state| arm.evaluate(function, &state.inputs()).unwrap_or_else(|error| panic!("{error}")));
         if !are_finite(&expected) {
             continue; // of a singular mass matrix, or of an arm without mass
         }
         let change = expected.iter().zip(&beside).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
-        let scale = terms(&arm, function, &state.inputs()).max(change * PART as f64);
+        let scale = terms(&arm, function, &state.inputs()).max(change / PART);
         let allowed = if has_bits { Allowed::Nothing } else { Allowed::Rounding { scale } };
         compare(function.name(), &state, allowed, &call(&state.inputs()), &expected);
     }

@@ -5,7 +5,7 @@ use core::{array, fmt};
 use rne_model::Robot;
 
 use super::random::{JOINTS, Random};
-use crate::{BaseMotion, BaseTwist, DynArm, Inputs, Payload, Pose, Quaternion, Wrench};
+use crate::{BaseMotion, BaseTwist, DynArm, Inputs, Payload, Pose, Quaternion, Scalar, Wrench};
 
 /// Number of states to try.
 const STATES: u64 = 48;
@@ -37,51 +37,62 @@ impl fmt::Display for State {
 
 /// The states of a robot. Those whose positions do not let the loops close are left out.
 pub(super) fn states(robot: &Robot, arm: &DynArm) -> impl Iterator<Item = State> {
-    (0..STATES).filter_map(|index| State::of(robot, arm, index, |number| number))
-}
-
-/// Each state, and the same one where each number is another by about this part of it.
-pub(super) fn moved_states<const PART: u64>(robot: &Robot, arm: &DynArm) -> impl Iterator<Item = [State; 2]> {
-    (0..STATES).filter_map(|index| {
-        let changes = Random::new(index, |number| number);
-        let moved = move |number: f64| number * (1.0 + changes.number(1.0) / (PART as f64));
-        Some([State::of(robot, arm, index, |number| number)?, State::of(robot, arm, index, moved)?])
-    })
+    (0..STATES).filter_map(|index| State::of(robot, arm, index))
 }
 
 impl State {
-    fn of(robot: &Robot, arm: &DynArm, index: u64, moved: impl Fn(f64) -> f64) -> Option<Self> {
+    fn of(robot: &Robot, arm: &DynArm, index: u64) -> Option<Self> {
         let random = Random::new(0x5EED + index, |number| number);
-        let number = |limit: f64| moved(random.number(limit));
-        let list = |limit: f64| (0..arm.dof() - arm.passive_joints()).map(|_| number(limit)).collect::<Vec<_>>();
-        let three = |limit: f64| array::from_fn(|_| number(limit));
+        let list = |limit: f64| (0..arm.dof() - arm.passive_joints()).map(|_| random.number(limit)).collect::<Vec<_>>();
         let [mut q, qd, qdd, tau] = JOINTS.map(list);
         let passive = closed(robot, arm, &mut q)?;
-        let (sin, cos) = q.iter().map(|q| q.sin_cos()).unzip();
-        let wrenches = arm.tips().iter().map(|_| Wrench { force: three(10.0), moment: three(10.0) }).collect();
-        let turn = [0.5, -0.1, 0.7, 0.4].map(&moved);
-        let length = turn.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let turned = Quaternion::from_wxyz(turn.map(|x| x / length)).rotation();
+        let (sin, cos) = q.iter().map(|&q| Scalar::sin_cos(q)).unzip();
+        let wrenches = arm.tips().iter().map(|_| random.wrench()).collect();
+        let turned = Quaternion::from_wxyz([0.5, -0.1, 0.7, 0.5]).rotation();
         Some(Self {
-            sin,
-            cos,
-            passive,
-            wrenches,
-            payload: Payload { mass: moved(1.5 + random.number(1.0)), com: three(0.1), ..Payload::default() },
-            base: BaseMotion {
-                omega: three(1.0),
-                omega_dot: three(2.0),
-                velocity: three(1.0),
-                acceleration: three(5.0),
-                gravity: three(10.0),
-            },
-            twist: BaseTwist { linear: three(1.0), angular: three(1.0) },
-            pose: Pose { rotation: turned, translation: three(1.0) },
             q,
             qd,
             qdd,
             tau,
+            sin,
+            cos,
+            passive,
+            wrenches,
+            payload: random.payload(),
+            base: BaseMotion { velocity: random.array(1.0), ..random.base() },
+            twist: BaseTwist { linear: random.array(1.0), angular: random.array(1.0) },
+            pose: Pose { rotation: turned, translation: random.array(1.0) },
         })
+    }
+
+    /// The state where each number is another one.
+    pub(super) fn changed(&self, by: impl Fn(f64) -> f64) -> Self {
+        let list = |numbers: &[f64]| numbers.iter().map(|&number| by(number)).collect::<Vec<_>>();
+        let three = |numbers: [f64; 3]| numbers.map(&by);
+        let BaseMotion { omega, omega_dot, velocity, acceleration, gravity } = self.base;
+        let Pose { rotation, translation } = self.pose;
+        Self {
+            q: list(&self.q),
+            qd: list(&self.qd),
+            qdd: list(&self.qdd),
+            tau: list(&self.tau),
+            sin: list(&self.sin),
+            cos: list(&self.cos),
+            passive: list(&self.passive),
+            wrenches: (self.wrenches.iter())
+                .map(|wrench| Wrench { force: three(wrench.force), moment: three(wrench.moment) })
+                .collect(),
+            payload: Payload::from_array(self.payload.to_array().map(&by)),
+            base: BaseMotion {
+                omega: three(omega),
+                omega_dot: three(omega_dot),
+                velocity: three(velocity),
+                acceleration: three(acceleration),
+                gravity: three(gravity),
+            },
+            twist: BaseTwist { linear: three(self.twist.linear), angular: three(self.twist.angular) },
+            pose: Pose { rotation: rotation.map(three), translation: three(translation) },
+        }
     }
 
     /// Positions, velocities, accelerations and torques.
