@@ -28,7 +28,7 @@ fn interpreted(code: &Interpreter, function: Function, given: &Inputs<'_, f64>) 
         step: given.step,
         ..Arguments::of_joints(given.q, given.qd, given.qdd, 0.0)
     };
-    code.run(&arguments, |constant| constant, |angle| rne::Scalar::sin_cos(angle)).expect("all arguments")
+    code.run(&arguments, |constant| constant, rne::Scalar::sin_cos).expect("all arguments")
 }
 
 fn of<const N: usize>(numbers: Vec<f64>) -> [f64; N] {

@@ -307,9 +307,10 @@ fn program_call(program: &Program, prefix: &str, passive: &[f32]) -> Result<Call
 
 fn not_called(program: &Program) -> Failure {
     Failure::usage(format_args!(
-        "rne certify cannot call {}: it takes functions that return one number per joint, such as inverse_dynamics and \
-         forward_dynamics, the state after a step, the torques of a floating base, or a step that closes loops. \
-         {TYPED}--observer{TYPED:#} certifies the momentum observer",
+        "rne certify cannot call {}: it takes functions that return one number per joint, such as inverse_dynamics, \
+         gravity_torques and forward_dynamics, also with a payload and wrenches; those that return the state after a \
+         step, or the torques of a floating base; and steps that close loops. {TYPED}--observer{TYPED:#} certifies the \
+         momentum observer",
         program.function
     ))
 }

@@ -115,7 +115,7 @@ impl<'s> Joint<'_, 's> {
     }
 
     /// d_i: J_i → C_i, a constant of the table unless the joint moves it along its axis.
-    pub(crate) fn to_centre(&self) -> Vector<'s> {
+    pub(crate) fn centre(&self) -> Vector<'s> {
         let d = || self.offset(self.link.offset) + self.link.body.com;
         match self.link.kind {
             Revolute => self.lines.name_vector(Quantity::D, d()),

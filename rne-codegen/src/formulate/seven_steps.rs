@@ -145,7 +145,7 @@ pub(crate) fn forward<'s>(arm: &Arm<'s>, states: &[JointState<'s>], base: &Motio
         let turning = turning(&joint, &parent.turning);
         let Turning { rotation, omega, omega_dot } = turning;
         let back = rotation.transpose();
-        let d = joint.to_centre();
+        let d = joint.centre();
 
         // 3   ċ_i = R_iᵀ (ċ_p + ω_p × r_i) + ω_i × d_i (+ q̇_i e: prismatic)
         let of_parent = joint.lines_of_parent().carrying(joint.link.mount.label);
