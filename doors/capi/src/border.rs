@@ -139,9 +139,8 @@ pub unsafe extern "C" fn rne_arm_builtin(name: *const c_char, arm: *mut *mut Arm
     unsafe { made(arm, || Arm::of_name(text(name, "name")?)) }
 }
 
-/// Makes an arm with a frame in the place of the tip: "forward_kinematics", "jacobian", "jacobian_rate_times_velocity",
-/// "wrench_torques", "jacobian_rate" and "jacobian_derivatives" of this arm are those of the frame, and its other
-/// functions those of the tip.
+/// Makes an arm with a frame in the place of the tip: the pose, the Jacobian, its rate and derivatives, and the torques
+/// of a wrench are those of the frame. The other functions of the new arm are those of the tip.
 ///
 /// `frame` is the name of a frame in the list `frames` of the robot file, or the name of a joint for its link frame.
 /// The new arm goes to `*at`, to be freed by rne_arm_free() as `arm` is; either may be freed first. After a failure
