@@ -1,5 +1,5 @@
-//! The tests that a derive writes into a user's crate pass for every shipped robot and for closed loops, in both forms.
-//! The code is interpreted here.
+//! The tests that a derive writes into a user's crate pass for shipped robots, trees and closed loops, in both forms:
+//! for some of them, and with `RNE_EXHAUSTIVE` for all. The code is interpreted here.
 
 use rne::testing::{RobotFile, is_that_of_the_runtime, numbers};
 use rne::{BaseMotion, Inputs};

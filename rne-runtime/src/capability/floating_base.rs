@@ -6,9 +6,9 @@ use crate::{BaseMotion, Scalar};
 #[cfg(feature = "arm")]
 use crate::{at_tip::AtTip, wrench::AllStill as _};
 
-/// The wrench on a base that nothing holds and the torques as a linear function of the inertial parameters, for their
-/// identification from the motion of the robot. `NV` = `DOF` + 6 rows are those of [`FloatingBase`], `BODIES` = `DOF` +
-/// 1.
+/// The regressor of a robot with a floating base. The wrench on the base and the torques are linear in the inertial
+/// parameters, and the regressor is the matrix of this relation. Identification from the motion of the robot needs it.
+/// `NV` = `DOF` + 6 rows are those of [`FloatingBase`], `BODIES` = `DOF` + 1.
 pub trait FloatingRegressor<const DOF: usize, const NV: usize, const BODIES: usize> {
     /// Y: row i of [force, moment, torques](crate::FloatingBase::inverse_dynamics_of_floating_base), with free tips, is
     /// Σ_j Σ_k Y\[i\]\[j\]\[k\] π_jk. The base is the first body, then come the links, each with the ten parameters of
