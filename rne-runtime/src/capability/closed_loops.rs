@@ -2,7 +2,7 @@
 
 #[cfg(doc)]
 use super::{FloatingBase, TipWrenches};
-#[cfg(feature = "arm")]
+#[cfg(all(feature = "arm", feature = "std"))]
 use crate::at_tip::AtTip;
 
 capability! {
