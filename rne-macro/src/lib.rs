@@ -47,7 +47,7 @@ macro_rules! derives {
             expand::capability(Capability::$capability, input.into()).into()
         }
     };
-    ($($capability:ident: $summary:literal $(, $details:literal)?;)*) => {
+    ($($capability:ident $(of $robots:ident)?: $summary:literal $(, $details:literal)?;)*) => {
         $(derives! { @derive $capability $summary $($details)? })*
     };
 }

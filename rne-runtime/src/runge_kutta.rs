@@ -79,14 +79,14 @@ impl<const DOF: usize, R> RungeKuttaStepDerivatives<DOF> for R where
 
 capability! { @counted definition
     /// As [`RungeKuttaStep::runge_kutta_step`].
-    fn runge_kutta_step(q: joints, qd: joints, tau: joints, step: number) -> NextState<DOF> = |robot| {
+    fn runge_kutta_step(q: joints, qd: joints, tau: joints, step: duration) -> NextState<DOF> = |robot| {
         let accelerations =
             |q: &Vec<T>, qd: &Vec<T>| Ok::<_, Infallible>(robot.forward_dynamics([q, qd, tau], AtTip::Nothing));
         let Ok([q, qd]) = steps::runge_kutta_step(accelerations, [&q.to_vec(), &qd.to_vec()], |_| step);
         (q, qd)
     };
     /// As [`RungeKuttaStepDerivatives::runge_kutta_step_derivatives`].
-    fn runge_kutta_step_derivatives(q: joints, qd: joints, tau: joints, step: number)
+    fn runge_kutta_step_derivatives(q: joints, qd: joints, tau: joints, step: duration)
         -> NextStateDerivatives<DOF> = |robot| {
         let accelerations =
             |q: &Vec<T>, qd: &Vec<T>| Ok::<_, Infallible>(robot.forward_dynamics([q, qd, tau], AtTip::Nothing));

@@ -3,7 +3,8 @@
 use crate::named;
 use crate::{Function, Length};
 
-/// Every capability: the trait, what a derive of it says, and more about it. `$callback!` is given the list.
+/// Every capability: the trait, after `of` the robots that alone have it, what a derive of it says, and more about it.
+/// `$callback!` is given the list.
 #[macro_export]
 #[rustfmt::skip]
 macro_rules! capabilities {
@@ -41,39 +42,39 @@ macro_rules! capabilities {
                 "gravity, bias, mass matrix, accelerations, momenta, and derivatives of torques and accelerations, of \
                  the arm with a payload at its tip.",
                 "The payload (mass, centre of mass, inertia) is an argument.";
-            TipWrenches: "torques and accelerations of a robot with a wrench at each tip.",
+            TipWrenches of tips: "torques and accelerations of a robot with a wrench at each tip.",
                 "The tips are the frames of the list `tips` of the robot file; without the list, the tip frame is the \
                  only tip. The struct gets the names of the tips, `TIPS`, and an enum of the tips: for `struct \
                  Torso;` it is `TorsoTip`.";
-            FloatingBase: "the torques of a robot with a floating base, and the wrench that must act on the base.",
+            FloatingBase of floating_bases: "the torques of a robot with a floating base, and the wrench that must act on the base.",
                 "The base is the link `floating_base` of the robot file; a file without that key is an error, unless \
                  the attribute has `allow_lints`: then the base has no mass. The tips are those of \
                  [`TipWrenches`](macro@TipWrenches), whose derive also makes the enum of the tips.";
-            CentroidalMomentum:
+            CentroidalMomentum of floating_bases:
                 "the momentum of a robot with a floating base, about its centre of mass, and its rate.",
                 "The base is the link `floating_base` of the robot file; a file without that key is an error, unless \
                  the attribute has `allow_lints`: then the base has no mass.";
-            FloatingRegressor:
+            FloatingRegressor of floating_bases:
                 "the wrench on a floating base and the torques per inertial parameter of the base and of each link.",
                 "The base is frame 0, whether or not the robot file has a `floating_base`: no inertial parameter \
                  enters.";
-            FloatingEnergy: "kinetic and potential energy with a floating base.",
+            FloatingEnergy of floating_bases: "kinetic and potential energy with a floating base.",
                 "The base is the link `floating_base` of the robot file; a file without that key is an error, unless \
                  the attribute has `allow_lints`: then the base has no mass.";
-            FloatingKinematics: "Jacobians and accelerations of the tips of a robot with a floating base.",
+            FloatingKinematics of floating_bases: "Jacobians and accelerations of the tips of a robot with a floating base.",
                 "The tips are those of [`TipWrenches`](macro@TipWrenches), whose derive also makes the enum of the \
                  tips.";
-            ContactDynamics: "the motion of a robot with a floating base while contacts hold some of its tips.",
+            ContactDynamics of floating_bases: "the motion of a robot with a floating base while contacts hold some of its tips.",
                 "The contacts are those of the list `contacts` of the robot file. The tips are those of \
                  [`TipWrenches`](macro@TipWrenches), whose derive also makes the enum of the tips.";
-            FloatingInverseDynamicsDerivatives: "the derivatives of the wrench on a floating base and of the torques.",
+            FloatingInverseDynamicsDerivatives of floating_bases: "the derivatives of the wrench on a floating base and of the torques.",
                 "The tips are those of [`TipWrenches`](macro@TipWrenches), whose derive also makes the enum of the \
                  tips.";
-            ClosedLoops: "a robot whose file has `loops` with a cut joint.",
+            ClosedLoops of loops: "a robot whose file has `loops` with a cut joint.",
                 "The tips are the frames of the list `tips` of the robot file in its order, or the tip frame alone. \
                  Other derives refuse such a robot; so the constants `DOF`, `NAME`, `JOINT_NAMES` and the limits come \
                  with this one, beside `PASSIVE`, `EQUATIONS` and `PASSIVE_NAMES`.";
-            FloatingClosedLoops: "a robot with closed loops with a floating base.",
+            FloatingClosedLoops of loops: "a robot with closed loops with a floating base.",
                 "It belongs beside [`ClosedLoops`](macro@ClosedLoops), whose functions close the loops, and with \
                  which `DOF`, `PASSIVE`, names and limits come. The tips are the same.";
             InverseDynamicsGradient: "the derivatives of a weighted sum of the torques.";
@@ -85,18 +86,18 @@ macro_rules! capabilities {
                  each joint.";
             EulerStepDerivatives:
                 "the derivatives of a step of the semi-implicit Euler method by positions, velocities and torques.";
-            FloatingEulerStep: "a step of the semi-implicit Euler method with a floating base.",
+            FloatingEulerStep of floating_bases: "a step of the semi-implicit Euler method with a floating base.",
                 "The base is the link `floating_base` of the robot file; a file without that key is an error, unless \
                  the attribute has `allow_lints`: then the base has no mass. The tips are those of `FloatingBase`.";
-            FloatingEulerStepDerivatives:
+            FloatingEulerStepDerivatives of floating_bases:
                 "the derivatives of a step of the semi-implicit Euler method with a floating base.",
                 "The base and the tips are those of `FloatingEulerStep`.";
-            FloatingPayloadDynamics:
+            FloatingPayloadDynamics of floating_bases:
                 "torques, mass matrix, bias and accelerations of a robot with a floating base and a payload that is \
                  known when the program runs.",
                 "The base is the link `floating_base` of the robot file; a file without that key is an error, unless \
                  the attribute has `allow_lints`: then the base has no mass.";
-            ClosedLoopsPayloadDynamics:
+            ClosedLoopsPayloadDynamics of loops:
                 "torques, gravity, bias, mass matrix and accelerations of a robot with closed loops and a payload that \
                  is known when the program runs.",
                 "It belongs beside [`ClosedLoops`](macro@ClosedLoops), whose functions close the loops. The payload \
@@ -106,7 +107,7 @@ macro_rules! capabilities {
 }
 
 macro_rules! capability {
-    ($($capability:ident: $summary:literal $(, $details:literal)?;)*) => {
+    ($($capability:ident $(of $robots:ident)?: $summary:literal $(, $details:literal)?;)*) => {
         named! {
             /// A capability of a robot, named as the trait that a struct derives.
             Capability { $(#[doc = $summary] $capability = stringify!($capability)),* }

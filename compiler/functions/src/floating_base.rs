@@ -117,16 +117,6 @@ pub(crate) const REGRESSOR: Entry = Entry {
     ..Entry::NEW
 };
 
-pub(crate) const KINETIC_ENERGY: Entry = Entry {
-    has_bits_of_runtime: true,
-    output: "energy",
-    answer: Answer::Number("J"),
-    feels_rotors: true,
-    ..Entry::NEW
-};
-
-pub(crate) const POTENTIAL_ENERGY: Entry = Entry { output: "energy", answer: Answer::Number("J"), ..Entry::NEW };
-
 pub(crate) const CENTROIDAL_MOMENTUM: Entry = Entry {
     has_bits_of_runtime: true,
     output: "momentum",

@@ -30,4 +30,4 @@ pub use layout::Layout;
 pub use layout::{Length, Shape, Sizes};
 pub use record::Record;
 pub use table::Function;
-pub use what::What;
+pub use what::{Recursion, What};

@@ -71,6 +71,27 @@ macro_rules! passed {
     };
 }
 
+/// The macro of a struct with all capabilities of an arm with one tip.
+macro_rules! of_arms {
+    ([$($found:ident)*] $capability:ident of $robots:ident: $summary:literal $(, $details:literal)?; $($rest:tt)*) => {
+        of_arms! { [$($found)*] $($rest)* }
+    };
+    ([$($found:ident)*] $capability:ident: $summary:literal $(, $details:literal)?; $($rest:tt)*) => {
+        of_arms! { [$($found)* $capability] $($rest)* }
+    };
+    ([$($found:ident)*]) => {
+        macro_rules! robot {
+            ($form:literal) => {
+                #[derive($($found),*)]
+                #[robot(path = "../../../robots/puma560.yaml", form = $form)]
+                struct Robot;
+            };
+        }
+    };
+    ($($all:tt)*) => { of_arms! { [] $($all)* } };
+}
+rne_functions::capabilities!(of_arms);
+
 /// A module per form with a function per method of a list, and [`each`].
 macro_rules! modules {
     ($($function:ident($($argument:ident: $kind:ident),*))*) => {
@@ -92,14 +113,7 @@ macro_rules! modules {
         pub mod $form {
             use rne::*;
 
-            #[derive(
-                InverseDynamics, MassMatrix, CoriolisMatrix, ForwardDynamics, Kinematics, Energy, CentreOfMass,
-                Regressor, InverseDynamicsDerivatives, JointWrenches, MomentumObserver, MovingBase, Actuation,
-                PayloadDynamics, InverseDynamicsGradient, ForwardDynamicsDerivatives, JacobianDerivatives,
-                InverseDynamicsHessian, EulerStep, EulerStepDerivatives,
-            )]
-            #[robot(path = "../../../robots/puma560.yaml", form = $name)]
-            struct Robot;
+            robot!($name);
 
             $(
                 /// The method of this name.

@@ -1,5 +1,6 @@
 //! The ways in which a function can be written under a plan, and which of them takes the fewest operations.
 
+use rne_functions::Recursion;
 use rne_model::Robot;
 
 use crate::formulate::arm::gravity;
@@ -66,63 +67,28 @@ impl Algorithm {
         let Axes { what, base, load, loops } = function.axes();
         let is_plain = matches!((base, load, loops), (Base::Held, Load::Free, false));
         let carries = matches!(load, Load::Payload);
-        match what {
-            What::InverseDynamics if matches!(base, Base::Moving) => &[],
-            What::InverseDynamics | What::BiasTorques if carries => &[Algorithm::Rnea, Algorithm::UnturnedPayload],
-            What::InverseDynamics
-            | What::InverseDynamicsFromSinCos
-            | What::BiasTorques
-            | What::CoriolisTorques
-            | What::TorqueGradient => &[Algorithm::Rnea],
-            What::GravityTorques if carries => &[Algorithm::Rnea, Algorithm::UnturnedPayload, BY_GROUPS, BY_JOINTS],
-            What::GravityTorques => &[Algorithm::Rnea, BY_GROUPS, BY_JOINTS],
-            What::CoriolisMatrix | What::InverseDynamicsDerivatives | What::TorqueHessian if is_plain => {
+        let Some(recursion) = what.recursion() else { return &[] };
+        match recursion {
+            Recursion::Torques if matches!(base, Base::Moving) => &[],
+            Recursion::Torques if carries => &[Algorithm::Rnea, Algorithm::UnturnedPayload],
+            Recursion::Torques => &[Algorithm::Rnea],
+            Recursion::GravityTorques if carries => {
+                &[Algorithm::Rnea, Algorithm::UnturnedPayload, BY_GROUPS, BY_JOINTS]
+            }
+            Recursion::GravityTorques => &[Algorithm::Rnea, BY_GROUPS, BY_JOINTS],
+            Recursion::Derivatives | Recursion::SecondDerivatives if is_plain => {
                 &[BY_GROUPS, BY_JOINTS, Algorithm::Rnea]
             }
-            What::MassMatrix | What::InverseMassMatrix if is_plain => &[BY_GROUPS, BY_JOINTS, Algorithm::UnitColumns],
-            What::ForwardDynamics | What::InverseMassMatrixTimesTorques | What::EulerStep if is_plain => {
-                &[BY_GROUPS, BY_JOINTS, Algorithm::UnitColumns, ABA[0], ABA[1]]
-            }
-            What::ForwardDynamics | What::InverseMassMatrixTimesTorques | What::EulerStep
-                if !loops && (carries || matches!(base, Base::Floating)) =>
-            {
+            Recursion::MassMatrix if is_plain => &[BY_GROUPS, BY_JOINTS, Algorithm::UnitColumns],
+            Recursion::Accelerations if is_plain => &[BY_GROUPS, BY_JOINTS, Algorithm::UnitColumns, ABA[0], ABA[1]],
+            Recursion::Accelerations if !loops && (carries || matches!(base, Base::Floating)) => {
                 &[BY_GROUPS, BY_JOINTS, ABA[0], ABA[1]]
             }
-            // in the momentum, the first moments behind the joints are gathered
-            What::MomentumAndRate
-            | What::CoriolisMatrix
-            | What::InverseDynamicsDerivatives
-            | What::TorqueHessian
-            | What::MassMatrix
-            | What::InverseMassMatrix
-            | What::ForwardDynamics
-            | What::ForwardDynamicsInContact
-            | What::ForwardDynamicsDerivatives
-            | What::InverseMassMatrixTimesTorques
-            | What::EulerStep
-            | What::EulerStepDerivatives
-            | What::CentroidalMomentumMatrix
-            | What::CentroidalBias
-            | What::CentroidalMomentum => COMPOSITE_BODIES,
-            What::ForwardKinematics
-            | What::LinkPoses
-            | What::Jacobian
-            | What::JacobianRate
-            | What::JacobianRateTimesVelocity
-            | What::JacobianDerivatives
-            | What::TipJacobians
-            | What::TipAccelerations
-            | What::WrenchTorques
-            | What::KineticEnergy
-            | What::PotentialEnergy
-            | What::CentreOfMass
-            | What::CentreOfMassJacobian
-            | What::Regressor
-            | What::JointWrenches
-            | What::ActuatorTorques
-            | What::ClosureStep
-            | What::LoopMap
-            | What::LoopMapRateTimesVelocity => &[],
+            Recursion::Derivatives
+            | Recursion::SecondDerivatives
+            | Recursion::MassMatrix
+            | Recursion::Accelerations
+            | Recursion::CompositeBodies => COMPOSITE_BODIES,
         }
     }
 
@@ -132,12 +98,11 @@ impl Algorithm {
     pub(crate) fn of_robot(function: Function, robot: &Robot) -> Vec<Self> {
         const MANY: usize = 10;
         const FEW: usize = 5;
+        let recursion = function.what().recursion();
         let is_worth = |algorithm: Self| match algorithm {
             Self::UnitColumns => robot.joints.len() < MANY,
-            Self::Rnea if matches!(function.what(), What::CoriolisMatrix | What::InverseDynamicsDerivatives) => {
-                robot.joints.len() < MANY
-            }
-            Self::Rnea if function.what() == What::TorqueHessian => robot.joints.len() < FEW,
+            Self::Rnea if recursion == Some(Recursion::Derivatives) => robot.joints.len() < MANY,
+            Self::Rnea if recursion == Some(Recursion::SecondDerivatives) => robot.joints.len() < FEW,
             Self::Rnea | Self::UnturnedPayload | Self::Crba(_) => true,
             Self::Aba(_) => {
                 !robot.has_rotors() && !robot.has_couplings() && robot.closed.is_empty() && !robot.has_spinning_rotors()
@@ -333,28 +298,8 @@ pub(crate) fn write<'s>(arm: &Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) 
             let OfBase { mass, h, .. } = of_base()?;
             centroid::about_centre(builder, (mass, h), Quantity::LinearMomentum, [force, moment])
         }
-        (
-            What::ForwardKinematics
-            | What::LinkPoses
-            | What::Jacobian
-            | What::JacobianRate
-            | What::JacobianRateTimesVelocity
-            | What::JacobianDerivatives
-            | What::TipJacobians
-            | What::TipAccelerations
-            | What::WrenchTorques
-            | What::KineticEnergy
-            | What::PotentialEnergy
-            | What::CentreOfMass
-            | What::CentreOfMassJacobian
-            | What::Regressor
-            | What::JointWrenches
-            | What::ActuatorTorques
-            | What::ClosureStep
-            | What::LoopMap
-            | What::LoopMapRateTimesVelocity,
-            _,
-        ) => return None,
+        // the table of results says which functions have no recursion
+        _ => return None,
     })
 }
 

@@ -27,37 +27,37 @@ pub trait ClosedLoops<DOF, PASSIVE, EQUATIONS, TIPS> of loops {
 
     /// The map G: velocities of the dependent joints are G q̇, and torques at them are worth Gᵀ of them at the joints
     /// of `q`.
-    fn loop_map(q: coordinates, passive: passive) -> passive_rows = |robot| robot.map(q, passive);
+    fn loop_map(q: coordinates, passive: passive) -> PassiveRows = |robot| robot.map(q, passive);
 
     /// Ġ q̇, rad/s² or m/s²: the accelerations of the dependent joints are G q̈ + Ġ q̇.
-    fn loop_map_rate_times_velocity(q: coordinates, passive: passive, qd: coordinates) -> passive_vector =
+    fn loop_map_rate_times_velocity(q: coordinates, passive: passive, qd: coordinates) -> PassiveVector =
         |robot| robot.map_rate(q, passive, qd);
 
     /// Torques of the joints of `q`, N m or N: the dependent joints have no actuators.
-    fn inverse_dynamics_of_loops(q: coordinates, passive: passive, qd: coordinates, qdd: coordinates) -> vector =
+    fn inverse_dynamics_of_loops(q: coordinates, passive: passive, qd: coordinates, qdd: coordinates) -> Vector =
         |robot| robot.torques_of_loops([q, passive, qd, qdd], &robot.fixed_base(), AtTip::Nothing).tau;
 
     /// Torques when the robot exerts a wrench on its environment at each of its tips, in axes of the tip. The tips are
     /// those of [`TipWrenches`].
     fn inverse_dynamics_of_loops_with_wrenches(
         q: coordinates, passive: passive, qd: coordinates, qdd: coordinates, wrenches: wrenches
-    ) -> vector =
+    ) -> Vector =
         |robot| robot.torques_of_loops([q, passive, qd, qdd], &robot.fixed_base(), AtTip::Wrenches(wrenches)).tau;
 
     /// Torques that hold the robot still against gravity, N m or N.
-    fn gravity_torques_of_loops(q: coordinates, passive: passive) -> vector =
+    fn gravity_torques_of_loops(q: coordinates, passive: passive) -> Vector =
         |robot| robot.gravity_of_loops(q, passive, AtTip::Nothing);
 
     /// Coriolis, centrifugal and gravity torques, N m or N: the torques where the joints of `q` do not accelerate.
-    fn bias_torques_of_loops(q: coordinates, passive: passive, qd: coordinates) -> vector =
+    fn bias_torques_of_loops(q: coordinates, passive: passive, qd: coordinates) -> Vector =
         |robot| robot.bias_of_loops([q, passive, qd], AtTip::Nothing);
 
     /// The mass matrix of the joints of `q`, symmetric to the last bit; kg m², kg m or kg.
-    fn mass_matrix_of_loops(q: coordinates, passive: passive) -> matrix =
+    fn mass_matrix_of_loops(q: coordinates, passive: passive) -> Matrix =
         |robot| robot.mass_of_loops(q, passive, AtTip::Nothing);
 
     /// Accelerations of the joints of `q`, rad/s² or m/s², for their torques `tau`.
-    fn forward_dynamics_of_loops(q: coordinates, passive: passive, qd: coordinates, tau: coordinates) -> vector =
+    fn forward_dynamics_of_loops(q: coordinates, passive: passive, qd: coordinates, tau: coordinates) -> Vector =
         |robot| robot.accelerations_of_loops([q, passive, qd, tau], AtTip::Nothing);
 } with {
     /// Closes the loops from a guess by five steps of Newton's method, without a branch. The result has the residual of
@@ -90,26 +90,26 @@ pub trait ClosedLoopsPayloadDynamics<DOF, PASSIVE> of loops {
     /// Torques, N m or N. See [`inverse_dynamics_of_loops`](ClosedLoops::inverse_dynamics_of_loops).
     fn inverse_dynamics_of_loops_with_payload(
         q: coordinates, passive: passive, qd: coordinates, qdd: coordinates, payload: payload
-    ) -> vector =
+    ) -> Vector =
         |robot| robot.torques_of_loops([q, passive, qd, qdd], &robot.fixed_base(), AtTip::Payload(payload)).tau;
 
     /// Torques that hold the robot and the payload still against gravity, N m or N.
-    fn gravity_torques_of_loops_with_payload(q: coordinates, passive: passive, payload: payload) -> vector =
+    fn gravity_torques_of_loops_with_payload(q: coordinates, passive: passive, payload: payload) -> Vector =
         |robot| robot.gravity_of_loops(q, passive, AtTip::Payload(payload));
 
     /// Coriolis, centrifugal and gravity torques, N m or N. See
     /// [`bias_torques_of_loops`](ClosedLoops::bias_torques_of_loops).
     fn bias_torques_of_loops_with_payload(q: coordinates, passive: passive, qd: coordinates, payload: payload)
-        -> vector = |robot| robot.bias_of_loops([q, passive, qd], AtTip::Payload(payload));
+        -> Vector = |robot| robot.bias_of_loops([q, passive, qd], AtTip::Payload(payload));
 
     /// The mass matrix, symmetric to the last bit. See [`mass_matrix_of_loops`](ClosedLoops::mass_matrix_of_loops).
-    fn mass_matrix_of_loops_with_payload(q: coordinates, passive: passive, payload: payload) -> matrix =
+    fn mass_matrix_of_loops_with_payload(q: coordinates, passive: passive, payload: payload) -> Matrix =
         |robot| robot.mass_of_loops(q, passive, AtTip::Payload(payload));
 
     /// Accelerations, rad/s² or m/s². See [`forward_dynamics_of_loops`](ClosedLoops::forward_dynamics_of_loops).
     fn forward_dynamics_of_loops_with_payload(
         q: coordinates, passive: passive, qd: coordinates, tau: coordinates, payload: payload
-    ) -> vector = |robot| robot.accelerations_of_loops([q, passive, qd, tau], AtTip::Payload(payload));
+    ) -> Vector = |robot| robot.accelerations_of_loops([q, passive, qd, tau], AtTip::Payload(payload));
 }
 }
 
@@ -128,7 +128,7 @@ pub trait FloatingClosedLoops<DOF, PASSIVE, NV, TIPS> of loops {
 
     /// The mass matrix of the base and of the joints of `q`, symmetric to the last bit. See
     /// [`floating_mass_matrix`](crate::FloatingBase::floating_mass_matrix).
-    fn floating_mass_matrix_of_loops(q: coordinates, passive: passive) -> velocity_matrix =
+    fn floating_mass_matrix_of_loops(q: coordinates, passive: passive) -> FloatingMatrix =
         |robot| robot.floating_mass_of_loops(q, passive);
 
     /// Accelerations of the base and of the joints of `q` for torques of these joints, while the wrenches and gravity

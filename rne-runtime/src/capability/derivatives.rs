@@ -70,12 +70,12 @@ pub trait JacobianDerivatives<DOF> {
     /// J̇ at velocities `qd` (rad/s, prismatic: m/s): linear rows in m/s² per rad/s or m/s, angular ones in rad/s² per
     /// rad/s or m/s. J̇ q̇ alone is [`jacobian_rate_times_velocity`](crate::Kinematics::jacobian_rate_times_velocity),
     /// in fewer operations.
-    fn jacobian_rate(q: joints, qd: joints) -> rows6 = |robot| robot.jacobian_rate(q, qd);
+    fn jacobian_rate(q: joints, qd: joints) -> SpatialRows = |robot| robot.jacobian_rate(q, qd);
 
     /// ∂J/∂q: element (r, i, j) is that of element (r, i) of J by the position of joint j, per rad or m.
     ///
     /// The first three matrices, the second derivatives of the position of the tip, are symmetric. J̇ is the sum over j
     /// of element (r, i, j) times q̇_j.
-    fn jacobian_derivatives(q: joints) -> matrices6 = |robot| robot.jacobian_derivatives(q);
+    fn jacobian_derivatives(q: joints) -> SpatialMatrices = |robot| robot.jacobian_derivatives(q);
 }
 }

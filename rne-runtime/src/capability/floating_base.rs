@@ -52,14 +52,14 @@ pub trait FloatingBase<DOF, NV, TIPS> {
     /// Symmetric to the last bit. The block of the joints is the [mass matrix](crate::MassMatrix::mass_matrix) of the
     /// robot whose base is held. Elements that no state makes differ from zero are zero: those of joints on different
     /// branches, and of the base.
-    fn floating_mass_matrix(q: joints) -> velocity_matrix = |robot| robot.floating_mass_matrix(q, AtTip::Nothing);
+    fn floating_mass_matrix(q: joints) -> FloatingMatrix = |robot| robot.floating_mass_matrix(q, AtTip::Nothing);
 
     /// The wrench on the base, force (N) above moment (N m), and the torques (N m or N) that a motion without
     /// accelerations needs, a - g = 0, ω̇ = 0, q̈ = 0: velocity products, and what wrenches at the tips ask. No
     /// friction, as in [`bias_torques`](crate::InverseDynamics::bias_torques).
     ///
     /// `omega`: angular velocity of the base, rad/s, in axes of frame 0.
-    fn floating_bias(q: joints, qd: joints, omega: omega, wrenches: wrenches) -> velocities =
+    fn floating_bias(q: joints, qd: joints, omega: omega, wrenches: wrenches) -> FloatingVector =
         |robot| robot.floating_bias([q, qd], omega, AtTip::Wrenches(wrenches));
 
     /// The accelerations that follow from torques, where nothing but gravity and the wrenches at the tips acts on the
@@ -86,12 +86,12 @@ pub trait FloatingPayloadDynamics<DOF, NV> {
 
     /// The mass matrix of `NV` rows and columns. See
     /// [`floating_mass_matrix`](crate::FloatingBase::floating_mass_matrix).
-    fn floating_mass_matrix_with_payload(q: joints, payload: payload) -> velocity_matrix =
+    fn floating_mass_matrix_with_payload(q: joints, payload: payload) -> FloatingMatrix =
         |robot| robot.floating_mass_matrix(q, AtTip::Payload(payload));
 
     /// The wrench on the base, force (N) above moment (N m), and the torques (N m or N) of a motion without
     /// accelerations. See [`floating_bias`](crate::FloatingBase::floating_bias).
-    fn floating_bias_torques_with_payload(q: joints, qd: joints, omega: omega, payload: payload) -> velocities =
+    fn floating_bias_torques_with_payload(q: joints, qd: joints, omega: omega, payload: payload) -> FloatingVector =
         |robot| robot.floating_bias([q, qd], omega, AtTip::Payload(payload));
 
     /// The accelerations that follow from torques, where nothing but gravity acts on the robot. See
@@ -111,18 +111,18 @@ pub trait CentroidalMomentum<DOF, NV> {
     ///
     /// Source: D. E. Orin, A. Goswami, S.-H. Lee, "Centroidal dynamics of a humanoid robot", 2013. A robot without mass
     /// gives numbers that are not finite.
-    fn centroidal_momentum_matrix(q: joints) -> velocity_rows = |robot| robot.centroidal_momentum_matrix(q);
+    fn centroidal_momentum_matrix(q: joints) -> FloatingRows = |robot| robot.centroidal_momentum_matrix(q);
 
     /// The rate of this momentum when the accelerations (a - g, ω̇, q̈) are zero: force (N), then moment about the
     /// centre of mass (N m). A times the accelerations, plus this rate, is what acts on the robot beside gravity.
     ///
     /// `omega`: angular velocity of the base, rad/s.
-    fn centroidal_bias(q: joints, qd: joints, omega: omega) -> six = |robot| robot.centroidal_bias(q, qd, omega);
+    fn centroidal_bias(q: joints, qd: joints, omega: omega) -> Spatial = |robot| robot.centroidal_bias(q, qd, omega);
 
     /// The momentum A v (N s), then the angular momentum about the centre of mass (N m s), without the matrix.
     ///
     /// `twist`: velocity of the origin of frame 0, m/s, and angular velocity of the base, rad/s.
-    fn centroidal_momentum(q: joints, qd: joints, twist: twist) -> six = |robot| {
+    fn centroidal_momentum(q: joints, qd: joints, twist: twist) -> Spatial = |robot| {
         let [q, qd] = [q, qd].map(|values| robot.of_joints(values));
         robot.mechanism.centroidal_momentum(q.as_ref(), qd.as_ref(), twist)
     };
@@ -136,7 +136,7 @@ pub trait FloatingEnergy<DOF> {
     /// in an arm with its rotors.
     ///
     /// `twist`: velocity of the origin of frame 0, m/s, and angular velocity of the base, rad/s, in axes of frame 0.
-    fn floating_kinetic_energy(q: joints, qd: joints, twist: twist) -> number =
+    fn floating_kinetic_energy(q: joints, qd: joints, twist: twist) -> Number =
         |robot| robot.kinetic(q, qd, Some(twist));
 
     /// Potential energy -Σ m g·c, J, with c from the origin of the world to each centre of mass: zero where all masses
@@ -144,7 +144,7 @@ pub trait FloatingEnergy<DOF> {
     ///
     /// `pose` of frame 0 in the world, whose axes are those in which the robot file has gravity. Where `pose` is no
     /// rotation and no translation, this is the [potential energy](crate::Energy::potential_energy).
-    fn floating_potential_energy(q: joints, pose: pose) -> number =
+    fn floating_potential_energy(q: joints, pose: pose) -> Number =
         |robot| robot.mechanism.floating_potential(robot.of_joints(q).as_ref(), pose);
 }
 }
@@ -165,7 +165,7 @@ pub trait FloatingKinematics<DOF, NV, TIPS> {
     /// then the angular velocity of its link, rad/s.
     ///
     /// Elements that no state makes differ from zero are zero: those of joints that do not move the tip.
-    fn tip_jacobians(q: joints, base_rotation: rotation) -> tip_rows =
+    fn tip_jacobians(q: joints, base_rotation: rotation) -> TipRows =
         |robot| robot.each_tip(|tip| robot.tip_jacobian(q, base_rotation, tip));
 
     /// J̇ v of each tip: the classical acceleration of its origin, m/s², then its angular acceleration, rad/s², where
@@ -173,7 +173,7 @@ pub trait FloatingKinematics<DOF, NV, TIPS> {
     /// zero. At other accelerations, those of the tip are its Jacobian times them, plus this.
     ///
     /// `omega`: angular velocity of the base, rad/s, in axes of frame 0. The linear velocity of the base has no part.
-    fn tip_accelerations(q: joints, qd: joints, omega: omega, base_rotation: rotation) -> tip_vectors =
+    fn tip_accelerations(q: joints, qd: joints, omega: omega, base_rotation: rotation) -> TipVectors =
         |robot| robot.each_tip(|tip| robot.tip_acceleration([q, qd], omega, base_rotation, tip));
 }
 }

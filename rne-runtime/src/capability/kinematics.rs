@@ -10,30 +10,30 @@ capability! {
 /// there.
 pub trait Kinematics<DOF> {
     /// The pose of the tip frame (`tool` included) in the world.
-    fn forward_kinematics(q: joints) -> a_pose =
+    fn forward_kinematics(q: joints) -> Pose =
         |robot| robot.mechanism.tip_pose(robot.of_joints(q).as_ref());
 
     /// The poses of the link frames of the table in the world: at the far end of link i in a standard table, on joint i
     /// in a modified one. The tool is not included.
-    fn link_poses(q: joints) -> poses =
+    fn link_poses(q: joints) -> Poses =
         |robot| robot.coordinates.only(robot.mechanism.link_poses(robot.of_joints(q).as_ref()));
 
     /// The geometric Jacobian: J q̇ is the velocity of the tip frame's origin (three rows, m/s) above the angular
     /// velocity of the last link (three rows, rad/s), in world axes.
     ///
     /// Column i of a revolute joint is z_i × (p_tip - p_i) above z_i, of a prismatic one z_i above 0.
-    fn jacobian(q: joints) -> rows6 = |robot| robot.jacobian(q);
+    fn jacobian(q: joints) -> SpatialRows = |robot| robot.jacobian(q);
 
     /// J̇ q̇: acceleration of the tip frame's origin (m/s²) above angular acceleration of the last link (rad/s²) at q̈
     /// = 0, in world axes. At any other q̈ they are J q̈ + J̇ q̇.
-    fn jacobian_rate_times_velocity(q: joints, qd: joints) -> six = |robot| {
+    fn jacobian_rate_times_velocity(q: joints, qd: joints) -> Spatial = |robot| {
         let [q, qd] = [q, qd].map(|values| robot.of_joints(values));
         robot.mechanism.jacobian_rate_times_velocity(q.as_ref(), qd.as_ref())
     };
 
     /// Jᵀ w: the torques (N m, prismatic: N) by which the joints make the last link exert `wrench` on its environment
     /// at the tip, in tip axes. They are the difference between `inverse_dynamics_with_wrench` and `inverse_dynamics`.
-    fn wrench_torques(q: joints, wrench: wrench) -> vector or |this| {
+    fn wrench_torques(q: joints, wrench: wrench) -> Vector or |this| {
         let (jacobian, Pose { rotation, .. }) = (this.jacobian(q), this.forward_kinematics(q));
         let turned = |[x, y, z]: [T; 3]| rotation.map(|[a, b, c]| a * x + b * y + c * z);
         let ([fx, fy, fz], [nx, ny, nz]) = (turned(wrench.force), turned(wrench.moment));

@@ -16,14 +16,14 @@ pub trait MassMatrix<DOF> {
     ///
     /// Symmetric to the last bit, positive semidefinite; definite unless links are massless. No rotor inertia,
     /// unless the arm is taken with its rotors (`#[robot(rotors)]`, `with_rotors`): then G² Jm stands on the diagonal.
-    fn mass_matrix(q: joints) -> matrix = |robot| robot.mass_matrix(q, AtTip::Nothing);
+    fn mass_matrix(q: joints) -> Matrix = |robot| robot.mass_matrix(q, AtTip::Nothing);
 
     /// M(q)⁻¹: element (i, j) is the acceleration of joint i for a unit torque at joint j, from rest and without
     /// gravity.
     ///
     /// Symmetric to the last bit. A singular mass matrix (a joint that moves nothing) gives numbers that are not
     /// finite, and never panics.
-    fn inverse_mass_matrix(q: joints) -> matrix or |this| {
+    fn inverse_mass_matrix(q: joints) -> Matrix or |this| {
         inverse_of(this.mass_matrix(q), &[T::zero(); DOF])
     } = |robot| robot.inverse_mass_matrix(q, AtTip::Nothing);
 
@@ -32,7 +32,7 @@ pub trait MassMatrix<DOF> {
     /// (N m s), for example, which change the velocities.
     ///
     /// A singular mass matrix (a joint that moves nothing) gives numbers that are not finite, and never panics.
-    fn inverse_mass_matrix_times_torques(q: joints, tau: joints) -> vector or |this| {
+    fn inverse_mass_matrix_times_torques(q: joints, tau: joints) -> Vector or |this| {
         let (mut m, mut inverse, mut x) = (this.mass_matrix(q), [T::zero(); DOF], *tau);
         factor(&mut m, &mut inverse);
         solve(&m, &inverse, &mut x);
@@ -47,14 +47,14 @@ pub trait CoriolisMatrix<DOF> {
     /// C(q, q̇), row = torque. Of the matrices that give the same C q̇ it is Christoffel's, C_ij = ½ Σ_k (∂M_ij/∂q_k +
     /// ∂M_ik/∂q_j - ∂M_jk/∂q_i) q̇_k: Ṁ - 2C is skew, Ṁ = C + Cᵀ, and C is half the derivative of C q̇ with respect to
     /// q̇.
-    fn coriolis_matrix(q: joints, qd: joints) -> matrix = |robot| {
+    fn coriolis_matrix(q: joints, qd: joints) -> Matrix = |robot| {
         let [q, qd] = [q, qd].map(|values| robot.of_joints(values));
         robot.coordinates.matrix(robot.mechanism.coriolis_matrix(q.as_ref(), qd.as_ref()))
     };
 
     /// Coriolis and centrifugal torques C(q, q̇) q̇, N m (prismatic: N): the bias torques without gravity. Every matrix
     /// C gives the same; generated code needs none.
-    fn coriolis_torques(q: joints, qd: joints) -> vector or |this| {
+    fn coriolis_torques(q: joints, qd: joints) -> Vector or |this| {
         let row = |row: [T; DOF]| row.iter().zip(qd).fold(T::zero(), |sum, (c, rate)| sum + *c * *rate);
         this.coriolis_matrix(q, qd).map(row)
     } = |robot| {
@@ -74,7 +74,7 @@ pub trait ForwardDynamics<DOF> {
     /// Accelerations q̈ = M(q)⁻¹ (τ - C(q, q̇) q̇ - g(q)) with a free tip, rad/s² or m/s².
     ///
     /// A singular mass matrix (a joint that moves nothing) gives numbers that are not finite, and never panics.
-    fn forward_dynamics(q: joints, qd: joints, tau: joints) -> vector =
+    fn forward_dynamics(q: joints, qd: joints, tau: joints) -> Vector =
         |robot| robot.forward_dynamics([q, qd, tau], AtTip::Nothing);
 }
 }
@@ -84,11 +84,11 @@ capability! {
 /// is taken with them: `#[robot(rotors)]`, `with_rotors`.
 pub trait Energy<DOF> {
     /// ½ q̇ᵀ M(q) q̇, as ½ Σ (m ċ·ċ + ω·Iω).
-    fn kinetic_energy(q: joints, qd: joints) -> number = |robot| robot.kinetic(q, qd, None);
+    fn kinetic_energy(q: joints, qd: joints) -> Number = |robot| robot.kinetic(q, qd, None);
 
     /// -Σ m g·c, with c from the origin of frame 0 to each centre of mass: zero where all masses are there. Where the
     /// base stands in the world does not matter.
-    fn potential_energy(q: joints) -> number = |robot| robot.mechanism.potential(robot.of_joints(q).as_ref());
+    fn potential_energy(q: joints) -> Number = |robot| robot.mechanism.potential(robot.of_joints(q).as_ref());
 }
 }
 
@@ -97,10 +97,10 @@ capability! {
 /// included. An arm without mass gives numbers that are not finite.
 pub trait CentreOfMass<DOF> {
     /// Σ m c / Σ m, m.
-    fn centre_of_mass(q: joints) -> triple = |robot| robot.mechanism.mass_centre(robot.of_joints(q).as_ref());
+    fn centre_of_mass(q: joints) -> Point = |robot| robot.mechanism.mass_centre(robot.of_joints(q).as_ref());
 
     /// Its Jacobian: J q̇ is the velocity of the centre of mass, m/s, in world axes.
-    fn centre_of_mass_jacobian(q: joints) -> rows3 =
+    fn centre_of_mass_jacobian(q: joints) -> PointRows =
         |robot| robot.coordinates.rows(robot.mechanism.mass_centre_jacobian(robot.of_joints(q).as_ref()));
 }
 }
@@ -113,7 +113,7 @@ pub trait Regressor<DOF> {
     ///
     /// They refer to the link frame of the table: c and J from its origin, in its axes; Jxy is the tensor's element, -∫
     /// x y dm.
-    fn regressor(q: joints, qd: joints, qdd: joints) -> regressor =
+    fn regressor(q: joints, qd: joints, qdd: joints) -> Regressor =
         |robot| robot.regressor([q, qd, qdd], &robot.fixed_base()).1;
 }
 }

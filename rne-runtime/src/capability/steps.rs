@@ -18,7 +18,7 @@ pub trait EulerStep<DOF> {
     /// The tip is free, and joints have no friction and no limits. A singular mass matrix (a joint that moves nothing)
     /// gives numbers that are not finite. Source: E. Hairer, C. Lubich, G. Wanner, "Geometric numerical integration",
     /// 2006, section I.1.2.
-    fn euler_step(q: joints, qd: joints, tau: joints, step: number) -> NextState<DOF> = |robot| {
+    fn euler_step(q: joints, qd: joints, tau: joints, step: duration) -> NextState<DOF> = |robot| {
         let [position, rate] = [q, qd].map(|x| robot.list(x));
         let next = moved(&rate, &robot.forward_dynamics([q, qd, tau], AtTip::Nothing), step);
         (moved(&position, &next, step), next)
@@ -33,7 +33,7 @@ pub trait EulerStepDerivatives<DOF> {
     /// h times those of the accelerations, those of the positions are 1 + h times those of the next velocities.
     ///
     /// They are exact up to rounding. `step` is the duration h, s.
-    fn euler_step_derivatives(q: joints, qd: joints, tau: joints, step: number) -> NextStateDerivatives<DOF> = |robot| {
+    fn euler_step_derivatives(q: joints, qd: joints, tau: joints, step: duration) -> NextStateDerivatives<DOF> = |robot| {
         let (dq, dqd, dtau) = robot.acceleration_derivatives([q, qd, tau], AtTip::Nothing, AtTip::Nothing);
         let rates = moved_by(RATE, &[dq, dqd, dtau], step);
         let [by_q, by_qd, by_tau] = moved_by(POSITION, &rates, step);
@@ -60,7 +60,7 @@ pub trait FloatingEulerStep<DOF, TIPS> {
     /// higher order than that of the method. The rotation after the step is orthogonal to rounding, however many steps
     /// came before. A `pose` that is no rotation, or a base without mass, gives numbers without a meaning.
     fn floating_euler_step(
-        q: joints, qd: joints, tau: joints, pose: pose, twist: twist, step: number, wrenches: wrenches
+        q: joints, qd: joints, tau: joints, pose: pose, twist: twist, step: duration, wrenches: wrenches
     ) -> FloatingNextState<DOF> = |robot| {
         let (base, qdd) = robot.floating_forward_dynamics([q, qd, tau], &twist.angular, AtTip::Wrenches(wrenches));
         let (pose, twist) = next_of_base((pose, twist), &base, &robot.mechanism.gravity.map(S::to), step);
@@ -81,7 +81,7 @@ pub trait FloatingEulerStepDerivatives<DOF, NV, TIPS> {
     /// They are exact up to rounding where `pose` is a rotation. The origin of frame 0 in `pose` has no part, and its
     /// rotation turns gravity alone.
     fn floating_euler_step_derivatives(
-        q: joints, qd: joints, tau: joints, pose: pose, twist: twist, step: number, wrenches: wrenches
+        q: joints, qd: joints, tau: joints, pose: pose, twist: twist, step: duration, wrenches: wrenches
     ) -> FloatingStepDerivatives<DOF, NV> = |robot| {
         let still = wrenches.all_still();
         robot.floating_step_derivatives([q, qd, tau], (pose, twist), step, wrenches, still.as_ref())

@@ -18,29 +18,29 @@ capability! {
 )]
 pub trait InverseDynamics<DOF> {
     /// Torques for positions `q`, velocities `qd` and accelerations `qdd` with a free tip.
-    fn inverse_dynamics(q: joints, qd: joints, qdd: joints) -> vector =
+    fn inverse_dynamics(q: joints, qd: joints, qdd: joints) -> Vector =
         |robot| robot.torques([q, qd, qdd], AtTip::Nothing);
 
     /// Torques when the last link exerts `wrench` on its environment: τ = τ_free + Jᵀ w.
-    fn inverse_dynamics_with_wrench(q: joints, qd: joints, qdd: joints, wrench: wrench) -> vector =
+    fn inverse_dynamics_with_wrench(q: joints, qd: joints, qdd: joints, wrench: wrench) -> Vector =
         |robot| robot.torques([q, qd, qdd], AtTip::Wrench(wrench));
 
     /// Torques when `payload` is fixed to the tip: a mass (kg), its centre (m) and the inertia about it (kg m²), all in
     /// tip-frame axes, known when the program runs. They are those of the arm whose last link has the payload too.
-    fn inverse_dynamics_with_payload(q: joints, qd: joints, qdd: joints, payload: payload) -> vector =
+    fn inverse_dynamics_with_payload(q: joints, qd: joints, qdd: joints, payload: payload) -> Vector =
         |robot| robot.torques([q, qd, qdd], AtTip::Payload(payload));
 
     /// Torques for a caller who has the sines and cosines of the joint positions already, from a CORDIC or a kinematics
     /// pass: `sin[i]` and `cos[i]` are those of `q[i]` of a revolute joint, without the constant part of its angle;
     /// those of a prismatic joint are not used, as `q[i]` of a revolute joint is not.
-    fn inverse_dynamics_from_sin_cos(sin: joints, cos: joints, q: joints, qd: joints, qdd: joints) -> vector =
+    fn inverse_dynamics_from_sin_cos(sin: joints, cos: joints, q: joints, qd: joints, qdd: joints) -> Vector =
         |robot| robot.torques_from_turns([sin, cos], [q, qd, qdd]);
 
     /// Torques that hold the arm still against gravity, τ(q, 0, 0).
-    fn gravity_torques(q: joints) -> vector = |robot| robot.gravity(q, AtTip::Nothing);
+    fn gravity_torques(q: joints) -> Vector = |robot| robot.gravity(q, AtTip::Nothing);
 
     /// Coriolis, centrifugal and gravity torques, τ(q, q̇, 0).
-    fn bias_torques(q: joints, qd: joints) -> vector = |robot| robot.bias(q, qd, AtTip::Nothing);
+    fn bias_torques(q: joints, qd: joints) -> Vector = |robot| robot.bias(q, qd, AtTip::Nothing);
 }
 }
 
@@ -48,7 +48,7 @@ capability! {
 /// Torques on a vehicle, a ship or another robot.
 pub trait MovingBase<DOF> {
     /// Torques with a free tip when frame 0 moves as `base` says, which replaces the robot's own gravity as well.
-    fn inverse_dynamics_on_moving_base(q: joints, qd: joints, qdd: joints, base: motion) -> vector =
+    fn inverse_dynamics_on_moving_base(q: joints, qd: joints, qdd: joints, base: motion) -> Vector =
         |robot| robot.torques_on([q, qd, qdd], base, AtTip::Nothing);
 }
 }
@@ -61,11 +61,11 @@ capability! {
 /// [`inverse_dynamics_with_wrench`](crate::InverseDynamics::inverse_dynamics_with_wrench).
 pub trait TipWrenches<DOF, TIPS> {
     /// Torques, N m or N: τ = τ_free + Σ Jₖᵀ wₖ, with the Jacobian Jₖ of tip k.
-    fn inverse_dynamics_with_wrenches(q: joints, qd: joints, qdd: joints, wrenches: wrenches) -> vector =
+    fn inverse_dynamics_with_wrenches(q: joints, qd: joints, qdd: joints, wrenches: wrenches) -> Vector =
         |robot| robot.torques([q, qd, qdd], AtTip::Wrenches(wrenches));
 
     /// Accelerations, rad/s² or m/s². See [`forward_dynamics`](crate::ForwardDynamics::forward_dynamics).
-    fn forward_dynamics_with_wrenches(q: joints, qd: joints, tau: joints, wrenches: wrenches) -> vector =
+    fn forward_dynamics_with_wrenches(q: joints, qd: joints, tau: joints, wrenches: wrenches) -> Vector =
         |robot| robot.forward_dynamics([q, qd, tau], AtTip::Wrenches(wrenches));
 
     /// ∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics_with_wrenches`, where the wrenches do not change in axes of their tips.
@@ -106,19 +106,19 @@ capability! {
 pub trait PayloadDynamics<DOF> {
     /// Torques that hold the arm and the payload still against gravity, N m or N. See
     /// [`gravity_torques`](crate::InverseDynamics::gravity_torques).
-    fn gravity_torques_with_payload(q: joints, payload: payload) -> vector =
+    fn gravity_torques_with_payload(q: joints, payload: payload) -> Vector =
         |robot| robot.gravity(q, AtTip::Payload(payload));
 
     /// Coriolis, centrifugal and gravity torques, N m or N. See [`bias_torques`](crate::InverseDynamics::bias_torques).
-    fn bias_torques_with_payload(q: joints, qd: joints, payload: payload) -> vector =
+    fn bias_torques_with_payload(q: joints, qd: joints, payload: payload) -> Vector =
         |robot| robot.bias(q, qd, AtTip::Payload(payload));
 
     /// The mass matrix, symmetric to the last bit. See [`mass_matrix`](crate::MassMatrix::mass_matrix).
-    fn mass_matrix_with_payload(q: joints, payload: payload) -> matrix =
+    fn mass_matrix_with_payload(q: joints, payload: payload) -> Matrix =
         |robot| robot.mass_matrix(q, AtTip::Payload(payload));
 
     /// Accelerations, rad/s² or m/s². See [`forward_dynamics`](crate::ForwardDynamics::forward_dynamics).
-    fn forward_dynamics_with_payload(q: joints, qd: joints, tau: joints, payload: payload) -> vector =
+    fn forward_dynamics_with_payload(q: joints, qd: joints, tau: joints, payload: payload) -> Vector =
         |robot| robot.forward_dynamics([q, qd, tau], AtTip::Payload(payload));
 
     /// ∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics_with_payload`. See
@@ -152,7 +152,7 @@ pub trait JointWrenches<DOF> {
     ///
     /// J_i is fixed to link i-1: the origin of frame i-1 in a standard table; in a modified one the foot of the common
     /// normal on axis i. Moment in N m, force in N.
-    fn joint_wrenches(q: joints, qd: joints, qdd: joints) -> loads = |robot| {
+    fn joint_wrenches(q: joints, qd: joints, qdd: joints) -> Wrenches = |robot| {
         let [q, qd, qdd] = [q, qd, qdd].map(|values| robot.of_joints(values));
         robot.coordinates.only(robot.mechanism.joint_wrenches(q.as_ref(), qd.as_ref(), qdd.as_ref()))
     };
@@ -180,7 +180,7 @@ pub trait Actuation<DOF> {
     /// at rest.
     ///
     /// The sign is [`Scalar::by_sign`](crate::Scalar::by_sign), which a scalar of your own must implement for it.
-    fn actuator_torques(qd: joints, qdd: joints) -> vector = |robot| robot.actuator_torques(qd, qdd);
+    fn actuator_torques(qd: joints, qdd: joints) -> Vector = |robot| robot.actuator_torques(qd, qdd);
 
     /// Computes the actuator torques with friction that changes its sign gradually, for optimisers and integrators: s =
     /// q̇ / √(q̇² + width²) in place of the sign, and |G| (½ (Tc⁺ - Tc⁻) s + ½ (Tc⁺ + Tc⁻) s²) for the friction, which
@@ -188,7 +188,7 @@ pub trait Actuation<DOF> {
     ///
     /// `width` > 0 is the velocity (rad/s or m/s) at which s is 0.7. A scalar of your own must implement
     /// [`Scalar::sqrt`](crate::Scalar::sqrt).
-    fn actuator_torques_smooth(qd: joints, qdd: joints, width: number) -> vector or |this| {
+    fn actuator_torques_smooth(qd: joints, qdd: joints, width: duration) -> Vector or |this| {
         let smooth = |value| SmoothSign { value, width };
         this.actuator_torques(&qd.map(smooth), &qdd.map(smooth)).map(|torque| torque.value)
     } = |robot| robot.smooth_torques(qd, qdd, width);
@@ -200,7 +200,7 @@ pub trait Actuation<DOF> {
     /// At the joint of a motor it is G² B + |G| (½ (Tc⁺ - Tc⁻) + (Tc⁺ + Tc⁻) s) ds/dq̇, with ds/dq̇ = width² / (q̇² +
     /// width²)^(3/2). `width` > 0: `actuator_torques` itself has no derivative at rest, and a `width` of zero gives
     /// numbers there that are not finite.
-    fn actuator_torques_smooth_derivatives(qd: joints, width: number) -> matrix or |this| {
+    fn actuator_torques_smooth_derivatives(qd: joints, width: duration) -> Matrix or |this| {
         let still_qdd = [Dual::constant(T::zero()); DOF];
         rows_by(qd, |qd| this.actuator_torques_smooth(qd, &still_qdd, Dual::constant(width)))
     } = |robot| {
