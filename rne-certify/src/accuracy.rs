@@ -62,9 +62,12 @@ static STEP: [f32; 1] = [0.01];
 /// The rotation of the base, by rows.
 pub static BASE_ROTATION: [f32; 9] = [0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6];
 
+/// The rotation of the base, by rows, and the origin of frame 0, m.
+static POSE: [f32; 12] = [0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6, 0.3, -0.2, 0.5];
+
 /// The arrays that are the same at each state: the name, the numbers of the state or of a tip, and a clause about them,
 /// with `{}` in the place of the numbers.
-static SAME: [(&str, &[f32], &str); 12] = [
+static SAME: [(&str, &[f32], &str); 13] = [
     ("payload", &PAYLOAD, "the payload is {}: mass (kg), centre of mass (m), inertia (kg m²)"),
     ("base_omega", &BASE[0], "the base has the angular velocity {} (rad/s)"),
     ("base_omega_dot", &BASE[1], "its angular acceleration is {} (rad/s²)"),
@@ -73,6 +76,7 @@ static SAME: [(&str, &[f32], &str); 12] = [
     ("omega", &BASE[0], "the base has the angular velocity {} (rad/s)"),
     ("twist", &TWIST, "the base has the velocity and the angular velocity {} (m/s, rad/s)"),
     ("base_rotation", &BASE_ROTATION, "the rotation of the base, row by row, is {}"),
+    ("pose", &POSE, "the rotation of the base, row by row, and the origin of frame 0 are {} (1, m)"),
     ("force", WRENCH.split_at(3).0, "the force at the tip is {} (N)"),
     ("moment", WRENCH.split_at(3).1, "the moment at the tip is {} (N m)"),
     ("wrenches", &WRENCH, "the force and the moment at each tip are {} (N, N m)"),
@@ -215,6 +219,7 @@ fn run<T: Real>(
         base: BASE.map(|triple| triple.map(&exactly)),
         velocity: [vx, vy, vz],
         step: exactly(STEP[0]),
+        pose: POSE.map(&exactly),
         base_rotation: BASE_ROTATION.map(&exactly),
         passive: &passive,
         ..Arguments::of_joints(&q, &qd, &last, exactly(0.0))
@@ -232,7 +237,18 @@ mod tests {
     use rne_codegen::{Compiler, Form, Function};
     use rne_model::Robot;
 
-    use super::{Error, Sample, errors};
+    use super::{Error, Sample, errors, same};
+
+    /// A function with an argument that no state of the board has could not be certified.
+    #[test]
+    fn each_argument_is_that_of_a_joint_or_the_same_at_each_state() {
+        const OF_JOINTS: [&str; 8] = ["q", "qd", "qdd", "tau", "multipliers", "sin", "cos", "passive"];
+        for function in Function::ALL {
+            for part in function.arguments().iter().flat_map(|argument| argument.parts()) {
+                assert_ne!(OF_JOINTS.contains(&part.name), same(part.name).is_some(), "{function}: {}", part.name);
+            }
+        }
+    }
 
     /// A pendulum: τ = (I + m c²) q̈ + m g c cos q, by hand.
     const PENDULUM: &str = "{format: 1, name: one, source: doc, convention: standard, gravity: [0, -9.81, 0], joints: [

@@ -42,8 +42,8 @@ pub fn state(number: u32, dof: usize) -> [Vec<f32>; 3] {
     [(); 3].map(|()| (0..dof).map(|_| next()).collect())
 }
 
-/// A call of a function of C that writes its numbers to its last argument.
-#[derive(Clone, Debug, Default)]
+/// A call of a function of C that writes its numbers to its last argument, or returns its only number.
+#[derive(Clone, Debug)]
 pub struct Call {
     /// The name of the function.
     pub function: String,
@@ -54,17 +54,25 @@ pub struct Call {
     pub length: usize,
     /// Lines before the call; `out` is the place of the result.
     pub before: Vec<String>,
-    /// The struct of these numbers, where the result is no array.
-    pub record: Option<String>,
+    /// The type of an element of the result, `float` or a struct of numbers.
+    pub element: String,
+    /// The lengths of the arrays of such elements; none where the result is one struct or one number.
+    pub lengths: Vec<usize>,
 }
 
 impl Call {
+    /// The call of a function that takes no arguments and writes `length` numbers.
+    #[must_use]
+    pub fn new(function: String, length: usize) -> Self {
+        let (arguments, before) = (Vec::new(), Vec::new());
+        Self { function, arguments, length, before, element: "float".to_owned(), lengths: vec![length] }
+    }
+
     /// The call of a function that takes the given members of the state.
     #[must_use]
     pub fn of_arrays(function: &str, arrays: &[&str], length: usize) -> Self {
         let argument = |array: &&str| ("const float *".to_owned(), format!("s->{array}"));
-        let arguments = arrays.iter().map(argument).collect();
-        Self { function: function.to_owned(), arguments, length, ..Self::default() }
+        Self { arguments: arrays.iter().map(argument).collect(), ..Self::new(function.to_owned(), length) }
     }
 }
 
@@ -72,13 +80,15 @@ impl Call {
 /// once, its time and that of a function that does nothing.
 #[must_use]
 pub fn cases(header: &str, dof: usize, call: &Call) -> String {
-    let Call { function, arguments, length, before, record } = call;
-    let (result, place, declared) = match record {
-        Some(record) => (record.as_str(), "&out", "out".to_owned()),
-        None => ("float", "out", format!("out[{length}]")),
+    let Call { function, arguments, length, before, element, lengths } = call;
+    let brackets = |lengths: &[usize]| lengths.iter().map(|length| format!("[{length}]")).collect::<String>();
+    let declared = format!("{element} out{}", brackets(lengths));
+    let pointer = |name: &str| match lengths.get(1..) {
+        Some(rows @ [_, ..]) => format!("{element} (*{name}){}", brackets(rows)),
+        _ => format!("{element} *{name}"),
     };
-    // the members of the struct are numbers, one after another
-    let numbers = if record.is_some() { "(const float *)&out" } else { "out" };
+    let place = if lengths.is_empty() { "&out" } else { "out" };
+    let is_returned = lengths.is_empty() && element == "float";
     let list = |each: &dyn Fn(usize, &(String, String)) -> String| -> String {
         arguments.iter().enumerate().map(|(index, argument)| each(index, argument)).collect()
     };
@@ -86,25 +96,37 @@ pub fn cases(header: &str, dof: usize, call: &Call) -> String {
     // the name of a pointer to arrays stands in its parentheses
     let parameters = list(&|index, (kind, _)| match kind.split_once("(*)") {
         Some((element, lengths)) => format!("{element}(*a{index}){lengths}, "),
-        None => format!("{kind}a{index}, "),
+        None => format!("{kind} a{index}, "),
     });
     let names = list(&|index, _| format!("a{index}, "));
     let voids = list(&|index, _| format!("    (void)a{index};\n"));
     let values = list(&|_, (_, value)| format!("{value}, "));
     let before: String = before.iter().flat_map(|line| ["    ", line, "\n"]).collect();
+    let out = pointer("out");
+    // the arguments of the function itself, what it does to `out`, and its last statement
+    let of_function = |list: &str, out: &str| match is_returned {
+        true => list.trim_end_matches(", ").to_owned(),
+        false => format!("{list}{out}"),
+    };
+    let (returned, into, into_pointer, end) = match is_returned {
+        // any number of a register of the FPU: no instruction loads it
+        true => ("float", "out = ", "*out = ", "float out;\n    __asm__(\"\" : \"=t\"(out));\n    return out;"),
+        false => ("void", "", "", "(void)out;"),
+    };
+    let (types, empty) = (of_function(&types, &pointer("")), of_function(&parameters, &out));
+    let (call, call_measured) = (of_function(&values, place), of_function(&names, "out"));
     format!(
         "#include \"board.h\"\n#include \"{header}\"\n\n\
-         typedef void certified({types}{result} *);\n\n\
-         __attribute__((noinline, noipa)) static void nothing({parameters}{result} *out)\n{{\n{voids}    \
-         (void)out;\n}}\n\n\
+         typedef {returned} certified({types});\n\n\
+         __attribute__((noinline, noipa)) static {returned} nothing({empty})\n{{\n{voids}    {end}\n}}\n\n\
          __attribute__((noinline, noipa)) static void measure(\n    \
-         const char *what, certified *function, {parameters}{result} *out)\n{{\n    \
-         const uint32_t start = timer();\n    function({names}out);\n    const uint32_t end = timer();\n    \
-         print_ticks(what, start, end);\n}}\n\n\
+         const char *what, certified *function, {parameters}{out})\n{{\n    \
+         const uint32_t start = timer();\n    {into_pointer}function({call_measured});\n    \
+         const uint32_t end = timer();\n    print_ticks(what, start, end);\n}}\n\n\
          void run_cases(uint32_t number)\n{{\n    const struct state state = state_of(number, {dof}u);\n    \
-         const struct state *s = &state;\n    {result} {declared};\n\
-         {before}    {function}({values}{place});\n    \
-         print_results(\"results\", number, {numbers}, {length}u);\n    if (number == 0u) {{\n        \
+         const struct state *s = &state;\n    {declared};\n\
+         {before}    {into}{function}({call});\n    \
+         print_results(\"results\", number, (const float *){place}, {length}u);\n    if (number == 0u) {{\n        \
          measure(\"function\", {function}, {values}{place});\n        \
          measure(\"nothing\", nothing, {values}{place});\n    }}\n}}\n"
     )

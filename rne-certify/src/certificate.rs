@@ -337,7 +337,7 @@ impl Certified {
              |---|---|---|---:|---:|---:|\n",
         );
         for NamedError { name, joint, unit, error: Error { largest, bound, state } } in results {
-            let joint = joint.as_deref().unwrap_or("base").replace('|', "\\|");
+            let joint = joint.as_deref().unwrap_or("-").replace('|', "\\|");
             let bound = if *bound == 0.0 { "0".to_owned() } else { format!("{bound:.2e}") };
             let _ = writeln!(text, "| {name} | {joint} | {unit} | {largest:.4} | {bound} | {state} |");
         }

@@ -79,7 +79,7 @@ impl JointFunction {
         });
         let before = vec![format!("const float tau[{dof}] = {{{}}};", torques.collect::<Vec<_>>().join(", "))];
         let arguments = vec![("const float *".to_owned(), "tau".to_owned())];
-        Call { function, arguments, length: dof, before, record: None }
+        Call { arguments, before, ..Call::new(function, dof) }
     }
 
     /// The numbers that [`call`](Self::call) writes at a state.

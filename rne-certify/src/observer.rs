@@ -48,7 +48,7 @@ impl LowPass {
         ];
         let Call { mut arguments, .. } = Call::of_arrays(&update, &["q", "qd", "qdd"], dof);
         arguments.insert(0, (format!("{prefix}_observer *"), "&observer".to_owned()));
-        Call { function: update, arguments, length: dof, before, record: None }
+        Call { arguments, before, ..Call::new(update, dof) }
     }
 
     /// The numbers that [`call`](Self::call) writes at a state; `None` if the interpreter cannot run the program.

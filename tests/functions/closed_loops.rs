@@ -1,5 +1,5 @@
 //! Closed loops: every function of real and of random mechanisms, by every maker, beside golden values that another
-//! program has made by virtual work on the closed kinematics, at 60 digits (`xtask/loops.py`).
+//! program has made by virtual work on the closed kinematics, at 60 digits (`tests/witnesses/loops.py`).
 
 use std::collections::BTreeMap;
 

@@ -51,6 +51,6 @@ impl Derivatives {
         }
         machine::without_flags(cmd!(shell, "cargo build --release --quiet --bin rne")).quiet().run()?;
         let program = machine::target_folder("target")?.join("release").join("rne");
-        Ok(Verdict::from(cmd!(shell, "{python} xtask/derivatives.py {program}").quiet().run().is_ok()))
+        Ok(Verdict::from(cmd!(shell, "{python} tests/witnesses/derivatives.py {program}").quiet().run().is_ok()))
     }
 }

@@ -9,9 +9,9 @@ use crate::machine::{self, Missing};
 
 /// Compares random robots with closed loops with golden values that are made for them
 ///
-/// Planar and spatial mechanisms of one to three loops, with all kinds of cut joints. `xtask/loops.py` draws them and
-/// computes their values by virtual work, beside Pinocchio. The runtime library and both forms must return these to
-/// 1e-9. For each robot, one wrong choice of dependent joints must be refused.
+/// Planar and spatial mechanisms of one to three loops, with all kinds of cut joints. `tests/witnesses/loops.py` draws
+/// them and computes their values by virtual work, beside Pinocchio. The runtime library and both forms must return
+/// these to 1e-9. For each robot, one wrong choice of dependent joints must be refused.
 #[derive(Args)]
 #[command(after_help = "\
 Needs python3 with numpy, mpmath, PyYAML and pin; 500 robots take some minutes.
@@ -41,7 +41,7 @@ impl Loops {
             return Err(Missing::error(format!("{python} has no numpy, mpmath, PyYAML or pin (pip installs them)")));
         }
         let file = machine::target_folder("target")?.join("loops.json");
-        let compute = cmd!(shell, "{python} xtask/loops.py random {count} {file} {processes}");
+        let compute = cmd!(shell, "{python} tests/witnesses/loops.py random {count} {file} {processes}");
         if compute.quiet().run().is_err() {
             return Ok(Verdict::Fails);
         }

@@ -36,9 +36,9 @@ const PAGE: &str = "docs/closed-loops.md";
 /// Counts the operations of robots with branches beside Khalil's algorithm
 ///
 /// Inverse dynamics in the form reduced, on fixed and on floating bases, by the plan files, and the customised
-/// Newton-Euler algorithm with base parameters, from the same robot files. `xtask/tree_counts.py` has the rules of both
-/// counts. With --loops: robots with closed loops beside their spanning trees with a dense projection, by the rules of
-/// `xtask/loop_counts.py`; the table is written to docs/closed-loops.md.
+/// Newton-Euler algorithm with base parameters, from the same robot files. `tests/witnesses/tree_counts.py` has the
+/// rules of both counts. With --loops: robots with closed loops beside their spanning trees with a dense projection, by
+/// the rules of `tests/witnesses/loop_counts.py`; the table is written to docs/closed-loops.md.
 #[derive(Args)]
 #[command(after_help = "\
 Exit status: 1 when a robot needs more operations than its bar. Needs python3 with PyYAML.
@@ -65,7 +65,8 @@ impl TreeCounts {
         machine::without_flags(cmd!(shell, "cargo build --quiet --bin rne")).quiet().run()?;
         let rne = machine::target_folder("target")?.join("debug/rne");
         if self.loops {
-            let counted = cmd!(shell, "python3 xtask/loop_counts.py {rne} {LOOPS...}").quiet().ignore_status();
+            let counted =
+                cmd!(shell, "python3 tests/witnesses/loop_counts.py {rne} {LOOPS...}").quiet().ignore_status();
             let output = counted.output()?;
             let table = String::from_utf8(output.stdout)?;
             print!("{table}");
@@ -76,6 +77,6 @@ impl TreeCounts {
             return Ok(Verdict::from(output.status.success()));
         }
         let files = if self.files.is_empty() { ROBOTS.map(str::to_owned).to_vec() } else { self.files.clone() };
-        Ok(Verdict::from(cmd!(shell, "python3 xtask/tree_counts.py {rne} {files...}").quiet().run().is_ok()))
+        Ok(Verdict::from(cmd!(shell, "python3 tests/witnesses/tree_counts.py {rne} {files...}").quiet().run().is_ok()))
     }
 }

@@ -298,12 +298,20 @@ fn fits_together(arguments: &Arguments) -> Result<(), Failure> {
     let of_joints = |argument: &Argument| {
         matches!(argument, Argument::Positions | Argument::Rates | Argument::Accelerations | Argument::Torques)
     };
+    let returns_numbers = |function: &Function| {
+        let mut shape = function.shape();
+        while let rne_codegen::Shape::Array(_, of) = shape {
+            shape = of;
+        }
+        *shape == rne_codegen::Shape::Number
+    };
+    let in_rust = |of: &&Function| of.arguments().iter().all(of_joints) && returns_numbers(of);
     if arguments.lang != Language::C
-        && let Some(function) = arguments.functions.iter().find(|of| !of.arguments().iter().all(of_joints))
+        && let Some(function) = arguments.functions.iter().find(|of| !in_rust(of))
     {
         return Err(Failure::usage(format_args!(
-            "{TYPED}--lang rust{TYPED:#} certifies functions of joints alone; for {function}, give \
-             {TYPED}--lang c{TYPED:#}"
+            "{TYPED}--lang rust{TYPED:#} certifies functions of joints alone that return a number, a vector or a \
+             matrix; for {function}, give {TYPED}--lang c{TYPED:#}"
         )));
     }
     if arguments.evidence.is_some() {

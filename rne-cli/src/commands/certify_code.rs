@@ -122,15 +122,17 @@ fn link(
 /// The emitted Rust as a library with a function for C for each program.
 fn rust_library(dof: usize, programs: &[Program], calls: &[Call]) -> String {
     let mut text = "#![no_std]\nmod arm;\n".to_owned();
-    for (program, Call { function: symbol, arguments: arrays, length, .. }) in programs.iter().zip(calls) {
+    for (program, Call { function: symbol, arguments: arrays, lengths, .. }) in programs.iter().zip(calls) {
         let list = |element: &dyn Fn(usize) -> String| (0..arrays.len()).map(element).collect::<Vec<_>>().join(", ");
         let parameters = list(&|index| format!("a{index}: &[f32; {dof}]"));
-        let (passed, function) = (list(&|index| format!("a{index}")), program.function);
-        let _ = write!(
-            text,
-            "\n#[unsafe(no_mangle)]\npub extern \"C\" fn {symbol}({parameters}, out: &mut [f32; {length}]) {{\n    \
-             *out = arm::{function}({passed});\n}}\n"
-        );
+        let call = format!("arm::{}({})", program.function, list(&|index| format!("a{index}")));
+        let returned = lengths.iter().rev().fold("f32".to_owned(), |of, length| format!("[{of}; {length}]"));
+        let function = if lengths.is_empty() {
+            format!("fn {symbol}({parameters}) -> f32 {{\n    {call}\n}}")
+        } else {
+            format!("fn {symbol}({parameters}, out: &mut {returned}) {{\n    *out = {call};\n}}")
+        };
+        let _ = writeln!(text, "\n#[unsafe(no_mangle)]\npub extern \"C\" {function}");
     }
     text
 }

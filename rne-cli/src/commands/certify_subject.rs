@@ -5,11 +5,10 @@ use rne_certify::board::{self, Call};
 use rne_certify::certificate::{Accuracy, NamedError};
 use rne_certify::joint_functions::{BEYOND, JointFunction};
 use rne_certify::observer::{self, LowPass};
-use rne_codegen::{Argument, ArgumentArray, Function, Interpreter, Layout, Name, Program, Quantity, Record};
+use rne_codegen::{Argument, ArgumentArray, Function, Interpreter, Layout, Name, Program, Quantity};
 use rne_model::{JointKind, Limits, Robot};
 
 use crate::outcome::Failure;
-use crate::palette::TYPED;
 
 /// A function of the code.
 pub(super) enum Subject<'a> {
@@ -50,7 +49,7 @@ impl Subject<'_> {
             )));
         }
         Ok(match self {
-            Self::Program(program) => program_call(program, prefix, &accuracy::passive(robot))?,
+            Self::Program(program) => program_call(program, prefix, &accuracy::passive(robot)),
             Self::Observer(_, low_pass) => low_pass.call(prefix, dof),
             Self::Joints(function) => function.call(prefix, dof),
         })
@@ -209,33 +208,23 @@ fn fixed(function: Function) -> String {
     words
 }
 
-/// A number that a program returns: its name, its joint and its unit.
+/// A number that a program returns: its name, its joint and its unit; `SI` for an element of a matrix, whose row and
+/// column have units of their own.
 fn named(program: &Program, robot: &Robot, name: Name) -> (String, Option<usize>, &'static str) {
     let joint = name.joint.checked_sub(1);
-    let unit = match (name.quantity, joint) {
-        (Quantity::LinearMomentum, _) => "N s",
-        (Quantity::CentroidalMoment, _) if program.function.takes(Argument::BaseTwist) => "N m s",
-        (Quantity::BaseMoment | Quantity::CentroidalMoment, _) => "N m",
+    let kind = joint.and_then(|joint| robot.joints.get(joint)).map_or(JointKind::Revolute, |joint| joint.row.kind);
+    let is_element = name.by.is_some() || name.indices != [0; 2];
+    let unit = match name.quantity {
+        _ if is_element => "SI",
+        Quantity::LinearMomentum => "N s",
+        Quantity::CentroidalMoment if program.function.takes(Argument::BaseTwist) => "N m s",
         // a distance of two places, or a product of axes
-        (Quantity::Residual, _) => "m or 1",
-        (Quantity::BaseForce, _) | (_, None) => "N",
-        (Quantity::ClosedPosition | Quantity::NextPosition, Some(joint)) => match robot.joints[joint].row.kind {
-            JointKind::Revolute => "rad",
-            JointKind::Prismatic => "m",
+        Quantity::Residual => "m or 1",
+        Quantity::ActuatorTorque => kind.effort_unit(),
+        quantity => match quantity.unit(kind) {
+            "" => "SI",
+            unit => unit,
         },
-        (Quantity::NextRate, Some(joint)) => match robot.joints[joint].row.kind {
-            JointKind::Revolute => "rad/s",
-            JointKind::Prismatic => "m/s",
-        },
-        (Quantity::LoopBias, Some(joint)) => match robot.joints[joint].row.kind {
-            JointKind::Revolute => "rad/s²",
-            JointKind::Prismatic => "m/s²",
-        },
-        (_, Some(joint)) if program.function.returns_accelerations() => match robot.joints[joint].row.kind {
-            JointKind::Revolute => "rad/s²",
-            JointKind::Prismatic => "m/s²",
-        },
-        (_, Some(joint)) => robot.joints[joint].row.kind.effort_unit(),
     };
     let is_of_base = matches!(name.quantity, Quantity::BaseForce | Quantity::BaseMoment | Quantity::Residual);
     (name.to_string(), joint.filter(|_| !is_of_base), unit)
@@ -256,11 +245,11 @@ fn turns(dof: usize, name: &str, of: impl Fn(f32) -> f32) -> String {
 }
 
 /// The call of a function with arrays of a state of the board, and with the arrays that are the same at each state.
-fn program_call(program: &Program, prefix: &str, passive: &[f32]) -> Result<Call, Failure> {
+fn program_call(program: &Program, prefix: &str, passive: &[f32]) -> Call {
     let function = program.function;
     let list = |numbers: &[f32]| numbers.iter().map(|x| format!("{x:?}f")).collect::<Vec<_>>().join(", ");
     let name = format!("{prefix}_{function}");
-    let mut call = Call { function: name, length: program.outputs.len(), ..Call::default() };
+    let mut call = Call::new(name, program.outputs.len());
     for array in program.arrays_without_parameters() {
         let ArgumentArray { name, row, is_number, .. } = &array;
         let (kind, given) = match (*name, row) {
@@ -276,7 +265,7 @@ fn program_call(program: &Program, prefix: &str, passive: &[f32]) -> Result<Call
             (_, row) => {
                 let of_one = match *name {
                     "passive" => passive,
-                    name => accuracy::same(name).ok_or_else(|| not_called(program))?.0,
+                    name => accuracy::same(name).unwrap_or_default().0,
                 };
                 let all = of_one.repeat(array.elements.len() / of_one.len().max(1));
                 let lengths = array.lengths().iter().map(|length| format!("[{length}]")).collect::<Vec<_>>().concat();
@@ -296,21 +285,13 @@ fn program_call(program: &Program, prefix: &str, passive: &[f32]) -> Result<Call
         };
         call.arguments.push((kind, given));
     }
-    match program.layout() {
-        Layout::Array(_, of) if matches!(*of, Layout::Number) => Ok(call),
-        Layout::Record(record @ (Record::FloatingTorques | Record::ClosureStep | Record::NextState), _) => {
-            Ok(Call { record: Some(rne_emit::record_name(prefix, record)), ..call })
-        }
-        _ => Err(not_called(program)),
+    let (mut layout, mut lengths) = (program.layout(), Vec::new());
+    while let Layout::Array(length, of) = layout {
+        lengths.push(length);
+        layout = *of;
     }
-}
-
-fn not_called(program: &Program) -> Failure {
-    Failure::usage(format_args!(
-        "rne certify cannot call {}: it takes functions that return one number per joint, such as inverse_dynamics, \
-         gravity_torques and forward_dynamics, also with a payload and wrenches; those that return the state after a \
-         step, or the torques of a floating base; and steps that close loops. {TYPED}--observer{TYPED:#} certifies the \
-         momentum observer",
-        program.function
-    ))
+    if let Layout::Record(record, _) = layout {
+        call.element = rne_emit::record_name(prefix, record);
+    }
+    Call { lengths, ..call }
 }

@@ -16,6 +16,7 @@ use crate::files::state_results::{self, Results};
 use crate::files::state_table::{PART, Restricted, Table};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, QUIET};
+use crate::values::closure;
 use crate::values::limits::Degrees;
 
 /// A file of states, and where its results go.
@@ -240,8 +241,7 @@ impl Remarks {
         if passive > 0 {
             let definition = DynArm::from_robot(arm.robot());
             self.open.see(before, rows.chunks(width), |row| {
-                let step = definition.closure_step(&row[..dof], &row[dof..dof + passive]);
-                step.is_ok_and(|step| step.residual.iter().any(|left| left.abs() > CLOSED))
+                closure::are_open(&definition, &row[..dof], &row[dof..dof + passive], CLOSED)
             });
         }
     }

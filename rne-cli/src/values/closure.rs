@@ -116,6 +116,11 @@ fn newton(arm: &DynArm, q: &[f64], mut passive: Vec<f64>) -> Option<Vec<f64>> {
     None
 }
 
+/// Whether an equation of the loops has a larger residual than `allowed`, m or a product of axes.
+pub(crate) fn are_open(arm: &DynArm, q: &[f64], passive: &[f64], allowed: f64) -> bool {
+    arm.closure_step(q, passive).is_ok_and(|step| step.residual.iter().any(|left| left.abs() > allowed))
+}
+
 /// The pivots of the equations in the order of elimination, by differences of the residuals. Their product is the
 /// determinant, which changes its sign where an assembly ends or meets another one.
 fn pivots(robot: &Robot, arm: &DynArm, q: &[f64], passive: &[f64]) -> Vec<f64> {

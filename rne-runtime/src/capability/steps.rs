@@ -33,7 +33,8 @@ pub trait EulerStepDerivatives<DOF> {
     /// h times those of the accelerations, those of the positions are 1 + h times those of the next velocities.
     ///
     /// They are exact up to rounding. `step` is the duration h, s.
-    fn euler_step_derivatives(q: joints, qd: joints, tau: joints, step: duration) -> NextStateDerivatives<DOF> = |robot| {
+    fn euler_step_derivatives(q: joints, qd: joints, tau: joints, step: duration)
+        -> NextStateDerivatives<DOF> = |robot| {
         let (dq, dqd, dtau) = robot.acceleration_derivatives([q, qd, tau], AtTip::Nothing, AtTip::Nothing);
         let rates = moved_by(RATE, &[dq, dqd, dtau], step);
         let [by_q, by_qd, by_tau] = moved_by(POSITION, &rates, step);

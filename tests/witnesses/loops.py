@@ -34,7 +34,7 @@ from loops_random import random_robots, wrong_choice
 from loops_robot import STEP, Robot
 
 STATES, RANDOM_STATES, PART = 5, 3, 60
-ROOT = pathlib.Path(__file__).parent.parent
+ROOT = pathlib.Path(__file__).parents[2]
 FOLDER = ROOT / "benches/trees/loops"
 # A position of the independent joints at which the loops close, a guess of the dependent ones, and how far the states
 # are from it. All others are zero.

@@ -138,7 +138,7 @@ class Pair:
 
 
 def main(program, *files):
-    root = pathlib.Path(__file__).parent.parent
+    root = pathlib.Path(__file__).parents[2]
     files = files or [root / "robots" / f"{name}.yaml" for name in SHIPPED] + [
         root / "tests/functions/trees" / f"{name}.yaml" for name in TREES
     ]

@@ -1,4 +1,4 @@
-// Second derivatives of the torques by Pinocchio, whose Python has none: `xtask/derivatives.py` compiles and calls it.
+// Second derivatives of the torques by Pinocchio, whose Python has none: `tests/witnesses/derivatives.py` compiles and calls it.
 //
 // The headers of Pinocchio do all; its library is not linked. The standard input has the robot and states, as numbers:
 //
