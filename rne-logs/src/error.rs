@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::Path;
 
-use crate::remedy::Remedy;
+use crate::remedy::{Remedy, Setting};
 
 /// Why a log cannot be read, or not as it was asked for: the file, the mistake, and remedies as data.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,6 +23,16 @@ impl LogError {
     /// The file is in order and does not have what was asked for, or more must be said.
     pub(crate) fn request(path: &Path, what: impl fmt::Display) -> Self {
         Self { of_request: true, ..Self::file(path, what) }
+    }
+
+    /// The error with an option to give as another remedy.
+    pub(crate) fn give(self, setting: Setting) -> Self {
+        self.remedy(Remedy::Give(setting))
+    }
+
+    /// The error with an option to leave out as another remedy.
+    pub(crate) fn leave_out(self, setting: Setting) -> Self {
+        self.remedy(Remedy::LeaveOut(setting))
     }
 
     /// The error with another remedy.

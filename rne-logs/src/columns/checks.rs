@@ -7,7 +7,7 @@ use crate::columns::quantity::Quantity;
 use crate::columns::unit::{Dimension, Unit};
 use crate::limits::{MOST_JOINTS, work};
 use crate::options::Angles;
-use crate::remedy::{Remedy, Setting};
+use crate::remedy::Setting;
 use crate::spelling::listed;
 use crate::{LogError, Options};
 
@@ -20,7 +20,7 @@ impl<'a> Header<'a> {
             found.len(),
             one.named.quantity.plural()
         );
-        Err(LogError::request(self.path, what).remedy(Remedy::Give(Setting::Prefix)))
+        Err(LogError::request(self.path, what).give(Setting::Prefix))
     }
 
     /// No joint has two columns of one quantity.
@@ -38,7 +38,7 @@ impl<'a> Header<'a> {
                 second.named.quantity.plural(),
                 second.named.joint
             );
-            return Err(LogError::request(self.path, what).remedy(Remedy::Give(Setting::Prefix)));
+            return Err(LogError::request(self.path, what).give(Setting::Prefix));
         }
         Ok(())
     }
@@ -71,7 +71,7 @@ impl<'a> Header<'a> {
                  want only these",
                 self.listed(positions)
             );
-            return Err(LogError::request(self.path, what).remedy(Remedy::Give(Setting::Joints(all))));
+            return Err(LogError::request(self.path, what).give(Setting::Joints(all)));
         }
         for found in others {
             let have = numbers(found);
@@ -144,7 +144,7 @@ impl<'a> Header<'a> {
         };
         if let Some((said, unsaid)) = both(&motions).filter(|_| options.angles == Angles::Unsaid) {
             let what = format!("the name of the column {said} gives a unit, but the name {unsaid} does not");
-            return Err(LogError::request(self.path, what).remedy(Remedy::Give(Setting::Angles)));
+            return Err(LogError::request(self.path, what).give(Setting::Angles));
         }
         if let Some((said, unsaid)) = both(efforts) {
             let what = format!(
@@ -168,7 +168,7 @@ impl<'a> Header<'a> {
             && all_say
         {
             let what = format!("the column {} gives its unit, and so do all other columns", self.name(found));
-            return Err(LogError::request(self.path, what).remedy(Remedy::LeaveOut(Setting::Angles)));
+            return Err(LogError::request(self.path, what).leave_out(Setting::Angles));
         }
         let is_torque = |found: &&Found| matches!(found.dimension(), Some(Dimension::Torque | Dimension::Force));
         if let Some(found) = efforts.first()
@@ -176,7 +176,7 @@ impl<'a> Header<'a> {
             && efforts.iter().all(is_torque)
         {
             let what = format!("the column {} has no current, and no other column has one", self.name(found));
-            return Err(LogError::request(self.path, what).remedy(Remedy::LeaveOut(Setting::TorqueConstants)));
+            return Err(LogError::request(self.path, what).leave_out(Setting::TorqueConstants));
         }
         Ok(())
     }

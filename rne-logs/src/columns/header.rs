@@ -10,7 +10,7 @@ use crate::columns::table::Column;
 use crate::columns::time_column::{TimeColumn, within};
 use crate::columns::unit::{Dimension, Unit};
 use crate::limits::work;
-use crate::remedy::{Remedy, Setting};
+use crate::remedy::Setting;
 use crate::spelling::{instead, listed};
 use crate::{LogError, Options, TimeUnit};
 
@@ -123,13 +123,13 @@ impl<'a> Header<'a> {
     }
 
     pub(crate) fn without_positions(&self) -> LogError {
-        let all = listed(self.names.iter().map(String::as_str));
+        let all = listed(self.names);
         let of_prefix = self.prefix.map_or(String::new(), |prefix| format!(" that begins with {prefix}"));
         let what = format!(
             "no column{of_prefix} has the position of a joint: rne knows names such as q1, q2, … and elbow/position, \
              position.elbow, elbow_position; the columns of this file are {all}"
         );
-        LogError::file(self.path, what).remedy(Remedy::Give(Setting::Map(self.names.to_vec())))
+        LogError::file(self.path, what).give(Setting::Map(self.names.to_vec()))
     }
 
     /// The columns whose names say units that are not of SI.

@@ -57,8 +57,8 @@ pub(crate) fn names_arms(column: &str) -> bool {
 /// The place of a column among the names of a table.
 pub(crate) fn find(path: &Path, names: &[String], column: &str) -> Result<usize, LogError> {
     names.iter().position(|name| name.trim() == column.trim()).ok_or_else(|| {
-        let near = instead(column, names.iter().map(String::as_str));
-        let all = listed(names.iter().map(String::as_str));
+        let near = instead(column, names);
+        let all = listed(names);
         LogError::request(path, format_args!("the table has no column `{column}`{near}; its columns are {all}"))
     })
 }

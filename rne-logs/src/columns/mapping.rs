@@ -61,7 +61,7 @@ impl FromStr for Target {
         };
         let quantity = Quantity::ALL.into_iter().find(|quantity| quantity.word() == word).ok_or_else(|| {
             let words = Quantity::ALL.map(Quantity::word);
-            let near = instead(word, words.into_iter());
+            let near = instead(word, words);
             format!("`{word}` is not a quantity of a joint{near}; the quantities are {}", words.join(", "))
         })?;
         Ok(Self::Joint { joint: joint.to_owned(), quantity })
@@ -93,8 +93,8 @@ impl Mapping {
         let (base, unit) = bracketed(&self.column);
         let found = place(&self.column).or_else(|| unit.and_then(|_| place(base)));
         let Some(found) = found else {
-            let near = instead(base, header.iter().map(String::as_str));
-            let all = listed(header.iter().map(String::as_str));
+            let near = instead(base, header);
+            let all = listed(header);
             return Err(format!(
                 "the table has no column `{}` for {}{near}; its columns are {all}",
                 self.column, self.target

@@ -99,15 +99,14 @@ impl Columns {
 
     /// Remarks: columns with converted units, and columns that are not read.
     pub(crate) fn remarks(&self) -> Vec<String> {
-        let unread = (!self.unread.is_empty())
-            .then(|| format!("columns that are not read: {}", listed(self.unread.iter().map(String::as_str))));
+        let unread = (!self.unread.is_empty()).then(|| format!("columns that are not read: {}", listed(&self.unread)));
         converted(&self.converted).into_iter().chain(unread).chain(self.notes.iter().cloned()).collect()
     }
 }
 
 /// Remark on columns with units other than SI in their names.
 pub(crate) fn converted(names: &[String]) -> Option<String> {
-    let listed = listed(names.iter().map(String::as_str));
+    let listed = listed(names);
     (!names.is_empty()).then(|| format!("rne converts numbers from the units in the names of columns: {listed}"))
 }
 
@@ -132,7 +131,7 @@ fn torques_or_currents<'f>(efforts: &[&'f Found], has_constants: bool) -> Vec<&'
 /// A remark on these names, if there are any.
 pub(crate) fn note(what: &str, names: &[&str], notes: &mut Vec<String>) {
     if !names.is_empty() {
-        notes.push(format!("{what}: {}", listed(names.iter().copied())));
+        notes.push(format!("{what}: {}", listed(names)));
     }
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::columns::name::time;
-use crate::remedy::{Remedy, Setting};
+use crate::remedy::Setting;
 use crate::{LogError, Options, TimeUnit};
 
 /// A column whose name is that of times.
@@ -70,7 +70,7 @@ impl TimeColumn {
             && unit != asked
         {
             let what = format!("the column {said} has times in {}, but you gave {}", unit.name(), asked.name());
-            return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::TimeUnit)));
+            return Err(LogError::request(path, what).leave_out(Setting::TimeUnit));
         }
         // stamp_sec and stamp_nanosec are one time in two columns
         let stem = |name: &'a str| name.rsplit_once('_').map(|(stem, _)| stem);

@@ -10,7 +10,7 @@ use crate::columns::table::{Column, Columns};
 use crate::columns::unit::FileUnits;
 use crate::formats::csv_rows::CsvRows;
 use crate::formats::sample::{Sample, Source};
-use crate::remedy::{Remedy, Setting};
+use crate::remedy::Setting;
 use crate::spelling::listed;
 use crate::{LogError, TimeUnit};
 
@@ -80,9 +80,9 @@ impl CsvTable {
             (Some((place, said)), None) => Clock::Column(place, said.or(options.time_unit).unwrap_or_default()),
             (None, Some(rate)) => Clock::Step(1.0 / rate),
             (None, None) => {
-                let error = no_time(path, header.iter().map(String::as_str));
-                let error = error.remedy(Remedy::Give(Setting::TimeColumn(header.clone())));
-                return Err(error.remedy(Remedy::Give(Setting::Rate)));
+                let error = no_time(path, header);
+                let error = error.give(Setting::TimeColumn(header.clone()));
+                return Err(error.give(Setting::Rate));
             }
         };
         let is_time_unit_known = columns.time.is_none_or(|(_, said)| said.is_some()) || options.time_unit.is_some();
@@ -159,11 +159,7 @@ impl Source for CsvTable {
                 let cell = std::str::from_utf8(cell).unwrap_or_default();
                 unit.parse(cell).ok_or_else(|| {
                     let error = self.wrong(unit.refusal(cell) + of_comma(cell.as_bytes()));
-                    if cell.parse().is_ok_and(f64::is_finite) {
-                        error.remedy(Remedy::Give(Setting::TimeUnit))
-                    } else {
-                        error
-                    }
+                    if cell.parse().is_ok_and(f64::is_finite) { error.give(Setting::TimeUnit) } else { error }
                 })?
             }
             Clock::Step(step) => TimeUnit::step(self.row, step),
@@ -222,7 +218,7 @@ impl Source for CsvTable {
 }
 
 /// Error for a table without times.
-pub(crate) fn no_time<'a>(path: &Path, names: impl Iterator<Item = &'a str>) -> LogError {
+pub(crate) fn no_time(path: &Path, names: impl IntoIterator<Item: AsRef<str>>) -> LogError {
     let what = format!(
         "no column has times: name the column of times time, t, stamp or timestamp; the columns of this file are {}",
         listed(names)
@@ -233,7 +229,7 @@ pub(crate) fn no_time<'a>(path: &Path, names: impl Iterator<Item = &'a str>) -> 
 /// Error for a table with times, if a sampling rate is given.
 pub(crate) fn two_times(path: &Path, name: &str) -> LogError {
     let what = format!("the column {name} has times, but a sampling rate can be given only for tables without times");
-    LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Rate))
+    LogError::request(path, what).leave_out(Setting::Rate)
 }
 
 /// Hint for a number with a decimal comma.

@@ -16,7 +16,7 @@ use crate::formats::parquet_table::ParquetTable;
 use crate::formats::sample::Source;
 #[cfg(feature = "bags")]
 use crate::formats::sqlite_bag::SqliteBag;
-use crate::remedy::{Remedy, Setting};
+use crate::remedy::Setting;
 use crate::{LogError, Options, Target};
 
 /// Format of a log.
@@ -140,7 +140,7 @@ impl Format {
                 let what =
                     format!("rows can be selected only by a column of a table, but the format of this file is {self}");
                 let (column, value) = (column.clone(), value.clone());
-                return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Select { column, value })));
+                return Err(LogError::request(path, what).leave_out(Setting::Select { column, value }));
             }
             source.hold(label::find(path, &columns, column)?, Some(value));
         }
@@ -158,7 +158,7 @@ impl Format {
                 "an order of columns can be given only for arrays of numpy, but this file is {self}, whose columns \
                  have names"
             );
-            return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Columns)));
+            return Err(LogError::request(path, what).leave_out(Setting::Columns));
         }
         if !matches!(self, Self::Csv | Self::Parquet) && !options.map.is_empty() {
             let (what, setting) = if options.map.iter().all(|mapping| mapping.target == Target::Time) {
@@ -167,12 +167,12 @@ impl Format {
                 ("a map of columns can be given only", Setting::Map(Vec::new()))
             };
             let what = format!("{what} for tables, but the format of this file is {self}");
-            return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(setting)));
+            return Err(LogError::request(path, what).leave_out(setting));
         }
         if matches!(self, Self::Sqlite | Self::Mcap) && options.rate.is_some() {
             let what = "a sampling rate can be given only for tables without times, but the messages of this log have \
                         times";
-            return Err(LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Rate)));
+            return Err(LogError::request(path, what).leave_out(Setting::Rate));
         }
         Ok(match self {
             #[cfg(feature = "bags")]
@@ -186,7 +186,7 @@ impl Format {
             #[cfg(not(all(feature = "bags", feature = "parquet")))]
             other => {
                 let error = LogError::file(path, format_args!("this build of rne does not read {other}"));
-                return Err(error.remedy(Remedy::BuildWithFormats));
+                return Err(error.remedy(crate::Remedy::BuildWithFormats));
             }
         })
     }

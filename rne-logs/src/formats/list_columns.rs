@@ -7,7 +7,7 @@ use crate::columns::quantity::Quantity;
 use crate::columns::time_column::within;
 use crate::columns::unit::{Dimension, JointUnits, Unit};
 use crate::options::Angles;
-use crate::remedy::{Remedy, Setting};
+use crate::remedy::Setting;
 use crate::spelling::listed;
 use crate::{LogError, Options};
 
@@ -44,7 +44,7 @@ impl ListColumns {
                     "the columns {first} and {name} are both {}; remove one, or choose a group",
                     quantity.plural()
                 );
-                return Err(LogError::request(path, what).remedy(Remedy::Give(Setting::Prefix)));
+                return Err(LogError::request(path, what).give(Setting::Prefix));
             }
             found.push((quantity, name, unit));
             lists.converted.extend(unit.filter(|unit| !unit.is_si()).map(|_| name.to_owned()));
@@ -63,7 +63,7 @@ impl ListColumns {
         let unsaid = motions().find(|(.., unit)| unit.is_none());
         if let (Some((_, said, _)), Some((_, unsaid, _)), Angles::Unsaid) = (said, unsaid, options.angles) {
             let what = format!("the name of the column {said} gives a unit, but the name {unsaid} does not");
-            return Err(LogError::request(path, what).remedy(Remedy::Give(Setting::Angles)));
+            return Err(LogError::request(path, what).give(Setting::Angles));
         }
         Ok(lists)
     }
@@ -105,9 +105,9 @@ pub(crate) fn names<'a>(
                 let what = format!(
                     "the columns {} all contain names of joints, and none has the name of {position} with another \
                      ending; keep only one of these columns, or choose a group",
-                    listed(several.iter().map(|(_, name)| *name))
+                    listed(several.iter().map(|(_, name)| name))
                 );
-                Err(LogError::request(path, what).remedy(Remedy::Give(Setting::Prefix)))
+                Err(LogError::request(path, what).give(Setting::Prefix))
             }
             place => Ok(place),
         },

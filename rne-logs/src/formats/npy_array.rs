@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::formats::csv_table::no_time;
 use crate::formats::sample::{Sample, Source};
 use crate::limits::MOST_JOINTS;
-use crate::remedy::{Remedy, Setting};
+use crate::remedy::Setting;
 use crate::{LogError, Npy, Options, TimeUnit};
 
 /// Quantities of an array, in their default order.
@@ -54,7 +54,7 @@ impl NpyArray {
         };
         let (places, joints) = places(path, &asked, width)?;
         match (places[0], options.rate) {
-            (None, None) => return Err(no_time(path, asked.into_iter()).remedy(Remedy::Give(Setting::Rate))),
+            (None, None) => return Err(no_time(path, asked).give(Setting::Rate)),
             (Some(_), Some(_)) => {
                 let others: Vec<&str> = asked.iter().copied().filter(|name| *name != QUANTITIES[0]).collect();
                 let what = format!(
@@ -63,8 +63,8 @@ impl NpyArray {
                     asked.join(","),
                     others.join(",")
                 );
-                let error = LogError::request(path, what).remedy(Remedy::LeaveOut(Setting::Rate));
-                return Err(error.remedy(Remedy::Give(Setting::Columns)));
+                let error = LogError::request(path, what).leave_out(Setting::Rate);
+                return Err(error.give(Setting::Columns));
             }
             _ => {}
         }
@@ -110,7 +110,7 @@ impl Source for NpyArray {
                 self.unit.number(time).ok_or_else(|| {
                     let what = self.unit.refusal(&time.to_string());
                     let error = LogError::file(&self.path, format_args!("state {}: {what}", self.read));
-                    if time.is_finite() { error.remedy(Remedy::Give(Setting::TimeUnit)) } else { error }
+                    if time.is_finite() { error.give(Setting::TimeUnit) } else { error }
                 })?
             }
             (None, step) => TimeUnit::step(self.read, step.unwrap_or_default()),
@@ -164,7 +164,7 @@ fn places(path: &Path, columns: &[&str], width: u64) -> Result<([Option<usize>; 
         let said = columns.join(",");
         let what =
             format!("the array has {width} columns, which does not fit the order {said} for any number of joints");
-        return Err(LogError::request(path, what).remedy(Remedy::Give(Setting::Columns)));
+        return Err(LogError::request(path, what).give(Setting::Columns));
     }
     let mut places = [None; 4];
     let mut place = 0;

@@ -19,7 +19,7 @@ use crate::formats::list_columns::{self, ListColumns};
 use crate::formats::parquet_column::{Column, Kind, Leaf};
 use crate::formats::parquet_pages::{Refused, Room, column_reader};
 use crate::formats::sample::{Sample, Source};
-use crate::remedy::{Remedy, Setting};
+use crate::remedy::Setting;
 use crate::{LogError, Options, Target, TimeUnit};
 
 /// Rows that are taken from a column at once, and those of a column of lists: each may have a thousand numbers.
@@ -203,10 +203,10 @@ impl ParquetTable {
         self.clock = match (time, options.rate) {
             (None, Some(rate)) => Clock::Step(1.0 / rate),
             (None, None) => {
-                let error = no_time(&self.path, leaves.iter().map(|leaf| leaf.name.as_str()));
+                let error = no_time(&self.path, leaves.iter().map(|leaf| &leaf.name));
                 let columns = leaves.iter().map(|leaf| leaf.name.clone()).collect();
-                let error = error.remedy(Remedy::Give(Setting::TimeColumn(columns)));
-                return Err(error.remedy(Remedy::Give(Setting::Rate)));
+                let error = error.give(Setting::TimeColumn(columns));
+                return Err(error.give(Setting::Rate));
             }
             (Some((leaf, _)), Some(_)) => return Err(two_times(&self.path, &leaves[leaf].name)),
             (Some((leaf, said)), None) => {
@@ -302,7 +302,7 @@ impl Source for ParquetTable {
                     "row {}: {name} is missing, is not a number, or is later than the year 2262 in {unit}",
                     self.read
                 );
-                LogError::file(&self.path, what).remedy(Remedy::Give(Setting::TimeUnit))
+                LogError::file(&self.path, what).give(Setting::TimeUnit)
             })?,
         };
         sample.recorded = sample.measured;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::LogError;
 use crate::formats::joint_state::TYPE;
-use crate::remedy::{Remedy, Setting};
+use crate::remedy::Setting;
 use crate::spelling::{instead, listed};
 
 /// The place of the topic that is read: the one asked for, or the only one with joint states. `topics` are names and
@@ -12,10 +12,10 @@ use crate::spelling::{instead, listed};
 pub(crate) fn choose(path: &Path, topics: &[(String, String)], wanted: Option<&str>) -> Result<usize, LogError> {
     let is_state = |place: &usize| is_joint_state(&topics[*place].1);
     let states: Vec<usize> = (0..topics.len()).filter(is_state).collect();
-    let names = || listed(states.iter().map(|place| topics[*place].0.as_str()));
+    let names = || listed(states.iter().map(|place| &topics[*place].0));
     if let Some(wanted) = wanted {
         let Some(place) = topics.iter().position(|(name, _)| name == wanted) else {
-            let near = instead(wanted, topics.iter().map(|(name, _)| name.as_str()));
+            let near = instead(wanted, topics.iter().map(|(name, _)| name));
             let there = if states.is_empty() {
                 "no topic has joint states".to_owned()
             } else {
@@ -37,13 +37,13 @@ pub(crate) fn choose(path: &Path, topics: &[(String, String)], wanted: Option<&s
             let all = if all.is_empty() {
                 "the log has no topics".to_owned()
             } else {
-                format!("the topics are {}", listed(all.iter().map(String::as_str)))
+                format!("the topics are {}", listed(&all))
             };
             Err(LogError::file(path, format_args!("no topic has {TYPE}; {all}")))
         }
         _ => {
             let error = LogError::request(path, format_args!("several topics have joint states: {}", names()));
-            Err(error.remedy(Remedy::Give(Setting::Topic)))
+            Err(error.give(Setting::Topic))
         }
     }
 }

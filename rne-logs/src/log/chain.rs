@@ -7,7 +7,7 @@ use crate::columns::label::Label;
 use crate::columns::unit::{FileUnits, JointUnits};
 use crate::formats::format::Format;
 use crate::formats::sample::{Sample, Source};
-use crate::remedy::{Remedy, Setting};
+use crate::remedy::Setting;
 use crate::{LogError, Options};
 
 /// Files that are read one after another.
@@ -67,9 +67,7 @@ impl<'a> Chain<'a> {
                         label.value
                     );
                     let (column, value) = (column.clone(), first.clone());
-                    return Err(
-                        LogError::request(self.path, what).remedy(Remedy::Give(Setting::Select { column, value }))
-                    );
+                    return Err(LogError::request(self.path, what).give(Setting::Select { column, value }));
                 }
             }
         }

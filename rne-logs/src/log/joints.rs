@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::LogError;
 use crate::formats::sample::Sample;
 use crate::limits::work;
-use crate::remedy::{Remedy, Setting};
+use crate::remedy::Setting;
 use crate::spelling::{instead, listed};
 
 /// Where the joints stand in samples.
@@ -57,16 +57,16 @@ impl Joints {
             return Ok(joints);
         };
         if first.trim().is_empty() {
-            let all = listed(there.iter().map(String::as_str));
+            let all = listed(&there);
             let error =
                 LogError::request(path, format_args!("a name of a joint is empty; the joints of the log are {all}"));
-            return Err(error.remedy(Remedy::Give(Setting::Joints(Vec::new()))));
+            return Err(error.give(Setting::Joints(Vec::new())));
         }
-        let near = instead(first, there.iter().map(String::as_str));
-        let all = listed(there.iter().map(String::as_str));
-        let missing = listed(missing.iter().map(|name| name.as_str()));
+        let near = instead(first, &there);
+        let all = listed(&there);
+        let missing = listed(missing);
         let error = LogError::request(path, format_args!("the log has no joint {missing}{near}; its joints are {all}"));
-        Err(error.remedy(Remedy::Give(Setting::Joints(Vec::new()))))
+        Err(error.give(Setting::Joints(Vec::new())))
     }
 
     /// The joints of the log that are not among these.

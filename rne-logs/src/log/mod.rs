@@ -23,7 +23,7 @@ use crate::log::chain::Chain;
 use crate::log::joints::Joints;
 use crate::number::short;
 use crate::options::{Angles, Options};
-use crate::remedy::{Remedy, Setting};
+use crate::remedy::Setting;
 use crate::spelling::listed;
 use crate::{LogError, TimeUnit};
 
@@ -141,7 +141,7 @@ impl Log {
         if head.is_empty() {
             if let [(column, value)] = options.select.as_slice() {
                 let there = Self::values(&files, column, &options, |_| ())?;
-                let there = listed(there.iter().map(|found| found.value.as_str()));
+                let there = listed(there.iter().map(|found| &found.value));
                 return Err(LogError::request(
                     path,
                     format_args!("no row has {value} in the column {column}; the column has {there}"),
@@ -188,8 +188,8 @@ impl Log {
             return Err(LogError::file(path, unsorted(back, times.len())));
         }
         if step >= SLOWEST && !is_time_unit_known {
-            let error = LogError::request(path, unknown_unit(step)).remedy(Remedy::Give(Setting::TimeUnit));
-            return Err(error.remedy(Remedy::Give(Setting::Rate)));
+            let error = LogError::request(path, unknown_unit(step)).give(Setting::TimeUnit);
+            return Err(error.give(Setting::Rate));
         }
         if step >= SLOW && !is_time_unit_known {
             notes.push(format!(
@@ -353,7 +353,7 @@ fn slides_in_metres(options: &Options, names: &[String], units: &[JointUnits]) -
     let slides: Vec<&str> = (0..names.len()).filter(stays).map(|joint| names[joint].as_str()).collect();
     let plural = if slides.len() == 1 { ("slides", "is") } else { ("slide", "are") };
     (!slides.is_empty()).then(|| {
-        let names = listed(slides.into_iter());
+        let names = listed(slides);
         format!("degrees are only for joints that turn: {names} {}, and {} read in m and m/s", plural.0, plural.1)
     })
 }
@@ -376,7 +376,7 @@ fn check(path: &Path, options: &Options) -> Result<(), LogError> {
         let what = format!(
             "the limit of gaps must be at most {LONGEST_GAP} steps: rne interpolates each missing row of a shorter gap"
         );
-        return Err(LogError::request(path, what).remedy(Remedy::Give(Setting::Gap)));
+        return Err(LogError::request(path, what).give(Setting::Gap));
     }
     if options.torque_constants.iter().any(|constant| !constant.is_finite() || *constant == 0.0) {
         return Err(LogError::request(path, "a torque constant is zero or not a number"));

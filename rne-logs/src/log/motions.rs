@@ -5,7 +5,7 @@ use crate::limits::MOST_NUMBERS;
 use crate::log::pass::Pass;
 use crate::log::survey::Survey;
 use crate::number::short;
-use crate::remedy::{Remedy, Setting};
+use crate::remedy::Setting;
 use crate::signal::grid::Grid;
 use crate::signal::kernel::{HIGHEST, Kernel};
 use crate::spelling::listed;
@@ -71,7 +71,7 @@ impl<'a> Motions<'a> {
         let Some(hertz) = survey.cutoff.hertz() else {
             let what = "rne cannot choose the filter: it needs a run (a part of the log without gaps) of at least a \
                         second and 64 states";
-            return Err(log.request(what).remedy(Remedy::Give(Setting::Cutoff)));
+            return Err(log.request(what).give(Setting::Cutoff));
         };
         if survey.longest <= survey.dropped.saturating_mul(2) as u64 {
             return Err(too_low(log, survey, hertz));
@@ -90,8 +90,8 @@ impl<'a> Motions<'a> {
                 short(hertz),
                 2 * dropped
             );
-            let error = log.request(what).remedy(Remedy::Give(Setting::Cutoff));
-            return Err(error.remedy(Remedy::Give(Setting::Joints(Vec::new()))));
+            let error = log.request(what).give(Setting::Cutoff);
+            return Err(error.give(Setting::Joints(Vec::new())));
         }
         let mut motions = Self {
             pass,
@@ -259,12 +259,12 @@ pub(crate) fn check_units(log: &Log, survey: &Survey) -> Result<(), LogError> {
             "positions of {} range over {range:.1}, more than 4π: they may be degrees",
             log.layout.joints[joint]
         );
-        return Err(log.request(what).remedy(Remedy::Give(Setting::Angles)));
+        return Err(log.request(what).give(Setting::Angles));
     }
     let currents = log.unsaid_currents();
     if !currents.is_empty() {
-        let what = format!("the names of columns say that efforts of {} are currents", listed(currents.into_iter()));
-        return Err(log.request(what).remedy(Remedy::Give(Setting::TorqueConstants)));
+        let what = format!("the names of columns say that efforts of {} are currents", listed(currents));
+        return Err(log.request(what).give(Setting::TorqueConstants));
     }
     Ok(())
 }
@@ -285,7 +285,7 @@ fn too_low(log: &Log, survey: &Survey, hertz: f64) -> LogError {
         // rounded up
         let lowest = (lowest * 1e3).ceil() / 1e3;
         let what = format!("{what}; a higher cut-off drops fewer states: from {lowest} Hz on, some states are left");
-        log.request(what).remedy(Remedy::Give(Setting::Cutoff))
+        log.request(what).give(Setting::Cutoff)
     } else {
         LogError::file(&log.files[0], format_args!("{what}; at this sampling rate, every cut-off drops all states"))
     }

@@ -97,7 +97,7 @@ impl fmt::Display for Remark {
                 write!(f, "time goes back {often}: does the table contain several logs? ")?;
                 match columns.as_slice() {
                     [one] => write!(f, "The column {one} may name them"),
-                    several => write!(f, "The columns {} may name them", listed(several.iter().map(String::as_str))),
+                    several => write!(f, "The columns {} may name them", listed(several)),
                 }
             }
             Self::IgnoredJoints(names) => write!(f, "joints of the log that are not read: {}", names.join(", ")),

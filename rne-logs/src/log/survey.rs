@@ -6,7 +6,7 @@ use crate::log::frozen_position::{FrozenPosition, FrozenPositions};
 use crate::log::pass::{Counts, Interruption, InvalidSample};
 use crate::number::short;
 use crate::options::Angles;
-use crate::remedy::{Remedy, Setting};
+use crate::remedy::Setting;
 use crate::signal::grid::Grid;
 use crate::signal::kernel::{HIGHEST, Kernel, PASSED};
 use crate::signal::spectrum::Spectrum;
@@ -186,7 +186,7 @@ impl Survey {
                      that rne does not fill long intervals",
                     short(log.seconds(state.time))
                 );
-                return Err(log.request(what).remedy(Remedy::Give(Setting::Gap)));
+                return Err(log.request(what).give(Setting::Gap));
             }
         }
         if let Some(grid) = grid {
