@@ -460,12 +460,11 @@ impl Walk<'_> {
                 self.told.remarks.push(remark);
                 continue;
             };
-            let error =
-                |message: String, help: &str| Err(self.urdf.source.error(&closed.span, message, help.to_owned()));
+            let error = |message: String, help: &str| Err(self.urdf.source.error(&closed.span, message, help));
             if !self.selection.whole {
                 let mover = quoted(&self.urdf.joints[mover].name);
                 let message = format!("the joint {mover} of the arm moves the closed loop {name}");
-                let help = "an arm alone has no closed loops".to_owned();
+                let help = "an arm alone has no closed loops";
                 return Err(self.urdf.source.error_with(&closed.span, message, help, &Remedy::Whole));
             }
             let mut ends = [(None, Pose::identity()); 2];

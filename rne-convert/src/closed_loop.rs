@@ -34,7 +34,7 @@ impl Urdf {
     /// The elements `loop` of URDF+ (arXiv 2411.19753). The axis of a revolute joint is in the axes of both origins.
     pub(crate) fn take_loops(&mut self, loops: &[Seen]) -> Result<(), Report> {
         for (index, seen) in loops.iter().enumerate() {
-            let error = |message: String, help: &str| Err(self.source.error(&seen.span, message, help.to_owned()));
+            let error = |message: String, help: &str| Err(self.source.error(&seen.span, message, help));
             let name = seen.text("loop", "name").map_or_else(|| format!("loop{}", index + 1), str::to_owned);
             let cut = seen.text("loop", "type").and_then(cut).unwrap_or(Cut::Weld);
             let axis = seen.vector("axis", "xyz");
@@ -79,7 +79,7 @@ impl Urdf {
 
     /// Adds a loop of the text `source`, after its checks.
     pub(crate) fn add_loop(&mut self, closed: Loop, source: &Source) -> Result<(), Report> {
-        let error = |message: String, help: &str| Err(source.error(&closed.span, message, help.to_owned()));
+        let error = |message: String, help: &str| Err(source.error(&closed.span, message, help));
         let name = quoted(&closed.name);
         if self.loops.iter().any(|other| other.name == closed.name) {
             return error(format!("two loops have the name {name}"), "names of loops must differ");
@@ -255,7 +255,7 @@ impl Urdf {
             }
             _ => (of(&0), "the loops cannot be solved".to_owned(), "check the lengths, and the origins at both ends"),
         };
-        self.source.error(&closed.span, message, help.to_owned())
+        self.source.error(&closed.span, message, help)
     }
 }
 

@@ -81,7 +81,7 @@ impl Urdf {
             let of = &self.joints[index];
             if !of.kind.has_one_freedom() {
                 let message = format!("the joint {} is {} in the URDF", quoted(&of.name), of.kind.name());
-                let help = "`joint_type` is for joints that are revolute in the URDF".to_owned();
+                let help = "`joint_type` is for joints that are revolute in the URDF";
                 return Err(self.source.error(&joint.span, message, help));
             }
             let source = self.source.clone();
@@ -106,7 +106,7 @@ impl Urdf {
                 _ => {
                     let message = format!("the type of a loop is {}; it must be `6d` or `3d`", quoted(&kind.text));
                     let help = "6d: the two frames are one; 3d: their origins are one";
-                    return Err(self.source.error(&kind.span, message, help.to_owned()));
+                    return Err(self.source.error(&kind.span, message, help));
                 }
             };
             let end = |word: &Word| {
@@ -198,7 +198,7 @@ impl Urdf {
             _ => {
                 let message = format!("the type of a joint is {}", quoted(&kind.text));
                 let help = "it must be SPHERICAL, or UJOINT_ with two letters of XYZ, such as UJOINT_XY";
-                Err(self.source.error(&kind.span, message, help.to_owned()))
+                Err(self.source.error(&kind.span, message, help))
             }
         }
     }

@@ -176,7 +176,7 @@ impl Urdf {
         if is_tree && options.convention == Convention::Standard {
             let message = "a tree is written with modified rows, which may begin at gamma and b";
             let help = "choose the convention `modified`";
-            return Err(self.source.error(&(0..0), message.to_owned(), help.to_owned()));
+            return Err(self.source.error(&(0..0), message, help));
         }
         if options.selection.whole && !is_tree && options.more_tips.is_empty() {
             let remark = "no link carries two joints, so the robot is a serial arm and its file has `format: 1`";
@@ -264,15 +264,15 @@ impl Urdf {
     fn joint_called_base(&self) -> Option<Report> {
         let joint = self.joints.iter().find(|joint| joint.name == "base")?;
         let message = "the joint `base` has the name that a robot file gives to frame 0";
-        Some(self.source.error(&joint.span, message, "rename the joint, for instance `base_joint`".to_owned()))
+        Some(self.source.error(&joint.span, message, "rename the joint, for instance `base_joint`"))
     }
 
     /// The frames of the tip `first` and of the other tips; `frames` has the links and their names as frames.
     fn tips(&self, options: &Options, first: &str, frames: &[(String, String)]) -> Result<Vec<String>, Report> {
         if !options.selection.whole {
             let message = "several tips are of a whole robot, and this is one arm";
-            let help = "name one tip".to_owned();
-            return Err(self.source.error_with(&(0..0), message.to_owned(), help, &Remedy::Whole));
+            let help = "name one tip";
+            return Err(self.source.error_with(&(0..0), message, help, &Remedy::Whole));
         }
         let mut tips: Vec<String> = Vec::new();
         for link in [first].into_iter().chain(options.more_tips.iter().map(String::as_str)) {

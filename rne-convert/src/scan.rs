@@ -218,7 +218,7 @@ pub(crate) fn scan(source: &Source) -> Result<Scanned, Report> {
             }
             Ok(Event::DocType(_)) => {
                 let message = "the file has a document type; rne does not read its entities";
-                let help = "delete the line: a URDF needs no document type".to_owned();
+                let help = "delete the line: a URDF needs no document type";
                 return Err(source.error(&place, message, help));
             }
             Ok(Event::Text(words))
@@ -316,7 +316,7 @@ impl Scanner<'_> {
         }
         if name.starts_with("xacro:") {
             let message = format!("the file has the macro {}, which is not expanded yet", quoted(name));
-            let help = "expand the file first: `xacro FILE.xacro > FILE.urdf`".to_owned();
+            let help = "expand the file first: `xacro FILE.xacro > FILE.urdf`";
             return Err(self.source.error(place, message, help));
         }
         if let (None, Some(parent)) = (element, parent) {
@@ -401,7 +401,7 @@ impl Scanner<'_> {
                 attribute.map_err(|error| self.source.error(place, format!("this is not XML: {error}"), None))?;
             let key = String::from_utf8_lossy(attribute.key.as_ref()).into_owned();
             if key == "quat_xyzw" {
-                let help = "write the rotation as rpy, in the axes of the parent".to_owned();
+                let help = "write the rotation as rpy, in the axes of the parent";
                 return Err(self.source.error(place, "rne does not read a rotation as `quat_xyzw`", help));
             }
             let Some(index) = element.attributes.iter().position(|known| known.name == key) else {
@@ -421,7 +421,7 @@ impl Scanner<'_> {
             if ["${", "$("].iter().any(|mark| value.contains(mark)) {
                 let message =
                     format!("{} of `{}` is {}, an expression of xacro", quoted(&key), element.name, quoted(&value));
-                let help = "expand the file first: `xacro FILE.xacro > FILE.urdf`".to_owned();
+                let help = "expand the file first: `xacro FILE.xacro > FILE.urdf`";
                 return Err(self.source.error(&self.within(place, &raw), message, help));
             }
             if let Some(fault) = fault(element.attributes[index].kind, &value) {

@@ -51,14 +51,14 @@ impl Selection {
         let is_free = urdf.floats.is_some_and(|link| locked.all(|joint| joint.child != link));
         if self.floating == Some(true) && urdf.floats.is_some() && !is_free {
             let message = "the base is to float, and the joint that lets it float is locked";
-            return Err(urdf.source.error(&urdf.links[base].span, message.to_owned(), None));
+            return Err(urdf.source.error(&urdf.links[base].span, message, None));
         }
         let floats = self.floating.unwrap_or(self.whole && is_free && urdf.floats == Some(base));
         let may_float = self.whole && (base == urdf.root || urdf.floats == Some(base));
         if floats && !may_float {
             let message = "a floating base is the root link of a whole robot, or the link that floats in the file";
             let help = if self.whole { Some("name no other base".to_owned()) } else { None };
-            let report = urdf.source.error(&urdf.links[base].span, message.to_owned(), help);
+            let report = urdf.source.error(&urdf.links[base].span, message, help);
             return Err(if self.whole { report } else { report.with_remedy(&Remedy::Whole) });
         }
         Ok(floats)
@@ -259,7 +259,7 @@ pub(crate) fn path(urdf: &Urdf, base: usize, tip: usize) -> Result<Vec<usize>, R
                 quoted(&urdf.links[tip].name),
                 quoted(&urdf.links[link].name)
             );
-            let help = "the base must be between the root and the tip".to_owned();
+            let help = "the base must be between the root and the tip";
             return Err(urdf.source.error(&urdf.links[tip].span, message, help));
         };
         path.push(joint);
@@ -277,13 +277,13 @@ pub(crate) fn locks(urdf: &Urdf, selection: &Selection) -> Result<HashMap<usize,
         let joint = &urdf.joints[index];
         if selection.lock[..place].iter().any(|(earlier, _)| earlier == name) {
             let message = format!("the joint {} is locked twice", quoted(name));
-            return Err(urdf.source.error(&joint.span, message, "lock it once, at one value".to_owned()));
+            return Err(urdf.source.error(&joint.span, message, "lock it once, at one value"));
         }
         if urdf.floats == Some(joint.child) {
             if *value != 0.0 {
                 let message = format!("the joint {} floats, and can be locked at 0 only", quoted(name));
                 let help = "0 fixes the base where the file has it";
-                return Err(urdf.source.error(&joint.span, message, help.to_owned()));
+                return Err(urdf.source.error(&joint.span, message, help));
             }
             continue;
         }

@@ -16,6 +16,28 @@ pub(crate) struct Source {
     pub(crate) included: Vec<(usize, String)>,
 }
 
+/// What helps against an error; `None` where nothing is known to.
+#[derive(Debug)]
+pub(crate) struct Help(Option<String>);
+
+impl From<Option<String>> for Help {
+    fn from(help: Option<String>) -> Self {
+        Self(help)
+    }
+}
+
+impl From<String> for Help {
+    fn from(help: String) -> Self {
+        Self(Some(help))
+    }
+}
+
+impl From<&str> for Help {
+    fn from(help: &str) -> Self {
+        Self(Some(help.to_owned()))
+    }
+}
+
 impl Source {
     pub(crate) fn new(file: &str, text: &str) -> Self {
         Self { file: file.to_owned(), text: text.to_owned(), included: Vec::new() }
@@ -27,18 +49,19 @@ impl Source {
     }
 
     /// A mistake against which a choice of the caller helps.
-    pub(crate) fn error_with(&self, span: &Range<usize>, message: String, help: String, remedy: &Remedy) -> Report {
+    pub(crate) fn error_with(
+        &self,
+        span: &Range<usize>,
+        message: impl Into<String>,
+        help: impl Into<Help>,
+        remedy: &Remedy,
+    ) -> Report {
         self.error(span, message, help).with_remedy(remedy)
     }
 
     /// A mistake at some bytes of the text.
-    pub(crate) fn error(
-        &self,
-        span: &Range<usize>,
-        message: impl Into<String>,
-        help: impl Into<Option<String>>,
-    ) -> Report {
-        let help: Option<String> = help.into();
+    pub(crate) fn error(&self, span: &Range<usize>, message: impl Into<String>, help: impl Into<Help>) -> Report {
+        let Help(help) = help.into();
         let next = self.included.partition_point(|(start, _)| *start <= span.start);
         let (start, file) =
             next.checked_sub(1).map_or((0, &self.file), |at| (self.included[at].0, &self.included[at].1));

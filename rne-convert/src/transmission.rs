@@ -119,6 +119,6 @@ fn ratio(source: &Source, what: &str, text: &str, span: Range<usize>) -> Result<
     let ratio = text.trim().parse().ok().filter(|ratio: &f64| (1e-6..=1e6).contains(&ratio.abs()));
     ratio.ok_or_else(|| {
         let message = format!("`{what}` of a transmission is {}; a ratio is a number from 1e-6 to 1e6", quoted(text));
-        source.error(&span, message, "it is motor angle by joint angle, such as 50".to_owned())
+        source.error(&span, message, "it is motor angle by joint angle, such as 50")
     })
 }

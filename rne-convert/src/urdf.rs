@@ -199,7 +199,7 @@ impl Urdf {
         if root_name(text).is_some_and(|name| name == "mujoco") {
             if loops.is_some() {
                 let help = "a file of closed loops is for a URDF; an MJCF file has its own, in `equality`";
-                return Err(source.error(&(0..0), "this is an MJCF file", help.to_owned()));
+                return Err(source.error(&(0..0), "this is an MJCF file", help));
             }
             return mjcf::read(source);
         }
@@ -269,18 +269,18 @@ impl Urdf {
             let name = seen.text("link", "name").unwrap_or_default();
             if let Some(first) = known.insert(name, span) {
                 let message = format!("the link {} is already defined in line {}", quoted(name), self.line(first));
-                return Err(self.source.error(span, message, "names of links must differ".to_owned()));
+                return Err(self.source.error(span, message, "names of links must differ"));
             }
             let is_there = |part: &str| !seen.elements.contains_key("inertial") || seen.elements.contains_key(part);
             if let Some(part) = ["mass", "inertia"].into_iter().find(|part| !is_there(part)) {
                 let message = format!("the `inertial` of the link {} has no element `{part}`", quoted(name));
                 let help = "write both `mass` and `inertia`, or leave `inertial` out: the link has no mass then";
-                return Err(self.source.error(span, message, help.to_owned()));
+                return Err(self.source.error(span, message, help));
             }
             let mass = seen.number("mass", "value").unwrap_or(0.0);
             if mass < 0.0 {
                 let message = format!("the mass of the link {} is {mass} kg", quoted(name));
-                return Err(self.source.error(span, message, "a mass is zero or positive".to_owned()));
+                return Err(self.source.error(span, message, "a mass is zero or positive"));
             }
             let inertia = |attribute| seen.number("inertia", attribute).unwrap_or(0.0);
             self.links.push(Link {
@@ -312,7 +312,7 @@ impl Urdf {
             let name = seen.text("joint", "name").unwrap_or_default();
             if let Some(first) = known.insert(name, span) {
                 let message = format!("the joint {} is already defined in line {}", quoted(name), self.line(first));
-                return Err(self.source.error(span, message, "names of joints must differ".to_owned()));
+                return Err(self.source.error(span, message, "names of joints must differ"));
             }
             let link = |end: &'static str| {
                 let Some(link) = seen.text(end, "link") else {
@@ -326,7 +326,7 @@ impl Urdf {
                 links.get(link).copied().ok_or_else(|| {
                     let message =
                         format!("the joint {} refers to the link {}, which does not exist", quoted(name), quoted(link));
-                    self.source.error(span, message, "there is no such link in the file".to_owned())
+                    self.source.error(span, message, "there is no such link in the file")
                 })
             };
             let (parent, child) = (link("parent")?, link("child")?);
@@ -337,11 +337,7 @@ impl Urdf {
                     quoted(&self.joints[first].name),
                     quoted(name)
                 );
-                return Err(self.source.error(
-                    span,
-                    message,
-                    "a URDF is a tree and cannot describe closed loops".to_owned(),
-                ));
+                return Err(self.source.error(span, message, "a URDF is a tree and cannot describe closed loops"));
             }
             self.links[child].parent = Some(index);
             self.links[parent].children.push(index);
@@ -378,7 +374,7 @@ impl Urdf {
                     (self.joints[0].span.clone(), message, CONNECT)
                 }
             };
-            return Err(self.source.error(&place, message, help.to_owned()));
+            return Err(self.source.error(&place, message, help));
         };
         let mut reached = vec![false; self.links.len()];
         let mut open = vec![root];
@@ -391,7 +387,7 @@ impl Urdf {
             return Err(self.source.error(
                 &self.links[lost].span,
                 message,
-                "connect all links with joints to one tree".to_owned(),
+                "connect all links with joints to one tree",
             ));
         }
         self.root = root;
@@ -413,7 +409,7 @@ impl Urdf {
     /// joints to the successor add up to those of the joints to the predecessor times the ratio.
     fn take_gears(&mut self, couplings: &[Seen]) -> Result<(), Report> {
         for seen in couplings {
-            let error = |message: String, help: &str| Err(self.source.error(&seen.span, message, help.to_owned()));
+            let error = |message: String, help: &str| Err(self.source.error(&seen.span, message, help));
             let mut ends = [0; 2];
             for (end, of) in ends.iter_mut().zip(["predecessor", "successor"]) {
                 let Some(link) = seen.text(of, "link") else {

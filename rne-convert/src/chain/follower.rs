@@ -51,7 +51,7 @@ impl Walk<'_> {
         while let Some(mimic) = joints[leader].mimic.as_ref().filter(|_| !self.locks.contains_key(&leader)) {
             let joint = &joints[leader];
             let error = |message: String| {
-                let help = "correct the `mimic` of this joint, or lock the joint".to_owned();
+                let help = "correct the `mimic` of this joint, or lock the joint";
                 self.urdf.source.error_with(&joint.span, message, help, &lock(&joint.name))
             };
             leader = mimic.leader.ok_or_else(|| {
@@ -124,7 +124,7 @@ impl Walk<'_> {
             let why = if ratio == 0.0 { "with multiplier 0" } else { "which is locked" };
             let [name, leader] = [&joint.name, &mimic.joint].map(|name| quoted(name));
             let message = format!("the joint {name} follows {leader}, {why}, so it does not move");
-            let help = "lock this joint".to_owned();
+            let help = "lock this joint";
             return Err(self.urdf.source.error_with(&joint.span, message, help, &lock(&joint.name)));
         }
         if joint.friction != [0.0; 2] {
@@ -146,14 +146,14 @@ impl Walk<'_> {
         let name = quoted(&joints[gear.joint].name);
         if joints[gear.joint].mimic.is_some() {
             let message = format!("the joint {name} follows others twice, by `mimic` and by a coupling");
-            return Err(self.urdf.source.error(&gear.span, message, "delete one of both".to_owned()));
+            return Err(self.urdf.source.error(&gear.span, message, "delete one of both"));
         }
         if let Some(&(followed, _)) =
             gear.follows.iter().find(|(joint, _)| follows(*joint) || !self.moving.contains(joint))
         {
             let why = if follows(followed) { "follows others itself" } else { "is locked" };
             let message = format!("the joint {name} follows {}, which {why}", quoted(&joints[followed].name));
-            let help = "lock this joint, or let it follow joints that move".to_owned();
+            let help = "lock this joint, or let it follow joints that move";
             return Err(self.urdf.source.error_with(&gear.span, message, help, &lock(&joints[gear.joint].name)));
         }
         self.coupled.push(Coupled { place, follows: gear.follows.clone(), offset: 0.0, rotor: 0.0 });

@@ -28,7 +28,7 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
         };
         let Some(&joint) = joints.get(name) else {
             let message = format!("the actuator is one of the joint {}, which does not exist", quoted(name));
-            return Err(actuator.refused(message, "there is no such joint in the file".to_owned()));
+            return Err(actuator.refused(message, "there is no such joint in the file"));
         };
         let gear = actuator.first("gear", 6)?.unwrap_or(1.0);
         let force = actuator.range("forcerange", "forcelimited")?;

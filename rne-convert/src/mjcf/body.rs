@@ -75,7 +75,7 @@ impl<'a> Bodies<'a> {
             bodies.below(0, &contents)?;
         }
         if bodies.urdf.links.len() == 1 {
-            let help = "a model has a `body` in its `worldbody` for each link".to_owned();
+            let help = "a model has a `body` in its `worldbody` for each link";
             return Err(settings.source.error(&root.span, "the file has no body", help));
         }
         bodies.add_sites()?;
@@ -100,7 +100,7 @@ impl<'a> Bodies<'a> {
                 }
                 "replicate" | "attach" | "composite" | "flexcomp" => {
                     let message = format!("rne does not read the element `{}`, which makes bodies", element.name);
-                    return Err(self.settings.source.error(&element.span, message, COMPILED.to_owned()));
+                    return Err(self.settings.source.error(&element.span, message, COMPILED));
                 }
                 _ => contents.push(Content { element, frame, class }),
             }
@@ -167,7 +167,7 @@ impl<'a> Bodies<'a> {
             if is_free(joint) {
                 if joints.len() > 1 || parent != 0 {
                     let message = format!("the body {} has a free joint and is not free", quoted(name));
-                    let help = "MuJoCo takes a free joint as the only joint of a body in `worldbody`".to_owned();
+                    let help = "MuJoCo takes a free joint as the only joint of a body in `worldbody`";
                     return Err(joint.refused(message, help));
                 }
                 if is_there(joint, &["armature", "damping", "frictionloss", "stiffness"])? {
@@ -184,7 +184,7 @@ impl<'a> Bodies<'a> {
             let axis = content.frame.rotation * Vector::decimal(axis);
             let Some(direction) = axis.direction() else {
                 let message = format!("the axis of the joint {} has no direction", quoted(&read.name));
-                return Err(joint.refused(message, "write a direction, such as 0 0 1".to_owned()));
+                return Err(joint.refused(message, "write a direction, such as 0 0 1"));
             };
             let reference = joint.number("ref")?.unwrap_or(0.0);
             let reference =

@@ -82,7 +82,7 @@ impl Compiler {
         if element.text("coordinate").is_some_and(|word| word != "local") {
             let help = "MuJoCo has removed global coordinates, too: save the file with a version before 2.3.4";
             let place = within(source, &element.element.span, "coordinate");
-            return Err(source.error(&place, "rne reads local coordinates only", help.to_owned()));
+            return Err(source.error(&place, "rne reads local coordinates only", help));
         }
         if let Some(word) = element.text("eulerseq") {
             let letters = word.as_bytes().try_into().ok();
@@ -129,5 +129,5 @@ impl Compiler {
 pub(super) fn twice(source: &Source, element: &Element, name: &str) -> Report {
     let place = within(source, &element.span, name);
     let message = format!("there are two elements `{}` with the name {}", element.name, quoted(name));
-    source.error(&place, message, "names must differ".to_owned())
+    source.error(&place, message, "names must differ")
 }

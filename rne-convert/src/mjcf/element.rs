@@ -79,7 +79,7 @@ fn include(
             return Err(source.error(&child.span, "`include` lacks the attribute `file`", None));
         };
         if !opened.insert(file.to_owned()) {
-            let help = "MuJoCo includes a file once; delete the second `include`".to_owned();
+            let help = "MuJoCo includes a file once; delete the second `include`";
             return Err(source.error(&child.span, format!("the file {} is included twice", quoted(file)), help));
         }
         let (text, name) = open(source, &child.span, file)?;
@@ -150,7 +150,7 @@ fn parse(source: &Source, start: usize, number: &mut usize) -> Result<Element, R
             Ok(Event::Empty(tag)) => Some(element(source, &tag, &place)?),
             Ok(Event::End(_)) => open.pop(),
             Ok(Event::DocType(_)) => {
-                let help = "delete the line: an MJCF file needs no document type".to_owned();
+                let help = "delete the line: an MJCF file needs no document type";
                 return Err(source.error(&place, "the file has a document type; rne does not read its entities", help));
             }
             Ok(Event::Eof) => break,

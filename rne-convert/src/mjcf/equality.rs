@@ -34,14 +34,14 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
                     quoted(name)
                 );
                 let help = "rne reads these three; delete this one, or make it inactive: active=\"false\"";
-                return Err(equality.refused(message, help.to_owned()));
+                return Err(equality.refused(message, help));
             }
         }
         let find = |attribute: &str| {
             let Some(name) = equality.text(attribute) else { return Ok(None) };
             let Some(index) = urdf.joints.iter().position(|joint| joint.name == name) else {
                 let message = format!("the equality names the joint {}, which does not exist", quoted(name));
-                return Err(equality.refused(message, "there is no such joint in the file".to_owned()));
+                return Err(equality.refused(message, "there is no such joint in the file"));
             };
             if urdf.joints[index].kind.has_one_freedom() {
                 return Ok(Some(index));
@@ -62,11 +62,11 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
                 quoted(&urdf.joints[joint].name)
             );
             let help = "a robot file couples joints by a ratio and an offset: keep the first two numbers of `polycoef`";
-            return Err(equality.refused(message, help.to_owned()));
+            return Err(equality.refused(message, help));
         }
         if urdf.joints[joint].mimic.is_some() {
             let message = format!("the joint {} follows others twice", quoted(&urdf.joints[joint].name));
-            return Err(equality.refused(message, "delete one of the equalities".to_owned()));
+            return Err(equality.refused(message, "delete one of the equalities"));
         }
         let reference = |joint: usize| decimal(urdf.joints[joint].reference);
         let start = reference(joint) + decimal(*start);
@@ -102,7 +102,7 @@ fn close(equality: Classed, left_out: &mut LeftOut, urdf: &mut Urdf) -> Result<(
         ([None, None], [Some(one), other]) => ([one, other.unwrap_or(WORLD)], false),
         _ => {
             let message = format!("`{}` has neither two sites nor a `body1` alone", element.name);
-            let help = "write `site1` and `site2`, or `body1` and `body2`".to_owned();
+            let help = "write `site1` and `site2`, or `body1` and `body2`";
             return Err(equality.refused(message, help));
         }
     };
@@ -128,7 +128,7 @@ fn close(equality: Classed, left_out: &mut LeftOut, urdf: &mut Urdf) -> Result<(
         (_, None, None) if are_sites => [Pose::identity(); 2],
         _ if are_sites => {
             let message = format!("`{}` between sites has no `anchor` and no `relpose`", element.name);
-            return Err(equality.refused(message, "delete them: the sites say where the ends are".to_owned()));
+            return Err(equality.refused(message, "delete them: the sites say where the ends are"));
         }
         (Cut::Weld, anchor, Some(pose)) if pose[3..] != [0.0; 4] => {
             let Some(rotation) = Rotation::quaternion([pose[3], pose[4], pose[5], pose[6]]) else {
@@ -146,7 +146,7 @@ fn close(equality: Classed, left_out: &mut LeftOut, urdf: &mut Urdf) -> Result<(
         }
         (_, None, _) => {
             let message = "`connect` between bodies lacks the attribute `anchor`";
-            return Err(equality.refused(message, "write the place of the joint in the axes of `body1`".to_owned()));
+            return Err(equality.refused(message, "write the place of the joint in the axes of `body1`"));
         }
     };
     let ends = [(links[0], places[0]), (links[1], places[1])];

@@ -46,7 +46,7 @@ fn solid(geom: Classed, of: &str) -> Result<Option<(f64, Pose, Inertia)>, Report
     if is_mesh || is_shell {
         let of_what = if is_mesh { "the mesh of a geom, and rne opens no meshes" } else { "the shell of a geom" };
         let message = format!("the inertia of the body {} is that of {of_what}", quoted(of));
-        return Err(geom.refused(message, COMPILED.to_owned()));
+        return Err(geom.refused(message, COMPILED));
     }
     let (place, sizes) = match geom.vector("fromto")? {
         Some(ends) => {
@@ -66,12 +66,12 @@ fn solid(geom: Classed, of: &str) -> Result<Option<(f64, Pose, Inertia)>, Report
     };
     if sizes.len() < needed || sizes[..needed].iter().any(|size| *size <= 0.0) {
         let message = format!("a `geom` of the type {kind} needs {needed} sizes, each above zero");
-        return Err(geom.refused(message, "write them into `size`".to_owned()));
+        return Err(geom.refused(message, "write them into `size`"));
     }
     let (volume, about) = unit_density(kind, &sizes);
     let mass = mass.unwrap_or(density * volume);
     if mass < 0.0 {
-        return Err(geom.refused("a `geom` has a negative mass", "a mass is zero or positive".to_owned()));
+        return Err(geom.refused("a `geom` has a negative mass", "a mass is zero or positive"));
     }
     let [xx, yy, zz] = about.map(|moment| moment * mass);
     Ok(Some((mass, place, Inertia { xx, yy, zz, ..Inertia::default() })))

@@ -56,7 +56,7 @@ fn explicit(element: Classed, name: &str, content: &Content) -> Result<Inertial,
     )?;
     let missing = |attribute: &str| {
         let message = format!("the `inertial` of the body {} lacks `{attribute}`", quoted(name));
-        let help = "write `pos`, `mass` and `diaginertia` or `fullinertia`, or delete it".to_owned();
+        let help = "write `pos`, `mass` and `diaginertia` or `fullinertia`, or delete it";
         element.refused(message, help)
     };
     let Some(mass) = element.number("mass")? else { return Err(missing("mass")) };
@@ -71,7 +71,7 @@ fn explicit(element: Classed, name: &str, content: &Content) -> Result<Inertial,
     let inertia = match (diagonal, full) {
         (Some(_), Some(_)) => {
             let message = format!("the `inertial` of the body {} has two inertias", quoted(name));
-            return Err(element.refused(message, "keep `diaginertia` or `fullinertia`".to_owned()));
+            return Err(element.refused(message, "keep `diaginertia` or `fullinertia`"));
         }
         (Some([xx, yy, zz]), None) => Inertia { xx, yy, zz, ..Inertia::default() },
         (None, Some([xx, yy, zz, xy, xz, yz])) => Inertia { xx, yy, zz, xy, xz, yz },
@@ -89,7 +89,7 @@ fn adjusted(settings: &Settings, name: &str, body: &Element, mut inertial: Inert
     if least > 0.0 && moments[0] < least {
         if [xy, xz, yz] != [0.0; 3] {
             let message = format!("`boundinertia` changes the body {}, whose tensor is not diagonal", quoted(name));
-            let help = "write the tensor of this body as `diaginertia` and `quat`".to_owned();
+            let help = "write the tensor of this body as `diaginertia` and `quat`";
             return Err(settings.source.error(&body.span, message, help));
         }
         inertial.inertia = Inertia { xx: xx.max(least), yy: yy.max(least), zz: zz.max(least), xy, xz, yz };

@@ -8,7 +8,7 @@ use super::compiler::Compiler;
 use super::element::{Element, within};
 use crate::geometry::Rotation;
 use crate::scan::{LARGEST, end_of_range};
-use crate::source::{Source, names, quoted};
+use crate::source::{Help, Source, names, quoted};
 
 /// The kinds of actuators. A class has one set of default values for all of them (`Default` in MuJoCo's
 /// `xml_native_reader.cc`).
@@ -78,7 +78,7 @@ impl<'a> Settings<'a> {
             };
             if self.classes.iter().any(|known| known.name == name) {
                 let message = format!("the class {} is already defined", quoted(name));
-                return Err(self.source.error(&element.span, message, "names of classes must differ".to_owned()));
+                return Err(self.source.error(&element.span, message, "names of classes must differ"));
             }
             self.classes.push(Class { name, parent: Some(class), elements: Vec::new() });
             self.take(self.classes.len() - 1, element)?;
@@ -154,7 +154,7 @@ impl<'a> Classed<'a> {
     }
 
     /// A mistake of the element.
-    pub(super) fn refused(self, message: impl Into<String>, help: impl Into<Option<String>>) -> Report {
+    pub(super) fn refused(self, message: impl Into<String>, help: impl Into<Help>) -> Report {
         self.settings.source.error(&self.element.span, message, help)
     }
 
@@ -227,7 +227,7 @@ impl<'a> Classed<'a> {
             .collect();
         if ways.len() > 1 {
             let message = format!("`{}` has several orientations: {}", self.element.name, names(&ways));
-            return Err(self.refused(message, "keep one of them".to_owned()));
+            return Err(self.refused(message, "keep one of them"));
         }
         let no_direction = |attribute| self.error(attribute, "it has no direction");
         if let Some([x, y, z, angle]) = self.vector("axisangle")? {
