@@ -16,6 +16,22 @@ use crate::arrays::{Axes, Given, Value};
 use crate::errors::{of_arm, of_evaluation, of_report};
 use crate::functions::evaluate;
 
+/// Methods of an arm that differ in what they compute alone: what Python writes for their arguments, the arguments, and
+/// then each method with its documentation.
+macro_rules! methods {
+    ($signature:tt $arguments:tt -> $returned:ty; $($(#[$($about:tt)*])* $method:ident $body:tt)*) => {
+        #[pymethods]
+        impl Arm {
+            $(
+                $(#[$($about)*])*
+                #[pyo3(signature = $signature)]
+                fn $method<'py> $arguments -> $returned $body
+            )*
+        }
+    };
+}
+pub(crate) use methods;
+
 /// From what an arm was made: enough to make it again in another process.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Origin {

@@ -167,7 +167,7 @@ enum Layout<'py, T: Element> {
 impl<'py, T: Element + Number> Held<'py, T> {
     /// Takes an array as it is where its layout allows, a copy where not; of columns of Polars and PyArrow likewise.
     /// It has no byte of the memory that is `written`.
-    pub(crate) fn of(given: &Given<'py>, dtype: &str, written: &Range<usize>) -> PyResult<Self> {
+    pub(crate) fn of(given: &Given<'py>, written: &Range<usize>) -> PyResult<Self> {
         let &Given { name, elements, axes, .. } = given;
         let held = |layout, states| Self { name, elements, layout, states };
         let value = match &given.value {
@@ -179,11 +179,11 @@ impl<'py, T: Element + Number> Held<'py, T> {
         let value = match if axes == Axes::Vector { seen(name, elements, value)? } else { None } {
             None => value.clone(),
             Some(views) => match views.cast::<PyTuple>() {
-                Ok(columns) => return Self::of_columns(given, columns, dtype, written),
+                Ok(columns) => return Self::of_columns(given, columns, written),
                 Err(_) => views,
             },
         };
-        let array = taken(value.py(), name, &value, dtype, written)?;
+        let array = taken(name, &value, written)?;
         let shape = array.shape();
         let states_before = |of_state: &[usize]| match shape.strip_suffix(of_state) {
             Some([]) => Some(None),
@@ -232,16 +232,10 @@ impl<'py, T: Element + Number> Held<'py, T> {
         Ok(held(if is_fortran { Layout::Fortran(array) } else { Layout::Rows(array) }, states))
     }
 
-    fn of_columns(
-        given: &Given<'py>,
-        columns: &Bound<'py, PyTuple>,
-        dtype: &str,
-        written: &Range<usize>,
-    ) -> PyResult<Self> {
+    fn of_columns(given: &Given<'py>, columns: &Bound<'py, PyTuple>, written: &Range<usize>) -> PyResult<Self> {
         let &Given { name, elements, .. } = given;
-        let py = columns.py();
         let of_column = |column: Bound<'py, PyAny>| {
-            let array = taken(py, name, &column, dtype, written)?;
+            let array = taken(name, &column, written)?;
             readable(name, &in_order(array)?)
         };
         let columns: Vec<_> = columns.iter().map(of_column).collect::<PyResult<_>>()?;
@@ -378,16 +372,14 @@ fn seen<'py>(name: &str, elements: usize, value: &Bound<'py, PyAny>) -> PyResult
 
 /// What is given as an array, whatever its layout: its own memory where it has the type already.
 pub(crate) fn taken<'py, T: Element>(
-    py: Python<'py>,
     name: &'static str,
     value: &Bound<'py, PyAny>,
-    dtype: &str,
     written: &Range<usize>,
 ) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
     refuse_masked(name, value)?;
     let array = match value.cast::<PyArrayDyn<T>>() {
         Ok(array) => array.clone(),
-        Err(_) => converted(py, name, value, dtype)?,
+        Err(_) => converted(name, value)?,
     };
     // numpy compares the owners of arrays, and one memory may have several: memoryviews, files, shared memory
     let read = if written.is_empty() { 0..0 } else { memory(&array) };
@@ -475,14 +467,10 @@ pub(crate) fn readable<'py, T: Element>(
 }
 
 /// What numpy makes of lists, integers and other floats.
-fn converted<'py, T: Element>(
-    py: Python<'py>,
-    name: &str,
-    value: &Bound<'py, PyAny>,
-    dtype: &str,
-) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+fn converted<'py, T: Element>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+    let py = value.py();
     let keywords = PyDict::new(py);
-    keywords.set_item("dtype", dtype)?;
+    keywords.set_item("dtype", T::get_dtype(py))?;
     let numpy = py.import("numpy")?;
     let kind = numpy.call_method1("asarray", (value,)).and_then(|array| array.getattr("dtype")?.getattr("kind"));
     let kind: String = kind.and_then(|kind| kind.extract()).unwrap_or_default();
@@ -529,11 +517,12 @@ pub(crate) fn room<'py, T: Element>(
     py: Python<'py>,
     out: Option<&Bound<'py, PyAny>>,
     shape: &[usize],
-    dtype: &str,
 ) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
     let Some(out) = out else { return Ok(PyArrayDyn::zeros(py, shape, false)) };
-    let wanted =
-        || format!("`out` must be a writable array in C order of the shape {} and of {dtype}", shape_in_words(shape));
+    let wanted = || {
+        let (shape, dtype) = (shape_in_words(shape), T::get_dtype(py));
+        format!("`out` must be a writable array in C order of the shape {shape} and of {dtype}")
+    };
     let array = out.cast::<PyArrayDyn<T>>().map_err(|_| PyValueError::new_err(wanted()))?;
     if array.shape() != shape || !array.is_c_contiguous() {
         return Err(PyValueError::new_err(wanted()));

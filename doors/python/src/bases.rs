@@ -33,7 +33,7 @@ impl Numbers {
     /// The same, of which the elements from `begin` on count.
     fn after(begin: usize, name: &'static str, value: &Bound<'_, PyAny>, axes: usize, least: usize) -> PyResult<Self> {
         let least = begin + least;
-        let array = in_order(taken::<f64>(value.py(), name, value, "float64", &(0..0))?)?;
+        let array = in_order(taken::<f64>(name, value, &(0..0))?)?;
         let shape = array.shape().to_vec();
         if shape.len() < axes || shape.last().is_none_or(|&columns| columns < least) {
             let kind = if axes == 1 { "vectors of at least" } else { "matrices with at least" };
@@ -187,6 +187,38 @@ pub(crate) fn base_from_imu<'py>(
     })
 }
 
+/// Functions that tell the motion of the base of a model from its vectors: their names, those of the vectors, what
+/// finds the base of a model, the order of a quaternion there, and the conversion.
+macro_rules! base_from_vectors {
+    ($(
+        $(#[$($about:tt)*])*
+        $function:ident($q:ident, $v:ident, $a:ident) $base_of:literal $order:literal $motion:path;
+    )*) => {
+        $(
+            $(#[$($about)*])*
+            #[pyfunction]
+            #[pyo3(signature = ($q, $v, $a, model=None, *, gravity=None))]
+            pub(crate) fn $function<'py>(
+                py: Python<'py>,
+                $q: &Bound<'py, PyAny>,
+                $v: &Bound<'py, PyAny>,
+                $a: &Bound<'py, PyAny>,
+                model: Option<&Bound<'py, PyAny>>,
+                gravity: Option<&Bound<'py, PyAny>>,
+            ) -> PyResult<Bound<'py, PyDict>> {
+                let (gravity, [position, velocity]) = base_of(py, $base_of, model, gravity)?;
+                let q = Numbers::after(position, stringify!($q), $q, 1, 7)?.with_unit_quaternion($order)?;
+                let v = Numbers::after(velocity, stringify!($v), $v, 1, 6)?;
+                let a = Numbers::after(velocity, stringify!($a), $a, 1, 6)?;
+                told(py, &[&q, &v, &a, &gravity], |state| {
+                    $motion(&q.first(state), &v.first(state), &a.first(state), gravity.first(state))
+                })
+            }
+        )*
+    };
+}
+
+base_from_vectors! {
 /// The base of a Pinocchio model: what a free flyer moves that carries all other joints.
 ///
 /// q, v, a: the vectors of `pinocchio.rnea`, of shape (nq,), (nv,), (nv,) or (N, …). `a` is Pinocchio's spatial
@@ -199,23 +231,7 @@ pub(crate) fn base_from_imu<'py>(
 /// Returns a dict of `base_omega`, `base_omega_dot`, `base_acceleration` and `base_gravity`, in axes of the base.
 ///
 /// Raises TypeError without model and gravity, ValueError where no free flyer of the model carries all other joints.
-#[pyfunction]
-#[pyo3(signature = (q, v, a, model=None, *, gravity=None))]
-pub(crate) fn base_from_pinocchio<'py>(
-    py: Python<'py>,
-    q: &Bound<'py, PyAny>,
-    v: &Bound<'py, PyAny>,
-    a: &Bound<'py, PyAny>,
-    model: Option<&Bound<'py, PyAny>>,
-    gravity: Option<&Bound<'py, PyAny>>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let (gravity, [position, velocity]) = base_of(py, "base_of_pinocchio", model, gravity)?;
-    let q = Numbers::after(position, "q", q, 1, 7)?.with_unit_quaternion("x y z w")?;
-    let (v, a) = (Numbers::after(velocity, "v", v, 1, 6)?, Numbers::after(velocity, "a", a, 1, 6)?);
-    told(py, &[&q, &v, &a, &gravity], |state| {
-        BaseMotion::from_pinocchio(&q.first(state), &v.first(state), &a.first(state), gravity.first(state))
-    })
-}
+base_from_pinocchio(q, v, a) "base_of_pinocchio" "x y z w" BaseMotion::from_pinocchio;
 
 /// The base of a MuJoCo model: the body with a free joint that carries all other joints.
 ///
@@ -227,22 +243,7 @@ pub(crate) fn base_from_pinocchio<'py>(
 /// Returns a dict of `base_omega`, `base_omega_dot`, `base_acceleration` and `base_gravity`, in axes of the base.
 ///
 /// Raises TypeError without model and gravity, ValueError where no free joint of the model carries all other joints.
-#[pyfunction]
-#[pyo3(signature = (qpos, qvel, qacc, model=None, *, gravity=None))]
-pub(crate) fn base_from_mujoco<'py>(
-    py: Python<'py>,
-    qpos: &Bound<'py, PyAny>,
-    qvel: &Bound<'py, PyAny>,
-    qacc: &Bound<'py, PyAny>,
-    model: Option<&Bound<'py, PyAny>>,
-    gravity: Option<&Bound<'py, PyAny>>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let (gravity, [position, velocity]) = base_of(py, "base_of_mujoco", model, gravity)?;
-    let q = Numbers::after(position, "qpos", qpos, 1, 7)?.with_unit_quaternion("w x y z")?;
-    let (v, a) = (Numbers::after(velocity, "qvel", qvel, 1, 6)?, Numbers::after(velocity, "qacc", qacc, 1, 6)?);
-    told(py, &[&q, &v, &a, &gravity], |state| {
-        BaseMotion::from_mujoco(&q.first(state), &v.first(state), &a.first(state), gravity.first(state))
-    })
+base_from_mujoco(qpos, qvel, qacc) "base_of_mujoco" "w x y z" BaseMotion::from_mujoco;
 }
 
 /// The matrices ∂τ/∂q and ∂τ/∂v of `pinocchio.computeRNEADerivatives` with a free flyer; its ∂τ/∂a is `mass`.

@@ -7,7 +7,7 @@ use pyo3::types::PyBool;
 use rne::compiled::Number;
 use rne_emit::{JointFriction, NoFriction};
 
-use crate::arm::Arm;
+use crate::arm::{Arm, methods};
 use crate::arrays::{Given, Held, are_single, array_of};
 
 impl Arm {
@@ -47,9 +47,9 @@ impl Arm {
         let (numbers, given) = (self.friction(width)?, [self.of_joints("qd", qd)?]);
         let law = |(at, qd): (usize, f64)| law(qd, numbers[at % numbers.len()]);
         if are_single(&given) {
-            of_each::<f32>(qd.py(), &given[0], "float32", law)
+            of_each::<f32>(qd.py(), &given[0], law)
         } else {
-            of_each::<f64>(qd.py(), &given[0], "float64", law)
+            of_each::<f64>(qd.py(), &given[0], law)
         }
     }
 }
@@ -58,17 +58,22 @@ impl Arm {
 fn of_each<'py, T: Element + Number>(
     py: Python<'py>,
     given: &Given<'py>,
-    dtype: &str,
     law: impl Fn((usize, f64)) -> f64,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let held = Held::<T>::of(given, dtype, &(0..0))?;
+    let held = Held::<T>::of(given, &(0..0))?;
     let rows = held.rows(held.states.unwrap_or(1))?;
     let results: Vec<T> = rows.into_iter().map(Into::into).enumerate().map(|each| T::from_f64(law(each))).collect();
     array_of(py, held.states.as_slice(), &[held.elements()], results)
 }
 
-#[pymethods]
-impl Arm {
+methods! {
+    (qd, *, width=None)
+    (
+        &self,
+        qd: &Bound<'py, PyAny>,
+        width: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>>;
+
     /// Friction of the joints at velocities: viscous, and Coulomb's with a smooth change of sign.
     ///
     /// G² B qd + |G| (½ (Tc⁺ - Tc⁻) s + ½ (Tc⁺ + Tc⁻) s²) with s = qd / √(qd² + w²), by the key `motor` of each joint
@@ -81,12 +86,7 @@ impl Arm {
     /// changes its sign, rad/s or m/s, the same for all joints; None takes the key `coulomb_width` of each joint.
     ///
     /// Returns N m, or N for a sliding joint: shape (n,) or (N, n).
-    #[pyo3(signature = (qd, *, width=None))]
-    fn friction_torques<'py>(
-        &self,
-        qd: &Bound<'py, PyAny>,
-        width: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    friction_torques {
         self.at_velocities(qd, width, |qd, [viscous, odd, even, width]| {
             let s = qd / qd.hypot(width); // whose squares may be too large
             viscous * qd + odd * s + even * s * s
@@ -99,12 +99,7 @@ impl Arm {
     /// the friction of a joint depends on the velocity of this joint only. Arguments as for `friction_torques`.
     ///
     /// Returns N m s/rad, or N s/m for a sliding joint: shape (n,) or (N, n).
-    #[pyo3(signature = (qd, *, width=None))]
-    fn friction_derivatives<'py>(
-        &self,
-        qd: &Bound<'py, PyAny>,
-        width: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    friction_derivatives {
         self.at_velocities(qd, width, |qd, [viscous, odd, even, width]| {
             let inverse = 1.0 / qd.hypot(width);
             viscous + (odd + 2.0 * even * qd * inverse) * (width * inverse).powi(2) * inverse

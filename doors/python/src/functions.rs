@@ -62,9 +62,9 @@ pub(crate) fn evaluate<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     if are_single(given) {
         warn_of_loss(py, arm, function)?;
-        evaluate_in::<f32>(py, arm, function, given, out, "float32")
+        evaluate_in::<f32>(py, arm, function, given, out)
     } else {
-        evaluate_in::<f64>(py, arm, function, given, out, "float64")
+        evaluate_in::<f64>(py, arm, function, given, out)
     }
 }
 
@@ -100,35 +100,47 @@ fn evaluate_in<'py, T: Element + Number>(
     function: Function,
     given: &[Given<'py>],
     out: Option<&Bound<'py, PyAny>>,
-    dtype: &str,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let written = out.and_then(|out| out.cast::<PyArrayDyn<T>>().ok()).map_or(0..0, memory);
-    let held: Vec<Held<'py, T>> =
-        given.iter().map(|given| Held::of(given, dtype, &written)).collect::<PyResult<_>>()?;
-    let many = states(&held)?;
-    let count = many.unwrap_or(1);
-    let columns: Vec<Vec<&[T]>> = held.iter().map(Held::columns).collect::<PyResult<_>>()?;
-    let arguments = arguments(given, &held, &columns, count)?;
     let of_state = shape(function, arm);
-    let whole: Vec<usize> = many.into_iter().chain(of_state.iter().copied()).collect();
-    let result = room::<T>(py, out, &whole, dtype)?;
-    {
-        let mut writable = writable(&result)?;
-        let numbers = writable.as_slice_mut().map_err(|_| PyValueError::new_err("`out` is not contiguous"))?;
+    let (result, many) = computed::<T>(py, given, out, [&[], &of_state], |_, count, arguments, numbers| {
         let computed = py.detach(|| match function.answer() {
             Answer::Poses => {
                 let compiled = arm.function(function)?.outputs();
                 let mut rows = vec![T::zero(); compiled * count];
-                run(arm, function, count, &arguments, &mut rows)?;
+                run(arm, function, count, arguments, &mut rows)?;
                 let matrices = numbers.chunks_exact_mut(16).zip(rows.chunks_exact(12));
                 matrices.for_each(|(matrix, pose)| homogeneous(pose, matrix));
                 Ok(())
             }
-            _ => run(arm, function, count, &arguments, numbers),
+            _ => run(arm, function, count, arguments, numbers),
         });
-        computed.map_err(|error: EvaluationError| of_evaluation(&error))?;
-    }
+        computed.map_err(|error: EvaluationError| of_evaluation(&error))
+    })?;
     as_python(arm, function, result, many, &of_state)
+}
+
+/// What is computed from arguments of all states, into `out` or into new memory, and how many states they have. The
+/// shapes are the axes before that of the states, and those after it.
+pub(crate) fn computed<'py, T: Element + Number>(
+    py: Python<'py>,
+    given: &[Given<'py>],
+    out: Option<&Bound<'py, PyAny>>,
+    [before, after]: [&[usize]; 2],
+    compute: impl FnOnce(&[Held<'py, T>], usize, &Arguments<'_, T>, &mut [T]) -> PyResult<()>,
+) -> PyResult<(Bound<'py, PyArrayDyn<T>>, Option<usize>)> {
+    let written = out.and_then(|out| out.cast::<PyArrayDyn<T>>().ok()).map_or(0..0, memory);
+    let held: Vec<Held<'py, T>> = given.iter().map(|given| Held::of(given, &written)).collect::<PyResult<_>>()?;
+    let many = states(&held)?;
+    let count = many.unwrap_or(1);
+    let columns: Vec<Vec<&[T]>> = held.iter().map(Held::columns).collect::<PyResult<_>>()?;
+    let arguments = arguments(given, &held, &columns, count)?;
+    let result = room::<T>(py, out, &[before, many.as_slice(), after].concat())?;
+    {
+        let mut writable = writable(&result)?;
+        let numbers = writable.as_slice_mut().map_err(|_| PyValueError::new_err("`out` is not contiguous"))?;
+        compute(&held, count, &arguments, numbers)?;
+    }
+    Ok((result, many))
 }
 
 /// Elements of the last axis of the results, of each state in this shape.
@@ -247,7 +259,7 @@ fn as_python<'py, T: Element + Number>(
 }
 
 /// The arguments of a call: the arrays of Python as those of the machine, for a number of states.
-pub(crate) fn arguments<'a, T: Element + Number>(
+fn arguments<'a, T: Element + Number>(
     given: &[Given<'_>],
     held: &'a [Held<'_, T>],
     columns: &'a [Vec<&'a [T]>],

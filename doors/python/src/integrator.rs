@@ -11,7 +11,7 @@ use rne::{BaseAcceleration, BaseTwist, Quaternion};
 use rne_runtime::floating_integrator_of_lists::{Linear, Stage, Turning, derivatives, factor, moved, runge_kutta};
 use rne_runtime::steps;
 
-use crate::arm::Arm;
+use crate::arm::{Arm, methods};
 use crate::arrays::{Given, Held, are_single, array_of, pose_of_twelve, states};
 use crate::errors::of_evaluation;
 use crate::functions::{homogeneous, run};
@@ -26,16 +26,9 @@ type Model<T> = [Matrix<T>; 2];
 /// A homogeneous matrix, the twist, q and qd; and A and B, if they were asked for.
 type Moved<T> = (Vec<Vec<T>>, Option<Model<T>>);
 
-#[pymethods]
-impl Arm {
-    /// The state after steps of the classical Runge-Kutta method of duration `step` (s) under torques `tau`.
-    ///
-    /// `steps` steps follow each other under the same torques. Each of them computes `forward_dynamics` four times; the
-    /// error of a motion is of order h⁴. `step` is a number, or an array of shape (N,).
-    ///
-    /// Returns the positions and the velocities after the steps, two arrays of shape (n,) or (N, n).
-    #[pyo3(signature = (q, qd, tau, step, *, steps=1, payload=None, parameters=None))]
-    fn runge_kutta_step<'py>(
+methods! {
+    (q, qd, tau, step, *, steps=1, payload=None, parameters=None)
+    (
         &self,
         py: Python<'py>,
         q: &Bound<'py, PyAny>,
@@ -45,7 +38,15 @@ impl Arm {
         steps: i64,
         payload: Option<&Bound<'py, PyAny>>,
         parameters: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyTuple>> {
+    ) -> PyResult<Bound<'py, PyTuple>>;
+
+    /// The state after steps of the classical Runge-Kutta method of duration `step` (s) under torques `tau`.
+    ///
+    /// `steps` steps follow each other under the same torques. Each of them computes `forward_dynamics` four times; the
+    /// error of a motion is of order h⁴. `step` is a number, or an array of shape (N,).
+    ///
+    /// Returns the positions and the velocities after the steps, two arrays of shape (n,) or (N, n).
+    runge_kutta_step {
         let more = payload.map(|payload| self.payload(payload)).into_iter().collect();
         self.stepped([q, qd, tau], step, steps, more, parameters)?.of_arm(py, payload.is_some(), false)
     }
@@ -55,34 +56,15 @@ impl Arm {
     /// They are exact up to rounding, by the chain rule over all `steps`.
     ///
     /// Returns A and B, of shape (2 n, 2 n) and (2 n, n), or (N, 2 n, 2 n) and (N, 2 n, n).
-    #[pyo3(signature = (q, qd, tau, step, *, steps=1, payload=None, parameters=None))]
-    fn runge_kutta_step_derivatives<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        qd: &Bound<'py, PyAny>,
-        tau: &Bound<'py, PyAny>,
-        step: &Bound<'py, PyAny>,
-        steps: i64,
-        payload: Option<&Bound<'py, PyAny>>,
-        parameters: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyTuple>> {
+    runge_kutta_step_derivatives {
         let more = payload.map(|payload| self.payload(payload)).into_iter().collect();
         self.stepped([q, qd, tau], step, steps, more, parameters)?.of_arm(py, payload.is_some(), true)
     }
+}
 
-    /// The state after steps of the classical Runge-Kutta method where nothing holds the base.
-    ///
-    /// Arguments and results are those of `floating_euler_step`. `steps` steps follow each other under the same torques
-    /// `tau` and the same `wrenches`, which do not change in axes of their tips. Each step of duration `step` (s)
-    /// computes `floating_forward_dynamics` four times; the error of a motion is of order h⁴. The turn of the base in a
-    /// step must stay below a whole turn. The rotation after a step is orthogonal to rounding.
-    ///
-    /// Returns the pose after the steps, a homogeneous matrix of shape (4, 4) or (N, 4, 4), the velocity of the base,
-    /// linear then angular, in its axes, of shape (6,) or (N, 6), and the positions and the velocities of the joints,
-    /// of shape (n,) or (N, n).
-    #[pyo3(signature = (q, qd, tau, pose, twist, step, wrenches=None, *, steps=1, parameters=None))]
-    fn floating_runge_kutta_step<'py>(
+methods! {
+    (q, qd, tau, pose, twist, step, wrenches=None, *, steps=1, parameters=None)
+    (
         &self,
         py: Python<'py>,
         q: &Bound<'py, PyAny>,
@@ -94,7 +76,19 @@ impl Arm {
         wrenches: Option<&Bound<'py, PyAny>>,
         steps: i64,
         parameters: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyTuple>> {
+    ) -> PyResult<Bound<'py, PyTuple>>;
+
+    /// The state after steps of the classical Runge-Kutta method where nothing holds the base.
+    ///
+    /// Arguments and results are those of `floating_euler_step`. `steps` steps follow each other under the same torques
+    /// `tau` and the same `wrenches`, which do not change in axes of their tips. Each step of duration `step` (s)
+    /// computes `floating_forward_dynamics` four times; the error of a motion is of order h⁴. The turn of the base in a
+    /// step must stay below a whole turn. The rotation after a step is orthogonal to rounding.
+    ///
+    /// Returns the pose after the steps, a homogeneous matrix of shape (4, 4) or (N, 4, 4), the velocity of the base,
+    /// linear then angular, in its axes, of shape (6,) or (N, 6), and the positions and the velocities of the joints,
+    /// of shape (n,) or (N, n).
+    floating_runge_kutta_step {
         let more = self.of_base(pose, twist, wrenches)?;
         self.stepped([q, qd, tau], step, steps, more, parameters)?.of_floating_base(py, false)
     }
@@ -107,20 +101,7 @@ impl Arm {
     ///
     /// Returns A and B, of shape (12 + 2 n, 12 + 2 n) and (12 + 2 n, n), or (N, 12 + 2 n, 12 + 2 n) and
     /// (N, 12 + 2 n, n); rows and columns are the positions, then the velocities, each of the base before the joints.
-    #[pyo3(signature = (q, qd, tau, pose, twist, step, wrenches=None, *, steps=1, parameters=None))]
-    fn floating_runge_kutta_step_derivatives<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        qd: &Bound<'py, PyAny>,
-        tau: &Bound<'py, PyAny>,
-        pose: &Bound<'py, PyAny>,
-        twist: &Bound<'py, PyAny>,
-        step: &Bound<'py, PyAny>,
-        wrenches: Option<&Bound<'py, PyAny>>,
-        steps: i64,
-        parameters: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyTuple>> {
+    floating_runge_kutta_step_derivatives {
         let more = self.of_base(pose, twist, wrenches)?;
         self.stepped([q, qd, tau], step, steps, more, parameters)?.of_floating_base(py, true)
     }
@@ -168,17 +149,17 @@ impl Arm {
 impl<'py> Steps<'_, 'py> {
     fn of_arm(&self, py: Python<'py>, is_loaded: bool, is_derived: bool) -> PyResult<Bound<'py, PyTuple>> {
         if are_single(&self.given) {
-            Rows::<f32>::of(&self.given, "float32")?.of_arm(py, self, is_loaded, is_derived)
+            Rows::<f32>::of(&self.given)?.of_arm(py, self, is_loaded, is_derived)
         } else {
-            Rows::<f64>::of(&self.given, "float64")?.of_arm(py, self, is_loaded, is_derived)
+            Rows::<f64>::of(&self.given)?.of_arm(py, self, is_loaded, is_derived)
         }
     }
 
     fn of_floating_base(&self, py: Python<'py>, is_derived: bool) -> PyResult<Bound<'py, PyTuple>> {
         if are_single(&self.given) {
-            Rows::<f32>::of(&self.given, "float32")?.of_floating_base(py, self, is_derived)
+            Rows::<f32>::of(&self.given)?.of_floating_base(py, self, is_derived)
         } else {
-            Rows::<f64>::of(&self.given, "float64")?.of_floating_base(py, self, is_derived)
+            Rows::<f64>::of(&self.given)?.of_floating_base(py, self, is_derived)
         }
     }
 }
@@ -191,9 +172,8 @@ struct Rows<T> {
 }
 
 impl<T: Element + Number> Rows<T> {
-    fn of(given: &[Given<'_>], dtype: &str) -> PyResult<Self> {
-        let held: Vec<Held<'_, T>> =
-            given.iter().map(|given| Held::of(given, dtype, &(0..0))).collect::<PyResult<_>>()?;
+    fn of(given: &[Given<'_>]) -> PyResult<Self> {
+        let held: Vec<Held<'_, T>> = given.iter().map(|given| Held::of(given, &(0..0))).collect::<PyResult<_>>()?;
         let many = states(&held)?;
         let of_each = |held: &Held<'_, T>| Ok((held.name(), held.elements(), held.rows(many.unwrap_or(1))?));
         let rows = Self { many, rows: held.iter().map(of_each).collect::<PyResult<_>>()? };

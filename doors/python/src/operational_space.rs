@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use rne::Scalar;
 use rne::compiled::{Function, Number};
 
-use crate::arm::Arm;
+use crate::arm::{Arm, methods};
 use crate::arrays::{room, writable};
 
 /// Rows of a Jacobian: three linear ones, then three angular ones.
@@ -19,8 +19,19 @@ enum Returned {
     Inverse,
 }
 
-#[pymethods]
-impl Arm {
+methods! {
+    (q, *, frame=None, rows=None, payload=None, parameters=None, out=None)
+    (
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        frame: Option<&Bound<'py, PyAny>>,
+        rows: Option<Vec<i64>>,
+        payload: Option<&Bound<'py, PyAny>>,
+        parameters: Option<&Bound<'py, PyAny>>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>>;
+
     /// The operational-space inertia (J M⁻¹ Jᵀ)⁻¹ at the tip or at a frame, symmetric (Khatib, 1987).
     ///
     /// A force at the tip of an arm at rest, without gravity, is this matrix times the acceleration that it causes.
@@ -36,17 +47,7 @@ impl Arm {
     /// for its link frame. payload: a body at the tip, shape (10,) or (N, 10); `rne.payload` makes one.
     ///
     /// Returns shape (m, m) or (N, m, m).
-    #[pyo3(signature = (q, *, frame=None, rows=None, payload=None, parameters=None, out=None))]
-    fn operational_space_inertia<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        frame: Option<&Bound<'py, PyAny>>,
-        rows: Option<Vec<i64>>,
-        payload: Option<&Bound<'py, PyAny>>,
-        parameters: Option<&Bound<'py, PyAny>>,
-        out: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    operational_space_inertia {
         let rows = self.task(rows, frame)?;
         let [mass, jacobian] = self.mass_and_jacobian(py, q, frame, payload, parameters)?;
         in_operational_space(&mass, &jacobian, &rows, Returned::Inertia, out)
@@ -61,17 +62,7 @@ impl Arm {
     /// The arguments, the errors and the results at a singular pose are those of `operational_space_inertia`.
     ///
     /// Returns shape (n, m) or (N, n, m).
-    #[pyo3(signature = (q, *, frame=None, rows=None, payload=None, parameters=None, out=None))]
-    fn dynamically_consistent_inverse<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        frame: Option<&Bound<'py, PyAny>>,
-        rows: Option<Vec<i64>>,
-        payload: Option<&Bound<'py, PyAny>>,
-        parameters: Option<&Bound<'py, PyAny>>,
-        out: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    dynamically_consistent_inverse {
         let rows = self.task(rows, frame)?;
         let [mass, jacobian] = self.mass_and_jacobian(py, q, frame, payload, parameters)?;
         in_operational_space(&mass, &jacobian, &rows, Returned::Inverse, out)
@@ -146,8 +137,8 @@ fn in_operational_space<'py>(
     out: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     match (mass.cast::<PyArrayDyn<f32>>(), jacobian.cast::<PyArrayDyn<f32>>()) {
-        (Ok(mass), Ok(jacobian)) => computed(mass, jacobian, rows, returned, out, "float32"),
-        _ => computed::<f64>(mass.cast()?, jacobian.cast()?, rows, returned, out, "float64"),
+        (Ok(mass), Ok(jacobian)) => computed(mass, jacobian, rows, returned, out),
+        _ => computed::<f64>(mass.cast()?, jacobian.cast()?, rows, returned, out),
     }
 }
 
@@ -157,7 +148,6 @@ fn computed<'py, T: Element + Number + Scalar>(
     rows: &[usize],
     returned: Returned,
     out: Option<&Bound<'py, PyAny>>,
-    dtype: &str,
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = mass.py();
     let (dof, task) = (mass.shape().last().copied().unwrap_or_default(), rows.len());
@@ -168,7 +158,7 @@ fn computed<'py, T: Element + Number + Scalar>(
     // the mass matrix has all states: the Jacobian has none of the payload's
     let states = mass.shape().len().checked_sub(2).and_then(|axes| mass.shape().get(..axes)).unwrap_or_default();
     let shape = [states, &of_state].concat();
-    let result = room::<T>(py, out, &shape, dtype)?;
+    let result = room::<T>(py, out, &shape)?;
     let (mass, jacobian) = (mass.readonly(), jacobian.readonly());
     {
         let not_contiguous = |_| PyValueError::new_err("`out` is not contiguous");

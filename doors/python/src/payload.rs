@@ -64,7 +64,7 @@ fn numbers<const N: usize>(
                 let message = format!("`{name}` has the shape {found}, but it must be {allowed}");
                 return Err(PyValueError::new_err(message));
             }
-            readable(name, &in_order(taken::<f64>(value.py(), name, value, "float64", &(0..0))?)?)?.as_slice()?.to_vec()
+            readable(name, &in_order(taken::<f64>(name, value, &(0..0))?)?)?.as_slice()?.to_vec()
         }
     };
     if let Some(at) = found.iter().position(|number| !number.is_finite()) {

@@ -18,7 +18,7 @@ use crate::arrays::{in_order, refuse_masked, room, writable};
 #[pyfunction]
 pub(crate) fn pose_log<'py>(py: Python<'py>, pose: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let poses = matrices("pose", pose)?;
-    let result = room::<f64>(py, None, &[leading(&poses), &[6]].concat(), "float64")?;
+    let result = room::<f64>(py, None, &[leading(&poses), &[6]].concat())?;
     let read = poses.readonly();
     write(&result, read.as_slice()?.chunks_exact(16).map(|numbers| pose_of(numbers).log()))?;
     Ok(result.into_any())
@@ -60,7 +60,7 @@ impl Arm {
                 )));
             }
         };
-        let result = room::<f64>(py, None, &[states, &[6]].concat(), "float64")?;
+        let result = room::<f64>(py, None, &[states, &[6]].concat())?;
         let (poses, targets) = (poses.readonly(), targets.readonly());
         let (poses, targets) = (poses.as_slice()?, targets.as_slice()?);
         let count = states.iter().product();

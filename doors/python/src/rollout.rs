@@ -2,7 +2,7 @@
 
 use std::ffi::{CStr, CString};
 
-use numpy::{Element, PyArrayDyn};
+use numpy::Element;
 use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyTuple};
@@ -11,9 +11,9 @@ use rne_codegen::Function;
 use rne_model::Robot;
 
 use crate::arm::Arm;
-use crate::arrays::{self, Axes, Given, Held, Value, are_single, memory, room, shape_in_words, states, writable};
+use crate::arrays::{self, Axes, Given, Value, are_single, shape_in_words};
 use crate::errors::of_evaluation;
-use crate::functions::{arguments, warn_of_loss};
+use crate::functions::{computed, warn_of_loss};
 
 #[pymethods]
 impl Arm {
@@ -92,9 +92,9 @@ impl Arm {
         warn_of_nothing(py, self.robot(), &rollout)?;
         if is_single {
             warn_of_loss(py, &self.arm, Function::ForwardDynamics)?;
-            roll_out::<f32>(py, &self.arm, &rollout, &given, out, "float32")
+            roll_out::<f32>(py, &self.arm, &rollout, &given, out)
         } else {
-            roll_out::<f64>(py, &self.arm, &rollout, &given, out, "float64")
+            roll_out::<f64>(py, &self.arm, &rollout, &given, out)
         }
     }
 }
@@ -252,29 +252,19 @@ fn roll_out<'py, T: Element + Number>(
     rollout: &Rollout,
     given: &[Given<'py>],
     out: Option<&Bound<'py, PyAny>>,
-    dtype: &str,
 ) -> PyResult<Bound<'py, PyTuple>> {
-    let written = out.and_then(|out| out.cast::<PyArrayDyn<T>>().ok()).map_or(0..0, memory);
-    let held: Vec<Held<'py, T>> =
-        given.iter().map(|given| Held::of(given, dtype, &written)).collect::<PyResult<_>>()?;
-    let many = states(&held)?;
-    let samples = many.unwrap_or(1);
-    let columns: Vec<Vec<&[T]>> = held.iter().map(Held::columns).collect::<PyResult<_>>()?;
-    let arguments = arguments(given, &held, &columns, samples)?;
-    let shape: Vec<usize> = [2].into_iter().chain(many).chain([rollout.steps, arm.dof()]).collect();
-    let result = room::<T>(py, out, &shape, dtype)?;
-    {
-        let mut writable = writable(&result)?;
-        let numbers = writable.as_slice_mut().map_err(|_| PyValueError::new_err("`out` is not contiguous"))?;
+    let of_sample = [rollout.steps, arm.dof()];
+    let (result, _) = computed::<T>(py, given, out, [&[2], &of_sample], |held, samples, arguments, numbers| {
         let (positions, velocities) = numbers.split_at_mut(numbers.len() / 2);
-        py.detach(|| arm.rollout(rollout, samples, &arguments, positions, velocities))
+        py.detach(|| arm.rollout(rollout, samples, arguments, positions, velocities))
             .map_err(|error| of_evaluation(&error))?;
         let inputs_are_finite = || held.iter().all(|held| held.all(is_finite));
-        if let Some(diverged) = Diverged::of(positions, velocities, [rollout.steps, arm.dof()])
+        if let Some(diverged) = Diverged::of(positions, velocities, of_sample)
             && inputs_are_finite()
         {
             diverged.warn(py, rollout)?;
         }
-    }
+        Ok(())
+    })?;
     PyTuple::new(py, [result.get_item(0)?, result.get_item(1)?])
 }
