@@ -109,13 +109,13 @@ impl ArmLog {
         // the log's own filter is chosen here
         let asked = options.cutoff.take();
         let (mut options, by_order) = joint_options(paths, robot, options)?;
-        let log = Log::open(paths, options.clone()).map_err(ArmLogError::log)?;
+        let log = Log::open(paths, options.clone())?;
         check_units(robot, log.layout())?;
         check_efforts(&log)?;
-        let survey = log.survey(&mut *progress).map_err(ArmLogError::log)?;
+        let survey = log.survey(&mut *progress)?;
         // a unit that nobody said is refused here
         if survey.may_be_degrees(&log).is_some() || !log.unsaid_currents().is_empty() {
-            log.motions(&survey).map_err(ArmLogError::log)?;
+            log.motions(&survey)?;
         }
         if survey.counts.states == 0 {
             return Err(ArmLogError::NoStates { left_out: log.left_out(&survey) });
@@ -130,8 +130,8 @@ impl ArmLog {
         })?;
         let read_to = (wider * cutoff).min(highest);
         options.cutoff = Some(read_to);
-        let log = Log::open(paths, options.clone()).map_err(ArmLogError::log)?;
-        let survey = log.survey(progress).map_err(ArmLogError::log)?;
+        let log = Log::open(paths, options.clone())?;
+        let survey = log.survey(progress)?;
         let remarks = by_order.into_iter().chain(remarks(&log, &survey)).collect();
         Ok(Self { log, options, survey, cutoff, read_to, remarks })
     }
@@ -143,8 +143,8 @@ impl ArmLog {
     pub fn judged(&self, progress: &mut dyn FnMut(f64)) -> Result<Self, ArmLogError> {
         let read_to = (WIDER * self.cutoff).min(self.read_to);
         let options = Options { cutoff: Some(read_to), ..self.options.clone() };
-        let log = Log::open(self.log.files(), options.clone()).map_err(ArmLogError::log)?;
-        let survey = log.survey(progress).map_err(ArmLogError::log)?;
+        let log = Log::open(self.log.files(), options.clone())?;
+        let survey = log.survey(progress)?;
         Ok(Self { log, options, survey, cutoff: self.cutoff, read_to, remarks: Vec::new() })
     }
 
@@ -253,7 +253,7 @@ impl ArmLog {
     }
 
     fn motions<E>(&self) -> Result<Motions<'_>, PassError<E>> {
-        self.log.motions(&self.survey).map_err(|error| PassError::Log(ArmLogError::log(error)))
+        self.log.motions(&self.survey).map_err(|error| PassError::Log(error.into()))
     }
 
     fn hand_on<E>(
@@ -272,7 +272,7 @@ impl ArmLog {
         };
         let mut motions = motions.with_length(PIECE);
         while let Some(piece) = motions.next() {
-            let piece = piece.map_err(|error| PassError::Log(ArmLogError::log(error)))?;
+            let piece = piece.map_err(|error| PassError::Log(error.into()))?;
             progress(motions.progress());
             let run = usize::try_from(piece.run).unwrap_or(usize::MAX);
             let motion = match part {

@@ -78,12 +78,7 @@ impl Baseline {
         pass: impl FnMut(&mut dyn FnMut(u64, &Motion) -> Result<(), MotionError>) -> Result<(), E>,
     ) -> Result<Self, E> {
         let (model, stretches) = FittedModel::of(structure, pass)?;
-        let dof = structure.dof();
-        let count = structure.count();
-        let mut totals = vec![DMatrix::zeros(count + 1, count + 1); dof];
-        for stretch in stretches.list() {
-            totals.iter_mut().enumerate().for_each(|(joint, total)| stretch.add_joint(structure, joint, total));
-        }
+        let totals = products_of_joints(structure, stretches.list());
         let scale = Scale::of(structure, &model, &totals);
         let parts = (usize::try_from(stretches.rows() / ROWS).unwrap_or(usize::MAX)).clamp(PARTS[0], PARTS[1]);
         let short = inflation(structure, &model, &stretches, parts);
@@ -179,6 +174,26 @@ fn residual(structure: &Structure, model: &FittedModel, stretches: &Stretches) -
     sums.iter().zip(&model.noise).map(|(sum, noise)| sum.root_mean_square().unwrap_or(*noise).max(*noise)).collect()
 }
 
+/// The sum of the products of the rows of a joint: of all unknowns, then of its torque.
+pub(crate) fn products<'a>(
+    structure: &Structure,
+    joint: usize,
+    stretches: impl IntoIterator<Item = &'a Stretch>,
+) -> DMatrix<f64> {
+    let size = structure.count() + 1;
+    let mut sum = DMatrix::zeros(size, size);
+    stretches.into_iter().for_each(|stretch| stretch.add_joint(structure, joint, &mut sum));
+    sum
+}
+
+/// The products of all joints.
+pub(crate) fn products_of_joints<'a>(
+    structure: &Structure,
+    stretches: impl IntoIterator<Item = &'a Stretch> + Clone,
+) -> Vec<DMatrix<f64>> {
+    (0..structure.dof()).map(|joint| products(structure, joint, stretches.clone())).collect()
+}
+
 /// The squares of what a model leaves of the torques of a joint.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Residual {
@@ -189,8 +204,7 @@ pub(crate) struct Residual {
 impl Residual {
     pub(crate) fn of(structure: &Structure, joint: usize, stretch: &Stretch, unknowns: &DVector<f64>) -> Self {
         let count = structure.count();
-        let mut products = DMatrix::zeros(count + 1, count + 1);
-        stretch.add_joint(structure, joint, &mut products);
+        let products = products(structure, joint, [stretch]);
         let mut row = DVector::from_element(count + 1, 1.0);
         row.rows_mut(0, count).copy_from(&-unknowns);
         let ones = FittedModel::place(structure, joint, FrictionParameter::Offset);

@@ -123,27 +123,28 @@ impl Scale {
     /// The smallest change that is an event.
     #[must_use]
     pub fn least(&self, candidate: Candidate) -> f64 {
-        match candidate {
-            Candidate::Coulomb(joint) => 0.10 * self.friction[joint],
-            Candidate::Viscous(joint) => 0.25 * self.friction[joint] / self.speed[joint].max(SLOWEST),
-            Candidate::Offset(joint) => self.friction[joint].max(0.05 * self.effort[joint]),
-            Candidate::Payload => self.payload(0.1),
-            Candidate::Delay => 0.004,
-            Candidate::Gain(_) => 0.15,
-        }
+        self.least_and_error(candidate)[0]
     }
 
     /// The deviation of a parameter between logs of an arm that has not changed: the error of the model, which does not
     /// become smaller when a log becomes longer.
     #[must_use]
     pub fn model_error(&self, candidate: Candidate) -> f64 {
+        self.least_and_error(candidate)[1]
+    }
+
+    fn least_and_error(&self, candidate: Candidate) -> [f64; 2] {
         match candidate {
-            Candidate::Coulomb(joint) => 0.04 * self.friction[joint],
-            Candidate::Viscous(joint) => 0.06 * self.friction[joint] / self.speed[joint].max(SLOWEST),
-            Candidate::Offset(joint) => 0.10 * self.friction[joint],
-            Candidate::Payload => self.payload(0.05),
-            Candidate::Delay => 0.002,
-            Candidate::Gain(_) => 0.05,
+            Candidate::Coulomb(joint) => [0.10, 0.04].map(|part| part * self.friction[joint]),
+            Candidate::Viscous(joint) => {
+                [0.25, 0.06].map(|part| part * self.friction[joint] / self.speed[joint].max(SLOWEST))
+            }
+            Candidate::Offset(joint) => {
+                [self.friction[joint].max(0.05 * self.effort[joint]), 0.10 * self.friction[joint]]
+            }
+            Candidate::Payload => [0.1, 0.05].map(|mass| self.payload(mass)),
+            Candidate::Delay => [0.004, 0.002],
+            Candidate::Gain(_) => [0.15, 0.05],
         }
     }
 

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use rne_identify::{FittedModel, FrictionParameter, MotionError, Stretch, Stretches, Structure};
 use rne_logs::{Motion, median};
 
 use crate::Baseline;
-use crate::baseline::Residual;
+use crate::baseline::{Residual, products_of_joints};
 use crate::candidate::{Candidate, Scale};
 use crate::event::{Cause, Event, unit};
 use crate::selection::{Finding, Selection, Statistic};
@@ -159,13 +159,7 @@ impl Changes {
 
 /// The efforts of a log over those of the baseline, in the median over the joints that have efforts in both.
 fn effort_ratio(structure: &Structure, baseline: &Baseline, log: &Stretches) -> f64 {
-    let size = structure.count() + 1;
-    let total = |joint: usize| {
-        let mut total = DMatrix::zeros(size, size);
-        log.list().iter().for_each(|stretch| stretch.add_joint(structure, joint, &mut total));
-        total
-    };
-    let totals: Vec<DMatrix<f64>> = (0..structure.dof()).map(total).collect();
+    let totals = products_of_joints(structure, log.list());
     let now = Scale::of(structure, &baseline.model, &totals).effort;
     let ratios = now.iter().zip(&baseline.scale.effort).map(|(now, before)| now / before);
     let ratios: Vec<f64> = ratios.filter(|ratio| *ratio > 0.0 && ratio.is_finite()).collect();

@@ -101,11 +101,11 @@ impl From<MotionError> for WatchError {
     }
 }
 
-impl From<PassError<Self>> for WatchError {
-    fn from(error: PassError<Self>) -> Self {
+impl<E: Into<Self>> From<PassError<E>> for WatchError {
+    fn from(error: PassError<E>) -> Self {
         match error {
             PassError::Log(error) => Self::Log(error),
-            PassError::Motion(error) => error,
+            PassError::Motion(error) => error.into(),
         }
     }
 }

@@ -83,11 +83,8 @@ impl Baseline {
         progress: &mut dyn FnMut(f64),
     ) -> Result<Self, WatchError> {
         let judged = log.judged(progress).map_err(WatchError::Log)?;
-        let mut baseline = Self::of::<WatchError>(structure, |take| {
-            judged
-                .pass_runs(Part::All, &mut |run, motion| take(run, motion).map_err(WatchError::from), progress)
-                .map_err(WatchError::from)
-        })?;
+        let mut baseline =
+            Self::of::<WatchError>(structure, |take| Ok(judged.pass_runs(Part::All, take, progress)?))?;
         baseline.check(structure)?;
         baseline.span = log.span();
         Ok(baseline)
@@ -221,21 +218,15 @@ pub fn changes(
 ) -> Result<Changes, WatchError> {
     let judged = log.judged(progress).map_err(WatchError::Log)?;
     let mut stretches = Stretches::new(structure, &baseline.model);
-    judged
-        .pass_runs(
-            Part::All,
-            &mut |run, motion| stretches.absorb(structure, run, motion).map_err(WatchError::from),
-            progress,
-        )
-        .map_err(WatchError::from)?;
+    judged.pass_runs(Part::All, &mut |run, motion| stretches.absorb(structure, run, motion), progress)?;
     let exchanged = exchanged_efforts(structure, baseline, &stretches, |[first, second]| {
         let mut stretches = Stretches::new(structure, &baseline.model);
         let mut absorb = |run: u64, motion: &Motion| {
             let mut motion = motion.clone();
             motion.tau.swap(first, second);
-            stretches.absorb(structure, run, &motion).map_err(WatchError::from)
+            stretches.absorb(structure, run, &motion)
         };
-        judged.pass_runs(Part::All, &mut absorb, progress).map_err(WatchError::from)?;
+        judged.pass_runs(Part::All, &mut absorb, progress)?;
         Ok::<_, WatchError>(stretches)
     })?;
     let is_silent = |joint: usize| stretches.list().iter().all(|stretch| stretch.is_silent(joint));
@@ -303,7 +294,7 @@ fn each_signals(
         pieces += u64::from(unless_short(taken)?);
         Ok(())
     };
-    log.pass_runs(Part::All, &mut take_motion, progress).map_err(WatchError::from)?;
+    log.pass_runs(Part::All, &mut take_motion, progress)?;
     if pieces == 0 { Err(WatchError::TooFew { found: 0, needed: 1 }) } else { Ok(()) }
 }
 

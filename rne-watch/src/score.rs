@@ -19,6 +19,7 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 use rne_identify::{FittedModel, LIGHTEST_PAYLOAD, PAYLOAD_REACH, Stretch, Structure, inverse_of_information};
 
+use crate::baseline;
 use crate::candidate::{Candidate, MOMENTS};
 
 /// Rounds in which the first moments of a payload follow its mass.
@@ -267,8 +268,7 @@ fn add(
     left: &mut DVector<f64>,
 ) {
     let count = structure.count();
-    let mut total = DMatrix::zeros(count + 1, count + 1);
-    stretch.add_joint(structure, joint, &mut total);
+    let total = baseline::products(structure, joint, [stretch]);
     let of_columns = total.view((0, 0), (count, count));
     let with_torques = of_columns * &model.solution;
     let rest = total.view((0, count), (count, 1)).column(0) - &with_torques;

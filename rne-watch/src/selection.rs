@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use rne_identify::{FittedModel, Stretch, Structure};
 
 use rne_logs::median;
 
 use crate::Baseline;
-use crate::baseline::Residual;
+use crate::baseline::{Residual, products_of_joints};
 use crate::candidate::{Candidate, speeds};
 use crate::score::{Change, Estimate, Projected, Score};
 use crate::sensor::is_dead;
@@ -486,15 +486,7 @@ pub(crate) fn of_joint(
 
 /// The ratio of each joint's speed to that in the quiet logs.
 fn speed_ratios(structure: &Structure, baseline: &Baseline, stretches: &[&Stretch]) -> Vec<f64> {
-    let count = structure.count();
-    let total = |joint: usize| {
-        let mut total = DMatrix::zeros(count + 1, count + 1);
-        for stretch in stretches {
-            stretch.add_joint(structure, joint, &mut total);
-        }
-        total
-    };
-    let totals: Vec<DMatrix<f64>> = (0..structure.dof()).map(total).collect();
+    let totals = products_of_joints(structure, stretches.iter().copied());
     let speeds = speeds(structure, &totals).into_iter().zip(&baseline.scale.speed);
     speeds.map(|(now, before)| now.max(SLOWEST) / before.max(SLOWEST)).collect()
 }

@@ -3,10 +3,10 @@
 
 use std::ops::Range;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use rne_identify::{FittedModel, FrictionParameter, Stretch, Stretches, Structure};
 
-use crate::baseline::Residual;
+use crate::baseline::{Residual, products};
 use crate::event::{Cause, Event, unit};
 use crate::{Baseline, Candidate};
 
@@ -54,8 +54,7 @@ struct Sums {
 impl Sums {
     fn of(structure: &Structure, model: &FittedModel, joint: usize, stretch: &Stretch) -> Self {
         let count = structure.count();
-        let mut products = DMatrix::zeros(count + 1, count + 1);
-        stretch.add_joint(structure, joint, &mut products);
+        let products = products(structure, joint, [stretch]);
         let Some(one) = FittedModel::place(structure, joint, FrictionParameter::Offset) else { return Self::default() };
         let predicted: DVector<f64> = products.view((0, 0), (count, count)) * &model.solution;
         Self {

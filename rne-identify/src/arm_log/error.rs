@@ -97,10 +97,6 @@ pub enum Mismatch {
 }
 
 impl ArmLogError {
-    pub(crate) fn log(error: LogError) -> Self {
-        Self::Log { error, joints: Vec::new() }
-    }
-
     /// Whether the files are in order and what was asked for is not: other options help.
     #[must_use]
     pub fn is_of_request(&self) -> bool {
@@ -110,6 +106,12 @@ impl ArmLogError {
             Self::NoEfforts { .. } | Self::MissingEfforts { .. } | Self::NoStates { .. } | Self::NoCutoff => false,
             Self::Cutoff { possible, .. } => possible.is_some(),
         }
+    }
+}
+
+impl From<LogError> for ArmLogError {
+    fn from(error: LogError) -> Self {
+        Self::Log { error, joints: Vec::new() }
     }
 }
 
