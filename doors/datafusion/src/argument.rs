@@ -1,6 +1,6 @@
 //! Numbers of states out of a batch's columns: a list per state, or a column per number.
 
-use datafusion::arrow::array::{Array, ArrayRef, AsArray, Float64Array};
+use datafusion::arrow::array::{Array, ArrayRef, AsArray, Float64Array, OffsetSizeTrait};
 use datafusion::arrow::buffer::NullBuffer;
 use datafusion::arrow::datatypes::{DataType, Field, FieldRef, Float64Type};
 use datafusion::common::{Result, exec_err, plan_err};
@@ -138,23 +138,25 @@ pub(crate) fn of_list<'a>(
             let wanted = (0..list.len()).map(|state| (state * size, size));
             gather(list.values(), list.nulls(), wanted, list.len(), size, place)
         }
-        DataType::List(_) => {
-            let list = array.as_list::<i32>();
-            let at = |state: usize| usize::try_from(list.value_offsets()[state]).unwrap_or_default();
-            let wanted = (0..list.len()).map(|state| (at(state), at(state + 1) - at(state)));
-            gather(list.values(), list.nulls(), wanted, list.len(), size, place)
-        }
-        DataType::LargeList(_) => {
-            let list = array.as_list::<i64>();
-            let at = |state: usize| usize::try_from(list.value_offsets()[state]).unwrap_or_default();
-            let wanted = (0..list.len()).map(|state| (at(state), at(state + 1) - at(state)));
-            gather(list.values(), list.nulls(), wanted, list.len(), size, place)
-        }
+        DataType::List(_) => of_offsets::<i32>(array, size, place),
+        DataType::LargeList(_) => of_offsets::<i64>(array, size, place),
         other => {
             let Place { function, column, .. } = place;
             exec_err!("{function}: column `{column}` is {other}, but must be lists of Float64")
         }
     }
+}
+
+/// The numbers of a column whose lists have their own lengths.
+fn of_offsets<'a, O: OffsetSizeTrait>(
+    array: &'a ArrayRef,
+    size: usize,
+    place: &Place<'_>,
+) -> Result<(Argument<'a>, Option<NullBuffer>)> {
+    let list = array.as_list::<O>();
+    let at = |state: usize| list.value_offsets()[state].as_usize();
+    let wanted = (0..list.len()).map(|state| (at(state), at(state + 1) - at(state)));
+    gather(list.values(), list.nulls(), wanted, list.len(), size, place)
 }
 
 /// `lists`: where the list of each state starts, and how long it is.

@@ -3,95 +3,42 @@
 use std::sync::Arc;
 
 use datafusion::arrow::array::{Array, ArrayRef};
-use datafusion::arrow::datatypes::{DataType, FieldRef};
-use datafusion::common::{Result, ScalarValue, exec_err, plan_err};
-use datafusion::logical_expr::function::{AccumulatorArgs, StateFieldsArgs};
-use datafusion::logical_expr::{Accumulator, AggregateUDFImpl, Documentation, Signature};
-use datafusion::physical_expr::expressions::Literal;
+use datafusion::common::{Result, ScalarValue, exec_err};
+use datafusion::logical_expr::Accumulator;
 use rne_identify::{Fit, Information, Structure};
 use rne_logs::Motion;
 
-use crate::argument::{self, Argument};
-use crate::call::{Call, key};
+use crate::argument::Argument;
 use crate::found::{self, Found};
-use crate::function::coerced;
 use crate::numbers;
-use crate::robots::{Held, Robots, external};
+use crate::robots::{Held, external};
+use crate::rows::{OfRows, Rows};
 
-const NAME: &str = "identification";
-
-/// The arguments after the robot.
-const ARGUMENTS: [&str; 4] = ["q", "qd", "qdd", "tau"];
+/// The aggregate.
+pub(crate) static IDENTIFICATION: OfRows = OfRows {
+    name: "identification",
+    is_timed: false,
+    arguments: &["q", "qd", "qdd", "tau"],
+    over: "",
+    summary: "Links and friction from states with measured torques, by least squares row by row.",
+};
 
 /// How strongly links are pulled to those of the file, as `rne identify` does unasked.
 pub(crate) const REGULARIZATION: f64 = 1.0;
 
-const SUMMARY: &str = "Links and friction from states with measured torques, by least squares row by row.";
-
-/// The aggregate, with the robots that it may be asked for.
-#[derive(Debug, PartialEq, Eq, Hash)]
-pub(crate) struct IdentificationFunction(Call);
-
-impl IdentificationFunction {
-    pub(crate) fn new(robots: Robots) -> Self {
-        let syntax = format!("{NAME}(robot, {})", ARGUMENTS.join(", "));
-        Self(Call::new(robots, &syntax, SUMMARY))
-    }
-}
-
-impl AggregateUDFImpl for IdentificationFunction {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn signature(&self) -> &Signature {
-        &self.0.signature
-    }
-
-    fn coerce_types(&self, given: &[DataType]) -> Result<Vec<DataType>> {
-        coerced(NAME, given)
-    }
-
-    fn return_type(&self, _: &[DataType]) -> Result<DataType> {
-        Ok(found::data_type())
-    }
-
-    fn state_fields(&self, given: StateFieldsArgs<'_>) -> Result<Vec<FieldRef>> {
-        Ok(vec![numbers::field(given.name)])
-    }
-
-    fn accumulator(&self, given: AccumulatorArgs<'_>) -> Result<Box<dyn Accumulator>> {
-        if given.is_distinct {
-            return plan_err!("{NAME}: DISTINCT is not for rows of states; select the distinct rows before");
-        }
-        let robot = given.exprs.first().and_then(|robot| robot.downcast_ref::<Literal>());
-        let held = self.0.robots.get(key(NAME, robot.map(Literal::value))?)?;
-        let columns = argument::columns(given.expr_fields);
-        let robot = held.arm.robot();
-        argument::check(NAME, &ARGUMENTS, &columns, robot)?;
-        let columns = columns.iter().map(|column| column.name.to_owned()).collect();
-        Ok(Box::new(Gathered::new(held, columns)))
-    }
-
-    fn documentation(&self) -> Option<&Documentation> {
-        Some(self.0.documentation())
-    }
-}
-
 /// What the rows of a group say, so far.
 #[derive(Debug)]
-struct Gathered {
+pub(crate) struct Gathered {
     structure: Arc<Structure>,
     information: Information,
-    /// The names of the columns after the robot.
-    columns: Vec<String>,
+    rows: Rows,
 }
 
 impl Gathered {
-    fn new(held: &Held, columns: Vec<String>) -> Self {
+    pub(crate) fn new(held: &Held, rows: Rows) -> Self {
         let structure = held.structure();
         let information = Information::unordered(&structure);
-        Self { structure, information, columns }
+        Self { structure, information, rows }
     }
 
     fn joints(&self) -> usize {
@@ -111,9 +58,10 @@ impl Gathered {
             let (width, step) = if matches!(argument, Argument::Columns(_)) { (self.joints(), 1) } else { (1, 0) };
             for (joint, numbers) in list.iter().enumerate() {
                 if let Some(at) = numbers.iter().position(|number| !number.is_finite()) {
-                    let column = self.columns.get(first + step * joint).map_or("?", String::as_str);
+                    let column = self.rows.columns.get(first + step * joint).map_or("?", String::as_str);
                     return exec_err!(
-                        "{NAME}: column `{column}`, row {} of a batch: joint {} has {}, which is no finite number",
+                        "{}: column `{column}`, row {} of a batch: joint {} has {}, which is no finite number",
+                        IDENTIFICATION.name,
                         states[at] + 1,
                         joint + 1,
                         numbers[at]
@@ -129,8 +77,7 @@ impl Gathered {
 impl Accumulator for Gathered {
     fn update_batch(&mut self, values: &[ArrayRef]) -> Result<()> {
         let arrays = values.get(1..).unwrap_or_default();
-        let columns: Vec<&str> = self.columns.iter().map(String::as_str).collect();
-        let (arguments, nulls) = argument::all(NAME, &ARGUMENTS, &columns, arrays, self.structure.robot())?;
+        let (arguments, nulls) = self.rows.arguments(arrays)?;
         let rows = arrays.first().map_or(0, Array::len);
         let states: Vec<usize> =
             (0..rows).filter(|&state| nulls.as_ref().is_none_or(|nulls| nulls.is_valid(state))).collect();
@@ -148,7 +95,7 @@ impl Accumulator for Gathered {
     }
 
     fn merge_batch(&mut self, states: &[ArrayRef]) -> Result<()> {
-        numbers::each(NAME, states, |numbers| {
+        numbers::each(IDENTIFICATION.name, states, |numbers| {
             let part = Information::from_numbers(&self.structure, numbers).map_err(external)?;
             self.information.merge(part);
             Ok(())

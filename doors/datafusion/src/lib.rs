@@ -22,6 +22,7 @@
 //! out. Units,
 //! signs and frames are those of [`rne`](https://docs.rs/rne).
 
+mod aggregate;
 mod argument;
 mod call;
 mod found;
@@ -32,14 +33,14 @@ mod momentum_residual;
 mod numbers;
 mod result;
 mod robots;
+mod rows;
 mod time;
 
 use datafusion::logical_expr::{AggregateUDF, ScalarUDF, WindowUDF};
 use datafusion::prelude::SessionContext;
 
+use crate::aggregate::Aggregate;
 use crate::function::{Computation, DynamicsFunction};
-use crate::identification::IdentificationFunction;
-use crate::log_identification::LogIdentification;
 use crate::momentum_residual::MomentumResidual;
 pub use crate::robots::Robots;
 
@@ -66,10 +67,7 @@ pub fn register(context: &SessionContext, robots: &Robots) {
 /// Every aggregate, for those robots.
 #[must_use]
 pub fn aggregates(robots: &Robots) -> Vec<AggregateUDF> {
-    vec![
-        AggregateUDF::new_from_impl(IdentificationFunction::new(robots.clone())),
-        AggregateUDF::new_from_impl(LogIdentification::new(robots.clone())),
-    ]
+    Aggregate::all(robots).map(AggregateUDF::new_from_impl).into()
 }
 
 /// Every window function, for those robots.

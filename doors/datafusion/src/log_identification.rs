@@ -5,92 +5,36 @@ use std::path::Path;
 
 use datafusion::arrow::array::{Array, ArrayRef};
 use datafusion::arrow::datatypes::{DataType, FieldRef};
-use datafusion::common::{Result, ScalarValue, exec_err, plan_err};
-use datafusion::logical_expr::function::{AccumulatorArgs, StateFieldsArgs};
-use datafusion::logical_expr::{Accumulator, AggregateUDFImpl, Documentation, Signature};
-use datafusion::physical_expr::expressions::Literal;
-use rne::model::Robot;
+use datafusion::common::{Result, ScalarValue, exec_err};
+use datafusion::logical_expr::Accumulator;
 use rne_identify::{
     ArmLog, ArmLogError, ArmLogOptions, Identification, MotionError, Options, Part, PassError, identify,
 };
 use rne_logs::{Angles, Npy, TimeUnit};
 
-use crate::argument;
-use crate::call::{Call, key};
 use crate::found::{self, Found};
 use crate::identification::REGULARIZATION;
 use crate::numbers;
-use crate::robots::{Robots, external};
+use crate::robots::external;
+use crate::rows::{OfRows, Rows};
 use crate::time::{self, Instant};
 
-const NAME: &str = "identify";
-
-/// The arguments after the robot and the time.
-const ARGUMENTS: [&str; 3] = ["q", "qd", "tau"];
+/// The aggregate.
+pub(crate) static LOG_IDENTIFICATION: OfRows = OfRows {
+    name: "identify",
+    is_timed: true,
+    arguments: &["q", "qd", "tau"],
+    over: "",
+    summary: "Links and friction from a log with measured torques, as `rne identify` finds them.",
+};
 
 /// Numbers of a row before those of its joints: whole seconds, and the part of a second.
 const TIME: usize = 2;
 
-const SUMMARY: &str = "Links and friction from a log with measured torques, as `rne identify` finds them.";
-
-/// The aggregate, with the robots that it may be asked for.
-#[derive(Debug, PartialEq, Eq, Hash)]
-pub(crate) struct LogIdentification(Call);
-
-impl LogIdentification {
-    pub(crate) fn new(robots: Robots) -> Self {
-        let syntax = format!("{NAME}(robot, time, {})", ARGUMENTS.join(", "));
-        Self(Call::new(robots, &syntax, SUMMARY))
-    }
-}
-
-impl AggregateUDFImpl for LogIdentification {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn signature(&self) -> &Signature {
-        &self.0.signature
-    }
-
-    fn coerce_types(&self, given: &[DataType]) -> Result<Vec<DataType>> {
-        time::coerced(NAME, given)
-    }
-
-    fn return_type(&self, _: &[DataType]) -> Result<DataType> {
-        Ok(found::data_type())
-    }
-
-    fn state_fields(&self, given: StateFieldsArgs<'_>) -> Result<Vec<FieldRef>> {
-        Ok(vec![numbers::field(given.name)])
-    }
-
-    fn accumulator(&self, given: AccumulatorArgs<'_>) -> Result<Box<dyn Accumulator>> {
-        if given.is_distinct {
-            return plan_err!("{NAME}: DISTINCT is not for rows of states; select the distinct rows before");
-        }
-        let robot = given.exprs.first().and_then(|robot| robot.downcast_ref::<Literal>());
-        let held = self.0.robots.get(key(NAME, robot.map(Literal::value))?)?;
-        let columns = argument::columns(given.expr_fields.get(1..).unwrap_or_default());
-        let robot = held.arm.robot();
-        argument::check(NAME, &ARGUMENTS, &columns, robot)?;
-        let columns = columns.iter().map(|column| column.name.to_owned()).collect();
-        let is_stamped =
-            given.expr_fields.get(1).is_some_and(|time| matches!(time.data_type(), DataType::Timestamp(..)));
-        Ok(Box::new(Gathered { robot: robot.clone(), columns, is_stamped, numbers: Vec::new() }))
-    }
-
-    fn documentation(&self) -> Option<&Documentation> {
-        Some(self.0.documentation())
-    }
-}
-
 /// The rows of a group, so far: a log has an order, so all of them are kept.
 #[derive(Debug)]
-struct Gathered {
-    robot: Robot,
-    /// The names of the columns after the time.
-    columns: Vec<String>,
+pub(crate) struct Gathered {
+    rows: Rows,
     /// Whether times are stamps; a number may be of another unit than seconds, which the reader of logs notices.
     is_stamped: bool,
     /// Row by row the time, then q, qd and tau of all joints.
@@ -98,9 +42,15 @@ struct Gathered {
 }
 
 impl Gathered {
+    /// Nothing yet, of a call with arguments of these types.
+    pub(crate) fn new(rows: Rows, fields: &[FieldRef]) -> Self {
+        let is_stamped = fields.get(1).is_some_and(|time| matches!(time.data_type(), DataType::Timestamp(..)));
+        Self { rows, is_stamped, numbers: Vec::new() }
+    }
+
     /// Numbers of a row.
     fn width(&self) -> usize {
-        TIME + ARGUMENTS.len() * self.robot.dof()
+        TIME + LOG_IDENTIFICATION.arguments.len() * self.rows.robot.dof()
     }
 
     /// The numbers of rows, in order of time, as a table of numpy: time, q, qd and tau.
@@ -130,11 +80,12 @@ impl Gathered {
         options.log.angles = Angles::Radians;
         options.log.time_unit = self.is_stamped.then_some(TimeUnit::Seconds);
         let name = format!("{}: ", path.display());
-        let log = ArmLog::open(&[path], &self.robot, &options).map_err(|error| Refusal::of_log(&error, &name))?;
+        let log = ArmLog::open(&[path], &self.rows.robot, &options).map_err(|error| Refusal::of_log(&error, &name))?;
         let mut options = Options::default();
         options.cutoff = Some(log.cutoff());
         let pass = |take: &mut dyn FnMut(&rne_logs::Motion) -> Result<(), MotionError>| log.pass(Part::All, take);
-        identify::<PassError<MotionError>>(&self.robot, options, REGULARIZATION, pass).map_err(|error| match error {
+        identify::<PassError<MotionError>>(&self.rows.robot, options, REGULARIZATION, pass).map_err(|error| match error
+        {
             PassError::Log(error) => Refusal::of_log(&error, &name),
             PassError::Motion(error) => Refusal::Rows(error.to_string()),
         })
@@ -162,12 +113,13 @@ impl Refusal {
 
 impl Accumulator for Gathered {
     fn update_batch(&mut self, values: &[ArrayRef]) -> Result<()> {
-        let [_, instants, arrays @ ..] = values else { return exec_err!("{NAME}: `time` is missing") };
-        let columns: Vec<&str> = self.columns.iter().map(String::as_str).collect();
-        let joints = self.robot.dof();
-        let (arguments, nulls) = argument::all(NAME, &ARGUMENTS, &columns, arrays, &self.robot)?;
+        let [_, instants, arrays @ ..] = values else {
+            return exec_err!("{}: `time` is missing", LOG_IDENTIFICATION.name);
+        };
+        let joints = self.rows.robot.dof();
+        let (arguments, nulls) = self.rows.arguments(arrays)?;
         for state in 0..instants.len() {
-            let Some(Instant { seconds, rest }) = time::at(NAME, instants, state)? else { continue };
+            let Some(Instant { seconds, rest }) = time::at(LOG_IDENTIFICATION.name, instants, state)? else { continue };
             if nulls.as_ref().is_some_and(|nulls| nulls.is_null(state)) {
                 continue;
             }
@@ -185,9 +137,10 @@ impl Accumulator for Gathered {
 
     fn merge_batch(&mut self, states: &[ArrayRef]) -> Result<()> {
         let width = self.width();
-        numbers::each(NAME, states, |numbers| {
+        let name = LOG_IDENTIFICATION.name;
+        numbers::each(name, states, |numbers| {
             if numbers.len() % width != 0 {
-                return exec_err!("{NAME}: rows that other processes gathered have another length than {width}");
+                return exec_err!("{name}: rows that other processes gathered have another length than {width}");
             }
             self.numbers.extend_from_slice(numbers);
             Ok(())

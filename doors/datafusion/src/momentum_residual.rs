@@ -12,21 +12,25 @@ use datafusion::common::{Result, exec_err};
 use datafusion::logical_expr::function::{ExpressionArgs, PartitionEvaluatorArgs, WindowUDFFieldArgs};
 use datafusion::logical_expr::{Documentation, PartitionEvaluator, Signature, WindowUDFImpl};
 use datafusion::physical_expr::PhysicalExpr;
-use datafusion::physical_expr::expressions::Literal;
 use rne::model::{Friction, Robot};
 use rne::{DynArm, DynObserverState};
 use rne_logs::median;
 
-use crate::argument::{self, Argument};
-use crate::call::{Call, key};
+use crate::argument::Argument;
+use crate::call::Call;
 use crate::numbers::item;
 use crate::robots::{Robots, external};
+use crate::rows::{OfRows, Rows};
 use crate::time::{self, Instant};
 
-const NAME: &str = "momentum_residual";
-
-/// The arguments after the robot and the time.
-const ARGUMENTS: [&str; 3] = ["q", "qd", "tau"];
+/// The window function.
+static MOMENTUM_RESIDUAL: OfRows = OfRows {
+    name: "momentum_residual",
+    is_timed: true,
+    arguments: &["q", "qd", "tau"],
+    over: " OVER (PARTITION BY … ORDER BY time)",
+    summary: "Measured torques minus those of the model, without accelerations, by the momentum observer.",
+};
 
 /// Hz: the observer's gain, as `rne watch` has it unasked.
 const GAIN: f64 = 20.0;
@@ -34,22 +38,19 @@ const GAIN: f64 = 20.0;
 /// A step that is this many times as long as the usual one is a gap, after which the observer begins anew.
 const GAP: f64 = 2.5;
 
-const SUMMARY: &str = "Measured torques minus those of the model, without accelerations, by the momentum observer.";
-
 /// The window function, with the robots that it may be asked for.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(crate) struct MomentumResidual(Call);
 
 impl MomentumResidual {
     pub(crate) fn new(robots: Robots) -> Self {
-        let syntax = format!("{NAME}(robot, time, {}) OVER (PARTITION BY … ORDER BY time)", ARGUMENTS.join(", "));
-        Self(Call::new(robots, &syntax, SUMMARY))
+        Self(MOMENTUM_RESIDUAL.call(robots))
     }
 }
 
 impl WindowUDFImpl for MomentumResidual {
     fn name(&self) -> &'static str {
-        NAME
+        MOMENTUM_RESIDUAL.name
     }
 
     fn signature(&self) -> &Signature {
@@ -57,7 +58,7 @@ impl WindowUDFImpl for MomentumResidual {
     }
 
     fn coerce_types(&self, given: &[DataType]) -> Result<Vec<DataType>> {
-        time::coerced(NAME, given)
+        MOMENTUM_RESIDUAL.coerced(given)
     }
 
     fn expressions(&self, given: ExpressionArgs<'_>) -> Vec<Arc<dyn PhysicalExpr>> {
@@ -69,13 +70,8 @@ impl WindowUDFImpl for MomentumResidual {
     }
 
     fn partition_evaluator(&self, given: PartitionEvaluatorArgs<'_>) -> Result<Box<dyn PartitionEvaluator>> {
-        let robot = given.input_exprs().first().and_then(|robot| robot.downcast_ref::<Literal>());
-        let held = self.0.robots.get(key(NAME, robot.map(Literal::value))?)?;
-        let columns = argument::columns(given.input_fields().get(1..).unwrap_or_default());
-        let robot = held.arm.robot();
-        argument::check(NAME, &ARGUMENTS, &columns, robot)?;
-        let columns = columns.iter().map(|column| column.name.to_owned()).collect();
-        Ok(Box::new(Partition { robot: robot.clone(), columns }))
+        let (_, rows) = MOMENTUM_RESIDUAL.of(&self.0, given.input_exprs(), given.input_fields())?;
+        Ok(Box::new(Partition(rows)))
     }
 
     fn documentation(&self) -> Option<&Documentation> {
@@ -85,19 +81,18 @@ impl WindowUDFImpl for MomentumResidual {
 
 /// The rows of one partition, in order of time.
 #[derive(Debug)]
-struct Partition {
-    robot: Robot,
-    /// The names of the columns after the time.
-    columns: Vec<String>,
-}
+struct Partition(Rows);
 
 impl PartitionEvaluator for Partition {
     fn evaluate_all(&mut self, values: &[ArrayRef], rows: usize) -> Result<ArrayRef> {
-        let [_, instants, arrays @ ..] = values else { return exec_err!("{NAME}: `time` is missing") };
-        let columns: Vec<&str> = self.columns.iter().map(String::as_str).collect();
-        let joints = self.robot.dof();
-        let (arguments, nulls) = argument::all(NAME, &ARGUMENTS, &columns, arrays, &self.robot)?;
-        let instants = (0..rows).map(|row| time::at(NAME, instants, row)).collect::<Result<Vec<_>>>()?;
+        let [_, instants, arrays @ ..] = values else {
+            return exec_err!("{}: `time` is missing", MOMENTUM_RESIDUAL.name);
+        };
+        let Self(of) = self;
+        let joints = of.robot.dof();
+        let (arguments, nulls) = of.arguments(arrays)?;
+        let instants =
+            (0..rows).map(|row| time::at(MOMENTUM_RESIDUAL.name, instants, row)).collect::<Result<Vec<_>>>()?;
         let is_null = |row: usize| nulls.as_ref().is_some_and(|nulls| nulls.is_null(row));
         let instants: Vec<Option<Instant>> = instants
             .into_iter()
@@ -105,7 +100,7 @@ impl PartitionEvaluator for Partition {
             .map(|(row, instant)| instant.filter(|_| !is_null(row) && is_finite(&arguments, row, joints)))
             .collect();
         let period = period(&instants);
-        let arm = DynArm::from_robot(&self.robot.clone().with_rotors());
+        let arm = DynArm::from_robot(&of.robot.clone().with_rotors());
         let mut result = ListBuilder::new(Float64Builder::new());
         let mut observed: Option<(Instant, Observed)> = None;
         for (row, instant) in instants.into_iter().enumerate() {
@@ -119,7 +114,7 @@ impl PartitionEvaluator for Partition {
                 0.0 < step && step <= GAP * period
             });
             let is_first = goes_on.is_none();
-            let mut state = goes_on.map_or_else(|| Observed::new(&self.robot, period), |(_, state)| state);
+            let mut state = goes_on.map_or_else(|| Observed::new(&of.robot, period), |(_, state)| state);
             let residual = state.next(&arm, &arguments, row, joints)?;
             observed = Some((instant, state));
             if is_first {

@@ -27,23 +27,7 @@ pub(crate) fn column(layout: &Layout, numbers: Vec<f64>, states: usize, nulls: O
     if numbers.len() != states * outputs {
         return exec_err!("{} numbers are no {states} results of {outputs}", numbers.len());
     }
-    let numbers = Numbers { values: numbers, outputs, states };
-    match layout {
-        Layout::Number => Ok(Arc::new(Float64Array::new(numbers.values.into(), nulls))),
-        Layout::Array(length, of) => {
-            let inner = numbers.elements(of, &each(&[0], *length, of), None)?;
-            Ok(Arc::new(FixedSizeListArray::try_new(item(data_type(of)), size(*length), inner, nulls)?))
-        }
-        Layout::Record(record, parts) => {
-            let (mut start, mut fields, mut arrays) = (0, Vec::new(), Vec::new());
-            for (name, part) in record.fields().iter().copied().zip(parts) {
-                fields.push(Field::new(name, data_type(part), true));
-                arrays.push(numbers.elements(part, &[start], nulls.as_ref())?);
-                start += part.len();
-            }
-            Ok(Arc::new(StructArray::try_new_with_length(fields.into(), arrays, nulls, states)?))
-        }
-    }
+    Numbers { values: numbers, outputs, states }.elements(layout, &[0], nulls.as_ref())
 }
 
 struct Numbers {
