@@ -216,7 +216,7 @@ fn accelerate(
     Ok(misses.fold(0.0, f64::max) <= 1e-11 * largest)
 }
 
-/// The accelerations of a step of a second where nothing holds the base, by the way of its origin.
+/// The accelerations of a step of a second with a floating base, by the way of its origin.
 fn accelerations_of_step(robot: &Robot, state: &State, next: &[f64]) -> Vec<f64> {
     let (pose, twist) = (state.pose(), state.twist());
     let driven = [0, 1, 2].map(|axis| next[9 + axis] - pose.translation[axis] - robot.gravity[axis]);
@@ -232,7 +232,7 @@ fn inverts(mass: &[Vec<f64>], inverse: &[f64]) -> bool {
     if !inverse.iter().all(|element| element.is_finite()) {
         return true;
     }
-    // of M with the rows of a base that nothing holds, the columns of the joints alone
+    // of M with the rows of a floating base, the columns of the joints alone
     let columns = inverse.len() / mass.len();
     let largest = scale(&mass.concat()) * scale(inverse);
     let misses = mass.iter().enumerate().flat_map(|(i, row)| {

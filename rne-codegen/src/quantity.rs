@@ -377,7 +377,7 @@ quantities! {
     TipMoment:                  "nt",        Vector,    0, false, "n", "N m",
         "moment that the robot exerts at tip i, about the origin of the tip";
 
-    // Of a base that nothing holds: i is 0.
+    // Of a floating base: i is 0.
     BaseForce:                  "fb",        Vector,    6, true,  "f", "N",
         "force that must act on the base beside gravity, in axes of frame 0";
     BaseMoment:                 "nb",        Vector,    6, true,  "n", "N m",

@@ -32,7 +32,7 @@ pub(crate) struct Chain {
     pub(crate) base: Pose,
     /// The acceleration of gravity in the axes of the base, m/s².
     pub(crate) gravity: Vector,
-    /// The base, about the origin of its frame, where nothing holds it.
+    /// The floating base, if there is one, about the origin of its frame.
     pub(crate) floating_base: Option<Body>,
     pub(crate) joints: Vec<ChainJoint>,
     /// The joint that moves the link of the tip, from 0.

@@ -26,8 +26,8 @@ pub struct Selection {
     /// Whether every movable joint after the base is taken: the robot is a tree, and `tip` is only where its tip frame
     /// is.
     pub whole: bool,
-    /// Whether nothing holds the base of a whole robot, which is then its floating base: the root link, or the link
-    /// that floats in the file [default: where the base floats in the file].
+    /// Whether a whole robot has a floating base: the root link, or the link that floats in the file [default: where
+    /// the base floats in the file].
     pub floating: Option<bool>,
 }
 

@@ -30,7 +30,7 @@ pub struct Urdf {
     pub(crate) root: usize,
     /// The link at the base of an arm that names none: the root, or the link that floats.
     pub(crate) base: usize,
-    /// The link that carries all joints and that nothing holds: a floating joint in a URDF, or a free joint in an MJCF
+    /// The link that carries all joints as a floating base: a floating joint in a URDF, or a free joint in an MJCF
     /// file, moves it. This joint is `Fixed` here.
     pub(crate) floats: Option<usize>,
     /// The acceleration of gravity in the axes of the root, m/s², where the file says it.

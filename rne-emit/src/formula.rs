@@ -204,7 +204,7 @@ pub(super) fn payload_formulas(step: Step, numbers: &Numbers) -> Vec<Formula> {
     written(templates, numbers)
 }
 
-/// The formulas of a step for a base that nothing holds; a is the acceleration of the origin of frame 0, F and N are
+/// The formulas of a step for a floating base; a is the acceleration of the origin of frame 0, F and N are
 /// what must act on the base.
 pub(super) fn base_formulas(step: Step, numbers: &Numbers) -> Vec<Formula> {
     let templates: Templates = match step {

@@ -27,13 +27,13 @@ pub type Wrenches<T> = Vec<Wrench<T>>;
 pub type Regressor<T> = Vec<Vec<[T; 10]>>;
 /// Per force, moment and torque and per body, the base first: the same ten.
 pub type FloatingRegressor<T> = Regressor<T>;
-/// Six numbers of a base that nothing holds, and one per joint.
+/// Six numbers of a floating base, and one per joint.
 pub type FloatingVector<T> = Vec<T>;
-/// Six rows and columns of a base that nothing holds, and one per joint.
+/// Six rows and columns of a floating base, and one per joint.
 pub type FloatingMatrix<T> = Matrix<T>;
-/// Six rows with six numbers of a base that nothing holds, and one per joint.
+/// Six rows with six numbers of a floating base, and one per joint.
 pub type FloatingRows<T> = Matrix<T>;
-/// For each tip six rows with six numbers of a base that nothing holds, and one per joint.
+/// For each tip six rows with six numbers of a floating base, and one per joint.
 pub type TipRows<T> = Vec<Matrix<T>>;
 /// Three linear coordinates, then three angular ones, for each tip.
 pub type TipVectors<T> = Vec<[T; 6]>;

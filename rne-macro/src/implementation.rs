@@ -522,7 +522,7 @@ fn elements(of: TokenStream, shape: &Shape, tips: usize) -> Vec<TokenStream> {
     }
 }
 
-/// The number of velocities of a robot whose base nothing holds: six of the base, and those of its joints. Of a robot
+/// The number of velocities of a robot with a floating base: six of the base, and those of its joints. Of a robot
 /// that is not known, a parameter.
 fn velocities(dof: &TokenStream) -> TokenStream {
     length(Length::Velocities, dof, quote!(__VELOCITIES))

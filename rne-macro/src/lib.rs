@@ -87,7 +87,7 @@ pub fn derive_batch_inverse_dynamics_derivatives(input: TokenStream) -> TokenStr
 }
 
 /// Implements the trait `BatchFloatingInverseDynamics` for a struct that derives `FloatingBase` too: torques, and the
-/// wrench on the base, of many states of a robot whose base nothing holds.
+/// wrench on the base, of many states of a robot with a floating base.
 ///
 /// As [`BatchInverseDynamics`](macro@BatchInverseDynamics).
 #[proc_macro_derive(BatchFloatingInverseDynamics, attributes(robot))]

@@ -8,7 +8,7 @@ use crate::source::quoted;
 use crate::tree::needs_format_2;
 use crate::{Link, matter};
 
-/// The link that carries the joints of the base, where nothing holds it: `floating_base` of a robot file.
+/// The link that carries the joints of a floating base: `floating_base` of a robot file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloatingBase {
     /// Its name, `[A-Za-z][A-Za-z0-9_]*`, which means the same as `base`. No joint and no frame has it.

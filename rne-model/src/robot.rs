@@ -22,7 +22,7 @@ pub struct Robot {
     pub gravity: [f64; 3],
     /// World → frame 0. Places the arm; never turns gravity.
     pub base: Transform,
-    /// The link of frame 0 where nothing holds it; `None` for a base that is fixed to the world.
+    /// The link of frame 0, if the base floats; `None` for a base that is fixed to the world.
     pub floating_base: Option<FloatingBase>,
     /// Link frame → tip frame: of the last row, or of [`tip_on`](Self::tip_on).
     pub tool: Transform,

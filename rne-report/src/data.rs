@@ -70,7 +70,7 @@ pub fn data(robot: &Robot, torques: &Program, with_wrench: Option<&Program>, red
     data
 }
 
-/// A base that nothing holds, and the tips of its robot; `on` counts joints from 1, 0 is the base.
+/// A floating base, and the tips of its robot; `on` counts joints from 1, 0 is the base.
 fn floating(robot: &Robot) -> Option<Value> {
     let base = robot.floating_base.as_ref()?;
     let tip = |name: &str, FixedFrame { on, placement }: FixedFrame| {

@@ -296,7 +296,7 @@ fn addresses_that_the_page_does_not_know_are_told() {
     }
 }
 
-/// Robots whose base nothing holds.
+/// Robots with a floating base.
 const FLOATING: [&str; 2] = [include_str!("../../docs/standing_hyq.yaml"), include_str!("../../docs/satellite.yaml")];
 
 /// By the code, by the equations before folding and by the reduced form, the page has the wrench on a base that moves

@@ -97,7 +97,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         is_tree.then(|| Self { motors, rotors, at, ..Self::prepared(model, branches, tip_on, floating_base) })
     }
 
-    /// Returns this robot on a base that nothing holds: `link` is the base, with its centre of mass and inertia in
+    /// Returns this robot on a floating base: `link` is the base, with its centre of mass and inertia in
     /// frame 0. Functions of a fixed base are those of the robot while something holds that link still.
     #[must_use]
     pub fn with_floating_base(self, link: Link<S>) -> Self {
@@ -218,7 +218,7 @@ pub struct ArmWithTips<'a, const DOF: usize, const NV: usize, const TIPS: usize,
 }
 
 impl<const DOF: usize, const NV: usize, const TIPS: usize, S: Constant> ArmWithTips<'_, DOF, NV, TIPS, S> {
-    /// This arm while something outside the robot holds some of its tips; `None` is a tip that nothing holds.
+    /// This arm while something outside the robot holds some of its tips; `None` is a free tip.
     #[must_use]
     pub fn in_contact(mut self, held: &[Option<ContactKind>; TIPS]) -> Self {
         let contacts = held.iter().enumerate().filter_map(|(tip, kind)| Some(Contact { tip, kind: (*kind)? }));

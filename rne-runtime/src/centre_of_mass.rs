@@ -7,7 +7,7 @@
 //! column j                                                z_j × (s_j - w_j p_j)   (revolute),   w_j z_j   (prismatic)
 //! ```
 //!
-//! A base that nothing holds is a link, too: link 0, whose frame is frame 0.
+//! A floating base is a link, too: link 0, whose frame is frame 0.
 //!
 //! A link with a first moment h beside its mass adds h_i (1 / Σ m) to c and to s_j.
 

@@ -12,7 +12,7 @@
 //!
 //! Sums run from the base to the tip; the half, and the sign, come last.
 //!
-//! A base that nothing holds moves and is a link, too: link 0. Where frame 0 stands in the world at p, turned by R:
+//! A floating base moves and is a link, too: link 0. Where frame 0 stands in the world at p, turned by R:
 //!
 //! ```text
 //! V = - Σ m_i Rᵀ g · c_i - Σ m_i g · p             g in world axes

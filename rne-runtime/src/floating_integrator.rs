@@ -1,4 +1,4 @@
-//! Steps of integrators for a robot whose base nothing holds, on the manifold of its positions.
+//! Steps of integrators for a robot with a floating base, on the manifold of its positions.
 
 use core::array::from_fn;
 
@@ -6,7 +6,7 @@ use crate::pose_log::{cross, dot, times, transposed};
 use crate::steps::moved;
 use crate::{BaseAcceleration, BaseTwist, FloatingBase, Quaternion, Scalar, Wrench};
 
-/// The state of a robot whose base nothing holds.
+/// The state of a robot with a floating base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FloatingState<const DOF: usize, T> {
     /// The rotation from the axes of frame 0 to those of the world.
@@ -21,7 +21,7 @@ pub struct FloatingState<const DOF: usize, T> {
     pub qd: [T; DOF],
 }
 
-/// Steps of a robot whose base nothing holds. Every type with [`FloatingBase`] has them.
+/// Steps of a robot with a floating base. Every type with [`FloatingBase`] has them.
 pub trait FloatingIntegratorStep<const DOF: usize, const NV: usize, const TIPS: usize>:
     FloatingBase<DOF, NV, TIPS>
 {

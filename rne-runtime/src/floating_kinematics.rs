@@ -1,4 +1,4 @@
-//! Jacobians of the tips of a robot whose base nothing holds, and their accelerations where nothing else accelerates.
+//! Jacobians of the tips of a robot with a floating base, and their accelerations where nothing else accelerates.
 //!
 //! A tip is a frame in the place of the tip frame, seen from frame 0 with the axes that the caller gives. The columns
 //! of the base are those of a free body:

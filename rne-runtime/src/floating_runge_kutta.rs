@@ -1,4 +1,4 @@
-//! The derivatives of the step of the classical Runge-Kutta method of a robot whose base nothing holds: the chain rule
+//! The derivatives of the step of the classical Runge-Kutta method of a robot with a floating base: the chain rule
 //! over its four states, for every robot that has the derivatives of the forces.
 
 use core::array::from_fn;

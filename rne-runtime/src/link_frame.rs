@@ -59,7 +59,7 @@ pub(crate) struct Table<'a, S> {
     pub(crate) tool: &'a Transform<S>,
     /// The link that carries the tip, if not the last one.
     pub(crate) tip_on: Option<usize>,
-    /// The link of frame 0, if nothing holds it.
+    /// The link of frame 0, if the base floats.
     pub(crate) floating_base: Option<Link<S>>,
 }
 
@@ -117,7 +117,7 @@ pub(crate) struct Chain<'a, S> {
     pub(crate) tips: &'a [Tip<S>],
     /// The rotors that turn on the links and on the base.
     pub(crate) spins: Spins<'a, S>,
-    /// The link of frame 0, if nothing holds it.
+    /// The link of frame 0, if the base floats.
     pub(crate) floating_base: Option<Link<S>>,
 }
 

@@ -53,7 +53,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         velocities
     }
 
-    /// Both passes of a robot whose base nothing holds: the wrench that must act on the base, about the origin of frame
+    /// Both passes of a robot with a floating base: the wrench that must act on the base, about the origin of frame
     /// 0, and the torques.
     pub(crate) fn of_floating_base<T: Scalar>(
         self,

@@ -14,7 +14,7 @@
 //! -∂V/∂q_i              e · (s_i × g_i)                   M_i e · g_i
 //! ```
 //!
-//! A base that nothing holds is link 0, about the origin of frame 0. Its P_0 is the momentum of the robot, and the
+//! A floating base is link 0, about the origin of frame 0. Its P_0 is the momentum of the robot, and the
 //! angular momentum about the centre of mass c = s_0 / M_0 is L_0 - c × P_0.
 //!
 //! k runs over the joints that link i carries, and over the payload at the tip; j̇_i = R_iᵀ (ċ_p + ω_p × r_i). A first
@@ -178,7 +178,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
 }
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    /// The momentum of a robot whose base nothing holds, and its angular momentum about the centre of mass.
+    /// The momentum of a robot with a floating base, and its angular momentum about the centre of mass.
     pub(crate) fn centroidal_momentum<T: Scalar>(self, q: &[T], qd: &[T], twist: &BaseTwist<T>) -> [T; 6] {
         let (zeros, base, chain) = (self.zeros(), twist.motion(), self.chain);
         let joints = JointMotions::new(q, qd, zeros.as_ref());

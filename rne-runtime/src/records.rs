@@ -3,7 +3,7 @@
 use crate::numbers::Numbers;
 use crate::{BaseTwist, Pose, Wrench};
 
-/// The acceleration of a base that nothing holds, in axes of frame 0.
+/// The acceleration of a floating base, in axes of frame 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaseAcceleration<T> {
     /// Acceleration of the origin of frame 0 less gravity, m/s²: what an accelerometer reads there.
@@ -163,7 +163,7 @@ records! {
         qd: StepDerivatives<DOF, T> | DynStepDerivatives<T>,
     }
 
-    /// The torques of a robot whose base nothing holds, and what its base needs, for one state.
+    /// The torques of a robot with a floating base, and what its base needs, for one state.
     FloatingTorques<DOF>, DynFloatingTorques {
         /// Force (N) and moment (N m) about the origin of frame 0, in axes of frame 0, that must act ON the base beside
         /// gravity so that it moves as told. They are zero in free flight.
@@ -172,7 +172,7 @@ records! {
         tau: [T; DOF] | Vec<T>,
     }
 
-    /// The motion of a robot whose base nothing holds, from torques, for one state.
+    /// The motion of a robot with a floating base, from torques, for one state.
     FloatingAccelerations<DOF>, DynFloatingAccelerations {
         /// Acceleration of the base, less gravity.
         base: BaseAcceleration<T> | BaseAcceleration<T>,

@@ -1,4 +1,4 @@
-//! A step of a robot whose base nothing holds: its derivatives beside dual numbers through the step, the turn of the
+//! A step of a robot with a floating base: its derivatives beside dual numbers through the step, the turn of the
 //! base beside the exponential, and conserved momentum.
 
 use std::array::from_fn;
@@ -18,7 +18,7 @@ const GRAVITY: [f64; 3] = [0.4, -0.3, -9.7];
 
 type State<T> = FloatingState<DOF, T>;
 
-/// Arms on a trunk that nothing holds, without tips.
+/// Arms on a floating trunk, without tips.
 fn arms() -> [Arm<DOF>; 2] {
     let trunk = link(5.0, [0.02, -0.03, 0.05], [0.08, 0.09, 0.06, 0.004, -0.003, 0.002]);
     [Standard, Modified].map(|convention| Arm::new(six_joints(convention)).with_floating_base(trunk))

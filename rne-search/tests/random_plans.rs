@@ -222,7 +222,7 @@ fn random_plans_with_rotors_are_the_seven_steps() {
     assert!(tried > rounds(45) * 4, "{tried}");
 }
 
-/// Bases that nothing holds: they take matter from the links that they carry, and every choice of a joint on them is
+/// Floating bases: they take matter from the links that they carry, and every choice of a joint on them is
 /// one of a joint on a link.
 #[test]
 fn random_plans_of_floating_bases_are_the_seven_steps() {

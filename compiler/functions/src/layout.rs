@@ -122,7 +122,7 @@ impl Length {
         }
     }
 
-    /// How many velocities a base has that nothing holds.
+    /// The number of velocities of a floating base.
     pub const OF_BASE: usize = 6;
 }
 

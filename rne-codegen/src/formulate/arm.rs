@@ -91,7 +91,7 @@ pub(crate) struct Arm<'s> {
     pub(crate) gravity: Vector<'s>,
     /// World → frame 0.
     pub(crate) base: Placement<'s>,
-    /// The base, about the origin of frame 0, where nothing holds it.
+    /// The floating base, if there is one, about the origin of frame 0.
     pub(crate) floating_base: Option<Body<'s>>,
 }
 
@@ -295,7 +295,7 @@ fn from_com<'s>(
     }
 }
 
-/// The base where nothing holds it: without mass, where the file has no `floating_base` and the function returns the
+/// The floating base: without mass, where the file has no `floating_base` and the function returns the
 /// wrench on the base.
 fn floating_base<'s>(builder: &'s Builder, robot: &Robot) -> Option<Body<'s>> {
     let (function, base) = (builder.function, robot.floating_base.as_ref().map(|base| base.link));

@@ -7,7 +7,7 @@
 //! s_j = Σ s_k + μ_j c_j,   w_j = Σ w_k + μ_j        from the ends to the base; k: joints that link j carries
 //! ```
 //!
-//! A base that nothing holds is a link, too: link 0, whose frame is frame 0.
+//! A floating base is a link, too: link 0, whose frame is frame 0.
 //!
 //! A link with a first moment h beside its mass adds h_i (1 / Σ m) to c and to s_j.
 

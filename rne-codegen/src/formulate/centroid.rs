@@ -1,4 +1,4 @@
-//! The momentum about the centre of mass of a robot whose base nothing holds, from the rows of the base in M and in the
+//! The momentum about the centre of mass of a robot with a floating base, from the rows of the base in M and in the
 //! bias. All vectors are in axes of frame 0; m, h, J, F and N are those of [`mass_matrix`](super::mass_matrix).
 //!
 //! ```text

@@ -4,13 +4,13 @@
 //! 2 a · ω); V = -Σ m_i g · c_i, with c_i from the origin of frame 0. Of a first moment h beside the mass
 //! ċ_i · (ω_i × h_i) is added to T, and - g · R_i h_i to V.
 //!
-//! A base that nothing holds is link 0. Where it stands in the world at p, turned by R:
+//! A floating base is link 0. Where it stands in the world at p, turned by R:
 //! V = - Σ m_i (Rᵀ g · c_i + g · p).
 
 use crate::formulate::{Arm, Frame, Frames, JointState, Motion};
 use crate::ir::{Cause, Name, Quantity, Symbol, Vector};
 
-/// The kinetic energy of the links, and that of a `base` that moves, if nothing holds it.
+/// The kinetic energy of the links, and that of a floating `base`, if there is one.
 pub(crate) fn kinetic<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],

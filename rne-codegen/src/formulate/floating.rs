@@ -1,4 +1,4 @@
-//! Results of a robot whose base nothing holds: the rows of the base stand before those of the joints.
+//! Results of a robot with a floating base: the rows of the base stand before those of the joints.
 
 use crate::coordinates::Coordinates;
 use crate::formulate::ldlt::{self, System};
@@ -16,13 +16,13 @@ pub(crate) fn pose_of_base(builder: &Builder) -> Frame<'_> {
     Frame { rotation: Matrix::from_elements(rotation), origin: Vector([x, y, z]) }
 }
 
-/// The force and the moment on a base that nothing holds.
+/// The force and the moment on a floating base.
 pub(crate) fn on_base([force, moment]: [Vector<'_>; 2]) -> Outputs<'_> {
     let parts = [(Quantity::BaseForce, force), (Quantity::BaseMoment, moment)];
     parts.into_iter().flat_map(|(part, vector)| components(Name::scalar(part, 0), vector)).collect()
 }
 
-/// M with the rows of a base that nothing holds, by its upper half.
+/// M with the rows of a floating base, by its upper half.
 pub(crate) fn floating_mass_matrix<'s>(
     builder: &'s Builder,
     system: &System<'_>,
@@ -35,7 +35,7 @@ pub(crate) fn floating_mass_matrix<'s>(
     })
 }
 
-/// M⁻¹ ((0, τ) - bias): the accelerations of a base that nothing holds, and of the joints.
+/// M⁻¹ ((0, τ) - bias): the accelerations of a floating base, and of the joints.
 pub(crate) fn floating_forward_dynamics<'s>(
     builder: &'s Builder,
     system: &System<'_>,
@@ -58,7 +58,7 @@ pub(crate) fn floating_rest<'s>(builder: &'s Builder, system: &System<'_>, bias:
     bias.into_iter().enumerate().map(rest).collect()
 }
 
-/// The variables of the derivatives of a robot whose base nothing holds: q, q̇ and the angular velocity of the base.
+/// The variables of the derivatives of a robot with a floating base: q, q̇ and the angular velocity of the base.
 pub(crate) fn variables(coordinates: &Coordinates) -> [Vec<WithRespectTo>; 3] {
     let of_joints =
         |kind: fn(usize) -> WithRespectTo| coordinates.joints().iter().map(|joint| kind(joint + 1)).collect();

@@ -1,4 +1,4 @@
-//! The derivatives of the step of a robot whose base nothing holds, on the manifold of its positions.
+//! The derivatives of the step of a robot with a floating base, on the manifold of its positions.
 //!
 //! A change of the base before the step is the shift δp and the turn δθ, in axes of frame 0: p + R δp and R exp(δθ).
 //! After the step, it is δp' and δθ', in axes of frame 0 after the step. With the step as in

@@ -1,6 +1,6 @@
 //! The step of the semi-implicit Euler method, and its derivatives: q̇' = q̇ + h q̈, then q' = q + h q̇'.
 //!
-//! A base that nothing holds has the pose R, p in the world. Its velocity v, its angular velocity ω and their rates a
+//! A floating base has the pose R, p in the world. Its velocity v, its angular velocity ω and their rates a
 //! (less gravity) and ω̇ are in axes of frame 0, gravity g is in those of the world:
 //!
 //! ```text
@@ -42,7 +42,7 @@ pub(crate) fn step<'s>(
     [positions, rates].concat()
 }
 
-/// The pose, the velocity and the angular velocity of a base that nothing holds after a step, then the positions and
+/// The pose, the velocity and the angular velocity of a floating base after a step, then the positions and
 /// the velocities of the joints; by the accelerations of the base, less gravity, and of the coordinates.
 pub(crate) fn floating_step<'s>(
     builder: &'s Builder,

@@ -6,7 +6,7 @@
 //! Joints on different branches of a tree have zeros in M. Eliminated from the base on, these fill; eliminated from the
 //! ends on, none of them does (R. Featherstone, "Efficient factorization of the joint-space inertia matrix for branched
 //! kinematic trees", 2005). So the order of elimination is that of the joints, or the reverse where this fills less.
-//! Six rows of a base that nothing holds stand before those of the joints and are the last to be eliminated.
+//! Six rows of a floating base stand before those of the joints and are the last to be eliminated.
 
 use crate::coordinates::Coordinates;
 use crate::function::{Function, Length};
@@ -18,7 +18,7 @@ pub(crate) struct System<'a> {
     pub(crate) coordinates: &'a Coordinates,
     /// The links that carry the joints.
     parents: Vec<Option<usize>>,
-    /// How many rows a base has that nothing holds. They stand first: x, y, z, about x, y, z.
+    /// The number of rows of a floating base. They stand first: x, y, z, about x, y, z.
     of_base: usize,
 }
 

@@ -22,7 +22,7 @@ fn at_rest<'s>(arm: &Arm<'s>, states: &[JointState<'s>]) -> Vec<JointState<'s>> 
     states.iter().map(|state| JointState { qd: rest, qdd: zero, ..*state }).collect()
 }
 
-/// The upper half of M of the joints, and for each column the wrench on the base, if nothing holds that.
+/// The upper half of M of the joints, and for each column the wrench on a floating base, if there is one.
 #[allow(clippy::type_complexity)] // rows and wrenches
 fn of_joints<'s>(
     arm: &Arm<'s>,
@@ -50,7 +50,7 @@ fn of_joints<'s>(
     (rows, on_base)
 }
 
-/// The rows of a base that nothing holds, in axes of frame 0 and about its origin.
+/// The rows of a floating base, in axes of frame 0 and about its origin.
 pub(crate) struct OfBase<'s> {
     pub(crate) mass: Symbol<'s>,
     /// The first moment of the whole robot.

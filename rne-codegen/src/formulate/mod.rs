@@ -161,7 +161,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         }))
     }
 
-    /// The derivatives of a step of a robot whose base nothing holds.
+    /// The derivatives of a step of a robot with a floating base.
     fn derivatives_of_floating_step(&self) -> Outputs<'s> {
         let (builder, system) = (self.builder, self.system());
         let bias = builder.unnamed(|| self.forces());
@@ -291,7 +291,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         System::new(self.builder.function, self.coordinates(), self.arm.links.iter().map(|link| link.parent))
     }
 
-    /// The upper half of M with the rows of a base that nothing holds.
+    /// The upper half of M with the rows of a floating base.
     fn floating_half(&self) -> Vec<Vec<Symbol<'s>>> {
         let (of_base, joints) = self.of_base();
         of_base.above(self.builder, self.coordinates().upper_half(self.builder, joints))

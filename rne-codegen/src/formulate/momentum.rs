@@ -18,7 +18,7 @@
 //! -∂V/∂q_i              e · (s_i × g_i)                   M_i e · g_i
 //! ```
 //!
-//! A base that nothing holds is link 0, about the origin of frame 0: P_0 is the momentum of the robot, and the angular
+//! A floating base is link 0, about the origin of frame 0: P_0 is the momentum of the robot, and the angular
 //! momentum about the centre of mass c = s_0 / M_0 is L_0 - c × P_0.
 //!
 //! ∂T/∂q_i is (V_i × S_i) · h_i: of all that T depends on, q_i turns the velocity that comes from the parent, and
@@ -93,7 +93,7 @@ pub(crate) fn momentum_and_rate<'s>(
     [momenta, rates]
 }
 
-/// The momentum of a robot whose base nothing holds, and its angular momentum about the centre of mass.
+/// The momentum of a robot with a floating base, and its angular momentum about the centre of mass.
 pub(crate) fn centroidal_momentum<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],

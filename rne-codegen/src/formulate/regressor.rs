@@ -7,7 +7,7 @@
 //!   m:  v · a          h:  Uᵀ v + a × u          J:  u · J ω̇ + (u × ω) · J ω
 //! ```
 //!
-//! A base that nothing holds is a link, too: its link frame is frame 0, and u or v is an axis of it in each of its six
+//! A floating base is a link, too: its link frame is frame 0, and u or v is an axis of it in each of its six
 //! rows.
 
 use std::array::from_fn;
@@ -39,7 +39,7 @@ pub(crate) fn regressor<'s>(arm: &Arm<'s>, states: &[JointState<'s>], motions: &
     of_links(arm, states, motions, vec![still; states.len()])
 }
 
-/// Y of a base that nothing holds: force, moment and torques; the base first, then the links. `acceleration` of the
+/// Y of a floating base: force, moment and torques; the base first, then the links. `acceleration` of the
 /// origin of frame 0, less gravity.
 pub(crate) fn floating_regressor<'s>(
     arm: &Arm<'s>,
@@ -150,7 +150,7 @@ pub(crate) fn element_name(joint: usize, link: usize, parameter: usize) -> Name 
     Name { indices: [link + 1, parameter + 1], ..Name::scalar(Quantity::RegressorElement, joint + 1) }
 }
 
-/// The name of an element of Y where nothing holds the base, which is body 0 and has the first six rows.
+/// The name of an element of Y with a floating base, which is body 0 and has the first six rows.
 pub(crate) fn name_of_floating(row: usize, body: usize, parameter: usize) -> Name {
     let name = match row.checked_sub(OF_BASE) {
         Some(joint) => Name::scalar(Quantity::RegressorElement, joint + 1),

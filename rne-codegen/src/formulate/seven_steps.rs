@@ -50,7 +50,7 @@ struct Carried<'s> {
 impl<'s> Motion<'s> {
     /// The base, in frame 0, whose origin accelerates with `of_origin`. No function asks how fast this moves.
     ///
-    /// Where nothing holds the base, d_0 leads to its centre of mass, and c̈_0 = a + ω̇_0 × d_0 + ω_0 × (ω_0 × d_0).
+    /// With a floating base, d_0 leads to its centre of mass, and c̈_0 = a + ω̇_0 × d_0 + ω_0 × (ω_0 × d_0).
     pub(crate) fn of_base(arm: &Arm<'s>, [omega, omega_dot, of_origin]: [Vector<'s>; 3], gravity: Vector<'s>) -> Self {
         let turning = Turning { rotation: identity(arm.builder), omega, omega_dot };
         let at_rest = arm.builder.zeros(Cause::FixedBase);
@@ -65,7 +65,7 @@ impl<'s> Motion<'s> {
         Self { turning, d, c_dot: at_rest, c_ddot, gravity }
     }
 
-    /// A base that nothing holds and that moves with this velocity of the origin of frame 0 and this angular velocity,
+    /// A floating base that moves with this velocity of the origin of frame 0 and this angular velocity,
     /// without accelerations.
     pub(crate) fn of_twist(arm: &Arm<'s>, [origin, omega]: [Vector<'s>; 2]) -> Self {
         let nothing = arm.builder.zeros(Cause::NoAcceleration);
@@ -109,7 +109,7 @@ pub(crate) fn inverse_dynamics<'s>(
     backward(arm, states, (base, &motions), &tip.wrenches(arm, &motions)).0
 }
 
-/// The wrench that must act on a base that nothing holds, and the torques of all joints.
+/// The wrench that must act on a floating base, and the torques of all joints.
 pub(crate) fn inverse_dynamics_of_floating_base<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],
@@ -218,7 +218,7 @@ fn wrench<'s>(
 }
 
 /// Backward, parents last: the wrench at each joint, which its parent hands on. At the end, the wrench that must act on
-/// a base that nothing holds.
+/// a floating base.
 pub(crate) fn backward<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],

@@ -1,4 +1,4 @@
-//! Jacobians of the named tips of a robot whose base nothing holds, and what these lack of the accelerations of the
+//! Jacobians of the named tips of a robot with a floating base, and what these lack of the accelerations of the
 //! tips.
 //!
 //! ```text

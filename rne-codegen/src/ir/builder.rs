@@ -204,7 +204,7 @@ impl Builder {
         self.of_loops.borrow_mut().1 = bias.iter().map(|x| x.at).collect();
     }
 
-    /// Keeps accelerations that were solved for: those of the joints, and of a base that nothing holds, from now on.
+    /// Keeps accelerations that were solved for: those of the joints, and of a floating base, from now on.
     pub(crate) fn keep_accelerations<'s>(&self, solved: impl Iterator<Item = (WithRespectTo, Symbol<'s>)>) {
         *self.solved.borrow_mut() = solved.map(|(of, x)| (of.variable(), x.at)).collect();
     }
@@ -219,7 +219,7 @@ impl Builder {
         self.solved.borrow().get(&name).map(|&at| self.symbol(at))
     }
 
-    /// A vector of the accelerations of a base that nothing holds, if they were solved for.
+    /// A vector of the accelerations of a floating base, if they were solved for.
     pub(crate) fn solved_of_base(&self, quantity: Quantity) -> Option<Vector<'_>> {
         let [x, y, z] = Axis::ALL.map(|axis| self.solved_acceleration(Name::vector(quantity, 0, axis)));
         Some(Vector([x?, y?, z?]))

@@ -34,9 +34,9 @@ pub enum WithRespectTo {
     RateDot(usize),
     /// A shift of such a base along its axes or a turn about them, from 1: x, y, z, then about x, y, z.
     BasePosition(usize),
-    /// A velocity of a base that nothing holds, from 1: x, y, z, then about x, y, z.
+    /// A velocity of a floating base, from 1: x, y, z, then about x, y, z.
     BaseRate(usize),
-    /// An acceleration of a base that nothing holds, from 1: x, y, z, then about x, y, z.
+    /// An acceleration of a floating base, from 1: x, y, z, then about x, y, z.
     BaseRateDot(usize),
 }
 

@@ -39,7 +39,7 @@ pub struct OpenChoices {
     pub turned_last_frame: bool,
     /// Whether prismatic links can keep the axes of the revolute link before.
     pub carried_prismatics: bool,
-    /// Whether nothing holds the base, so that it is a link.
+    /// Whether the base floats, so that it is a link.
     pub floating_base: bool,
 }
 

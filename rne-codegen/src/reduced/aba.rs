@@ -6,7 +6,7 @@
 //!          A, B, C less U Uᵀ/D;   (n°, f°) plus what the velocities do to these, plus U u/D
 //! moved:   B' = B + [p]× C,  A' = A - B' [p]× + [p]× Bᵀ
 //! outward: q̈ = (u - U · (ω̇' + q̇ ω' × z, a'))/D
-//! a base that nothing holds:   A ω̇ + B a = -n°,   Bᵀ ω̇ + C a = -f°
+//! a floating base:   A ω̇ + B a = -n°,   Bᵀ ω̇ + C a = -f°
 //! ```
 //!
 //! After R. Featherstone, "Rigid Body Dynamics Algorithms" (2008), chapter 7, in accelerations of points instead of
@@ -173,7 +173,7 @@ fn rigid<'s>(
     }
 }
 
-/// How a base that nothing holds accelerates, from its resistance.
+/// How a floating base accelerates, from its resistance.
 fn of_base<'s>(arm: &Arm<'_, 's>, omega: Vector<'s>, whole: &Articulated<'s>) -> Accelerated<'s> {
     let builder = arm.builder;
     let [xx, yy, zz, xy, xz, yz] = whole.linear;
@@ -196,7 +196,7 @@ fn of_base<'s>(arm: &Arm<'_, 's>, omega: Vector<'s>, whole: &Articulated<'s>) ->
     Accelerated { omega, omega_dot: part(3), acceleration: part(0) }
 }
 
-/// The accelerations of a base that nothing holds, linear and angular, and those of the joints.
+/// The accelerations of a floating base, linear and angular, and those of the joints.
 pub(crate) fn forward_dynamics<'s>(arm: &Arm<'_, 's>) -> (Option<[Vector<'s>; 2]>, Vec<Symbol<'s>>) {
     let (builder, rows) = (arm.builder, arm.rows());
     let dof = rows.len();
@@ -283,7 +283,7 @@ impl<'s> Outward<'s> for Accelerated<'s> {
     }
 }
 
-/// The way out: each joint's acceleration from that of its parent, or of a base that nothing holds.
+/// The way out: each joint's acceleration from that of its parent, or of a floating base.
 fn outward<'s>(
     arm: &Arm<'_, 's>,
     floating: Option<Accelerated<'s>>,

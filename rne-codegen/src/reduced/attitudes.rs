@@ -31,11 +31,11 @@ struct Attitude {
 type Axes = (Option<usize>, Square);
 
 /// For each link, the link that has its second moments, and the rotation from its axes to the axes of this holder;
-/// `None` for a link that never turns. On a base that nothing holds, such a link turns as the base. A prismatic link
+/// `None` for a link that never turns. On a floating base, such a link turns as the base. A prismatic link
 /// gives its second moments to its parent, so it is its own holder here.
 pub(crate) fn holders(joint_frames: &JointFrames) -> Vec<Option<(usize, Square)>> {
     let rows = &joint_frames.rows;
-    // that of a base that nothing holds, which stands behind the links
+    // that of a floating base, which stands behind the links
     let of_base = joint_frames.base.as_ref().map(|_| Some((rows.len(), IDENTITY)));
     if joint_frames.coordinates.is_every_joint() {
         return (0..rows.len()).map(|index| Some((index, IDENTITY))).chain(of_base).collect();

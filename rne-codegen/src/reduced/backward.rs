@@ -37,7 +37,7 @@ pub(crate) fn torques<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Optio
     inward(arm, moved, payload).0.into_iter().map(|carried| carried.torque).collect()
 }
 
-/// The wrench that must act on a base that nothing holds, about the origin of frame 0, and the torques, base to tip.
+/// The wrench that must act on a floating base, about the origin of frame 0, and the torques, base to tip.
 pub(crate) fn torques_of_floating_base<'s>(arm: &Arm<'_, 's>) -> (Wrench<'s>, Vec<Symbol<'s>>) {
     let builder = arm.builder;
     let (carried, children) = inward(arm, &motions(arm), arm.load(false));

@@ -22,7 +22,7 @@ pub struct Plan {
     pub length_scale: Scale,
     /// μ is one over this.
     pub force_scale: Scale,
-    /// The moment of a base that nothing holds (section 3.3).
+    /// The moment of a floating base (section 3.3).
     pub base_moment: Moment,
     /// The choices of each joint, base to tip.
     pub joints: Vec<JointPlan>,

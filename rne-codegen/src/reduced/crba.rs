@@ -226,7 +226,7 @@ pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> (Vec<Vec<Symbol<'s>>>, Optio
     ((0..dof).map(|row| (row..dof).map(|column| element(row, column)).collect()).collect(), of_base)
 }
 
-/// The rows of a base that nothing holds, in its axes and about its origin, from what its joints carry.
+/// The rows of a floating base, in its axes and about its origin, from what its joints carry.
 fn of_base<'s>(arm: &Arm<'_, 's>, base: &Carrier, mut load: LoadOfLink<Composite<'s>, Column<'s>>) -> OfBase<'s> {
     let (builder, rows) = (arm.builder, arm.rows());
     builder.at(Quantity::BaseForce, 0);

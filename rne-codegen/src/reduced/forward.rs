@@ -182,7 +182,7 @@ pub(crate) fn plus(a: [Number; 3], b: [Number; 3]) -> [Number; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// The motion of a base that nothing holds, in frame 0, from the arguments of the function.
+/// The motion of a floating base, in frame 0, from the arguments of the function.
 pub(crate) fn motion_of_base<'s>(arm: &Arm<'_, 's>) -> Motion<'s> {
     let builder = arm.builder;
     if builder.moving.get() == Moving::RatesForAccelerations {

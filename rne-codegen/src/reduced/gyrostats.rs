@@ -83,7 +83,7 @@ impl Parallel {
     }
 }
 
-/// A base that nothing holds: it carries rotors as a link does.
+/// A floating base: it carries rotors as a link does.
 #[derive(Clone, Debug)]
 pub(crate) struct Carrier {
     pub(crate) matter: PseudoInertia,
@@ -91,7 +91,7 @@ pub(crate) struct Carrier {
     pub(crate) gyrostats: Vec<Gyrostat>,
 }
 
-/// Puts the rotors of a robot into its rows and into its base, if nothing holds that, and their constants into
+/// Puts the rotors of a robot into its rows and into a floating base, if it has one, and their constants into
 /// `rotors`, the diagonal of C. What is left are the elements of C above it. `None` where a number has no inverse.
 pub(crate) fn put_rotors(
     robot: &Robot,
@@ -203,7 +203,7 @@ impl Gyrostat {
 }
 
 /// The part of the rotors in the torque of a joint, in the direction of its row: Σ n Jm a · y, with the angular
-/// accelerations y of the links that carry them; `None` is a base that nothing holds.
+/// accelerations y of the links that carry them; `None` is a floating base.
 pub(crate) fn resistance<'s>(
     arm: &Arm<'_, 's>,
     joint: usize,

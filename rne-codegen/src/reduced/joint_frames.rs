@@ -88,7 +88,7 @@ pub(crate) struct JointFrames {
     pub(crate) embedding: Embedding,
     /// Sines and cosines of the constant angles of the file, none negative.
     pub(crate) known: Vec<Number>,
-    /// The matter of a base that nothing holds, about the origin of frame 0 and in its axes.
+    /// The matter of a floating base, about the origin of frame 0 and in its axes.
     pub(crate) base: Option<Carrier>,
 }
 
@@ -181,7 +181,7 @@ impl JointFrames {
             .find_map(|embedding| Self::read(robot, frames, embedding).filter(Self::agrees))
     }
 
-    /// The link that carries a joint, counted from 0: the number of links for a base that nothing holds, `None` for a
+    /// The link that carries a joint, counted from 0: the number of links for a floating base, `None` for a
     /// base that the world holds.
     pub(crate) fn carrier(&self, index: usize) -> Option<usize> {
         self.rows[index].parent.or_else(|| self.base.as_ref().map(|_| self.rows.len()))

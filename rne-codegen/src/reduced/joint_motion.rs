@@ -49,7 +49,7 @@ impl<'s> Outward<'s> for Motion<'s> {
     }
 }
 
-/// The motion of a base that nothing holds, whose velocity does not matter.
+/// The motion of a floating base, whose velocity does not matter.
 pub(crate) fn of_floating_base<'s>(arm: &Arm<'_, 's>, factor: Number) -> Motion<'s> {
     let base = motion_of_base(arm);
     Motion {

@@ -6,7 +6,7 @@
 //! rate    = τ + ∂T/∂q - g(q)
 //! ```
 //!
-//! Where nothing holds the base, the recursion ends with the momentum, and the angular momentum about the origin of
+//! With a floating base, the recursion ends with the momentum, and the angular momentum about the origin of
 //! frame 0.
 //!
 //! With q̇ in the place of q̈ the recursion finds ω for ω̇ and the velocity v of the frame's origin for its acceleration;
@@ -41,7 +41,7 @@ pub(crate) fn momentum_and_rate<'s>(arm: &Arm<'_, 's>) -> [Vec<Symbol<'s>>; 2] {
     [carried.iter().map(|carried| carried.torque).collect(), rates]
 }
 
-/// The momentum of a robot whose base nothing holds, and its angular momentum about the origin of frame 0.
+/// The momentum of a robot with a floating base, and its angular momentum about the origin of frame 0.
 pub(crate) fn of_floating_base<'s>(arm: &Arm<'_, 's>) -> Wrench<'s> {
     let joint_frames = arm.joint_frames.without_gravity();
     let weightless = Arm { joint_frames: &joint_frames, ..*arm };

@@ -22,7 +22,7 @@ const SCALES: std::ops::Range<f64> = 1e-3..1e3;
 #[derive(Clone, Debug)]
 pub(crate) struct Parameters {
     pub(crate) links: Vec<PseudoInertia>,
-    /// The matter of a base that nothing holds, with the matter that its joints have given it.
+    /// The matter of a floating base, with the matter that its joints have given it.
     pub(crate) base: PseudoInertia,
     /// How far the origin of each frame has been slid along its axis.
     pub(crate) origin_shifts: Vec<Number>,
@@ -373,7 +373,7 @@ fn scales(joint_frames: &JointFrames, links: &[PseudoInertia], plan: &Plan) -> O
         let is_plain = (joint.length_scale, joint.force_scale) == (Scale::Default, Scale::Default);
         scales.push(match row.parent {
             Some(parent) if is_plain => scales[parent],
-            // what a base that nothing holds carries is one branch
+            // what a floating base carries is one branch
             None if is_plain || joint_frames.base.is_some() => of_arm,
             None => scale(rows, links, joint.length_scale, joint.force_scale)?,
             Some(_) => return None,

@@ -20,7 +20,7 @@
 //! there: z × f, z × n. For one farther out, i > j, the roles are changed: the column of M for joint i is moved inward
 //! and meets the twist of joint j, and so does tr(G) z - G z of joint i.
 //!
-//! A base that nothing holds is the last body. Its angular velocity ω, of which the acceleration of its origin and its
+//! A floating base is the last body. Its angular velocity ω, of which the acceleration of its origin and its
 //! angular acceleration do not change, moves all bodies behind it:
 //!
 //! ```text
@@ -51,7 +51,7 @@ pub(crate) struct Sensitivity<'s> {
     of_base: Option<OfBase<'s>>,
 }
 
-/// The derivatives where nothing holds the base.
+/// The derivatives with a floating base.
 struct OfBase<'s> {
     /// Derivatives of the wrench on the base by the position and by the rate of each joint.
     by_joints: Vec<[Wrench<'s>; 2]>,
@@ -62,7 +62,7 @@ struct OfBase<'s> {
 }
 
 impl<'s> Sensitivity<'s> {
-    /// The columns by q, by q̇ and by the angular velocity of a base that nothing holds: force, moment, torques.
+    /// The columns by q, by q̇ and by the angular velocity of a floating base: force, moment, torques.
     pub(crate) fn with_base(&self, coordinates: &Coordinates) -> Option<Vec<Vec<Symbol<'s>>>> {
         let of_base = self.of_base.as_ref()?;
         let transposed =
@@ -285,7 +285,7 @@ pub(crate) fn sensitivity<'s>(arm: &Arm<'_, 's>, factor: Number) -> Sensitivity<
     found
 }
 
-/// The derivatives where nothing holds the base, in its axes and about its origin, from what its joints carry.
+/// The derivatives with a floating base, in its axes and about its origin, from what its joints carry.
 fn of_base<'s>(
     arm: &Arm<'_, 's>,
     base: &Carrier,
@@ -320,7 +320,7 @@ fn of_base<'s>(
     OfBase { by_joints, torques, wrench }
 }
 
-/// The matter of a link, or of a base that nothing holds. A last link that is a spinning sphere is one again: what the
+/// The matter of a link, or of a floating base. A last link that is a spinning sphere is one again: what the
 /// link before was given for it is taken back.
 pub(crate) fn matter(arm: &Arm<'_, '_>, link: Option<usize>) -> PseudoInertia {
     let mut matter = link.map_or(arm.parameters.base, |link| arm.parameters.links[link]);

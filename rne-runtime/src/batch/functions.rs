@@ -178,7 +178,7 @@ pub trait BatchInverseDynamicsDerivatives<const DOF: usize>: InverseDynamicsDeri
     ) -> Result<(), LengthMismatch>;
 }
 
-/// Torques, and the wrench that must act on the base, of many states of a robot whose base nothing holds.
+/// Torques, and the wrench that must act on the base, of many states of a robot with a floating base.
 ///
 /// One slice per joint or component of a vector, and in it one number per state. All slices have the same length.
 #[allow(clippy::too_many_arguments)] // each is a quantity

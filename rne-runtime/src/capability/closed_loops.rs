@@ -114,7 +114,7 @@ pub trait ClosedLoopsPayloadDynamics<DOF, PASSIVE> of loops {
 }
 
 capability! {
-/// A robot with closed loops whose base nothing holds: a humanoid whose ankles are driven by rods.
+/// A robot with closed loops and a floating base: a humanoid whose ankles are driven by rods.
 ///
 /// `q`, `passive` and the loops are those of [`ClosedLoops`], whose functions close them. The base, `NV` = `DOF` + 6
 /// velocities and the tips are those of [`FloatingBase`].

@@ -1,4 +1,4 @@
-//! The functions of a robot whose base nothing holds.
+//! The functions of a robot with a floating base.
 
 #[cfg(doc)]
 use super::{Energy, InverseDynamics, MassMatrix, Regressor, TipWrenches};
@@ -26,7 +26,7 @@ pub trait FloatingRegressor<const DOF: usize, const NV: usize, const BODIES: usi
 }
 
 capability! {
-/// Dynamics of a robot whose base nothing holds: it walks, flies or rides. Its base is the link `floating_base` of the
+/// Dynamics of a robot with a floating base: it walks, flies or rides. Its base is the link `floating_base` of the
 /// robot file; without that key the derive is an error, unless its attribute has `allow_lints`: then the base has no
 /// mass, and the wrench is what the mount of the robot must bear.
 ///
@@ -103,7 +103,7 @@ pub trait FloatingPayloadDynamics<DOF, NV> {
 }
 
 capability! {
-/// Momentum of a robot whose base nothing holds, about its centre of mass. `NV` velocities and accelerations, and the
+/// Momentum of a robot with a floating base, about its centre of mass. `NV` velocities and accelerations, and the
 /// base, are those of [`FloatingBase`]: all vectors are in axes of frame 0. Turned by the rotation of the base, force
 /// and moment are those in world axes.
 pub trait CentroidalMomentum<DOF, NV> {
@@ -130,7 +130,7 @@ pub trait CentroidalMomentum<DOF, NV> {
 }
 
 capability! {
-/// Energy of a robot whose base nothing holds.
+/// Energy of a robot with a floating base.
 pub trait FloatingEnergy<DOF> {
     /// Kinetic energy ½ vᵀ M v, J, with the [mass matrix](crate::FloatingBase::floating_mass_matrix) M; rotors included
     /// in an arm with its rotors.
@@ -150,7 +150,7 @@ pub trait FloatingEnergy<DOF> {
 }
 
 capability! {
-/// Jacobians and accelerations of the tips of a robot whose base nothing holds, for controllers of its whole body.
+/// Jacobians and accelerations of the tips of a robot with a floating base, for controllers of its whole body.
 ///
 /// The tips are those of [`TipWrenches`]; the base and its `NV` = `DOF` + 6 velocities are those of [`FloatingBase`]:
 /// the velocity of the origin of frame 0 and the angular velocity of the base, both in axes of frame 0, then the
@@ -179,7 +179,7 @@ pub trait FloatingKinematics<DOF, NV, TIPS> {
 }
 
 capability! {
-/// Motion of a robot whose base nothing holds while contacts hold some of its tips: a robot that stands or walks.
+/// Motion of a robot with a floating base while contacts hold some of its tips: a robot that stands or walks.
 ///
 /// The contacts are those of the list `contacts` of the robot file; without it nothing is held. A `point` holds the
 /// origin of its tip, a `weld` its orientation, too. The base, `NV` and the tips are those of [`FloatingBase`].

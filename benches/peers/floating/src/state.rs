@@ -1,4 +1,4 @@
-//! Random states of a robot that nothing holds, in the vectors of each program.
+//! Random states of a robot with a floating base, in the vectors of each program.
 
 use dynibo::{BaseState, Frame, Twist};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
