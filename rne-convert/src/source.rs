@@ -16,7 +16,7 @@ pub(crate) struct Source {
     pub(crate) included: Vec<(usize, String)>,
 }
 
-/// What helps against an error; `None` where nothing is known to.
+/// The help against an error, if one is known.
 #[derive(Debug)]
 pub(crate) struct Help(Option<String>);
 
