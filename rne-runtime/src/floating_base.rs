@@ -18,6 +18,7 @@ use nalgebra::Vector3;
 use crate::at_tip::AtTip;
 use crate::coordinates::Coordinates as _;
 use crate::definition::Definition;
+use crate::floating_kinematics::matrix;
 use crate::ldlt::{factor, solve};
 use crate::link_state::{ForceMoment, JointMotions};
 use crate::mechanism::Mechanism;
@@ -153,9 +154,20 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
     }
 
     /// The wrench on the base, then the torques, where nothing accelerates.
-    pub(crate) fn floating_bias<T: Scalar>(self, [q, qd]: [&[T]; 2], omega: &[T; 3], load: AtTip<'_, T>) -> V::Of<T> {
+    pub(crate) fn floating_bias<T: Scalar>(self, motion: [&[T]; 2], omega: &[T; 3], load: AtTip<'_, T>) -> V::Of<T> {
+        self.floating_torques(motion, &turning(omega), load)
+    }
+
+    /// The wrench on the base, then the torques, where nothing moves.
+    pub(crate) fn floating_gravity<T: Scalar>(self, q: &[T], base_rotation: &[[T; 3]; 3]) -> V::Of<T> {
+        let gravity = matrix(base_rotation).transpose() * Vector3::from(self.fixed_base().gravity);
+        self.floating_torques([q, self.zeros().as_ref()], &BaseMotion::fixed(gravity.into()), AtTip::Nothing)
+    }
+
+    /// The wrench on a base that moves, then the torques, where the joints do not accelerate.
+    fn floating_torques<T: Scalar>(self, [q, qd]: [&[T]; 2], base: &BaseMotion<T>, load: AtTip<'_, T>) -> V::Of<T> {
         let zeros = self.zeros();
-        let (Wrench { force, moment }, tau) = self.torques_and_wrench([q, qd, zeros.as_ref()], &turning(omega), load);
+        let (Wrench { force, moment }, tau) = self.torques_and_wrench([q, qd, zeros.as_ref()], base, load);
         self.velocities.of(|row| match row {
             0..3 => force[row],
             3..BASE => moment[row - 3],

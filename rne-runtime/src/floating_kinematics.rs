@@ -25,7 +25,7 @@ use crate::{Constant, Scalar};
 type Row<J, T> = ([T; BASE], <J as PerJoint>::Of<T>);
 
 /// A matrix of its rows.
-fn matrix<T: Scalar>(rows: &[[T; 3]; 3]) -> Matrix3<T> {
+pub(crate) fn matrix<T: Scalar>(rows: &[[T; 3]; 3]) -> Matrix3<T> {
     Matrix3::from(*rows).transpose()
 }
 

@@ -134,6 +134,7 @@ fn projected(function: Function, ratios: &[Vec<f64>], is_coordinate: &[bool], nu
         Function::InverseDynamicsOfFloatingBase
         | Function::FloatingInverseDynamicsWithPayload
         | Function::FloatingBias
+        | Function::FloatingGravityTorques
         | Function::FloatingBiasTorquesWithPayload => {
             let (on_base, torques) = numbers.split_at(6);
             [on_base, &times(&back, torques)].concat()

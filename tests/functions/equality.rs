@@ -39,6 +39,7 @@ pub(crate) fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f6
         | Function::InverseDynamicsOnMovingBase
         | Function::InverseDynamicsOfFloatingBase
         | Function::FloatingBias
+        | Function::FloatingGravityTorques
         | Function::CentroidalBias
         | Function::GravityTorques
         | Function::BiasTorques

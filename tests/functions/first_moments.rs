@@ -12,7 +12,7 @@ use crate::check::{Conditioning, Worst, conditioning, error_on_scale, product};
 
 /// What is linear in mass, first moment and inertia of a link. Forward dynamics is not, the regressor has no part in
 /// it, and the centre of mass is divided by the mass.
-const LINEAR: [Function; 18] = [
+const LINEAR: [Function; 19] = [
     Function::InverseDynamics,
     Function::InverseDynamicsWithWrench,
     Function::InverseDynamicsWithPayload,
@@ -21,6 +21,7 @@ const LINEAR: [Function; 18] = [
     Function::InverseDynamicsOfFloatingBase,
     Function::FloatingMassMatrix,
     Function::FloatingBias,
+    Function::FloatingGravityTorques,
     Function::GravityTorques,
     Function::BiasTorques,
     Function::CoriolisTorques,

@@ -341,6 +341,10 @@ pub(crate) fn expected(robot: &Robot, function: Function, state: &State) -> Vec<
         Function::FloatingMassMatrix | Function::FloatingMassMatrixWithPayload => {
             flat(floating_mass_matrix(robot, q, loaded))
         }
+        Function::FloatingGravityTorques => {
+            let gravity = rotation().transpose() * Vector3::from(robot.gravity);
+            floating_at(q, &zeros, &zeros, BaseMotion::fixed(gravity.into()))
+        }
         Function::FloatingBias | Function::FloatingBiasTorquesWithPayload => {
             floating(&zeros, BaseMotion { omega: base.omega, ..BaseMotion::fixed([0.0; 3]) })
         }

@@ -69,16 +69,28 @@ pub(crate) const STEP: Entry = Entry {
     ..Entry::NEW
 };
 
+/// Force and moment on the base and torques, in one row.
+const fn forces(row: &'static [&'static str]) -> AnswerTable {
+    AnswerTable::of(
+        "force (N) and moment (N m) on the base, axes of frame 0, then torques (N m, prismatic: N)",
+        Labels::Names(row),
+        VELOCITIES,
+    )
+}
+
 pub(crate) const BIAS_TORQUES: Entry = Entry {
     has_bits_of_runtime: true,
     output: "bias",
     listed: "returned: force and moment on the base, then the torques",
-    answer: Answer::Tables(&[AnswerTable::of(
-        "force (N) and moment (N m) on the base, axes of frame 0, then torques (N m, prismatic: N)",
-        Labels::Names(&["bias"]),
-        VELOCITIES,
-    )]),
+    answer: Answer::Tables(&[forces(&["bias"])]),
     ..Entry::NEW
+};
+
+pub(crate) const GRAVITY_TORQUES: Entry = Entry {
+    has_bits_of_runtime: false,
+    output: "gravity",
+    answer: Answer::Tables(&[forces(&["gravity"])]),
+    ..BIAS_TORQUES
 };
 
 pub(crate) const CENTROIDAL_MOMENTUM_MATRIX: Entry = Entry {

@@ -23,7 +23,7 @@ macro_rules! results {
             /// Torques from motion, with the sines and cosines of the positions as arguments.
             InverseDynamicsFromSinCos by Torques = "inverse_dynamics_from_sin_cos": [InverseDynamics Entry::TORQUES] [];
             /// Torques that hold the robot still.
-            GravityTorques by GravityTorques = "gravity_torques": [InverseDynamics fixed::GRAVITY_TORQUES] [];
+            GravityTorques by GravityTorques = "gravity_torques": [InverseDynamics fixed::GRAVITY_TORQUES] [FloatingBase floating::GRAVITY_TORQUES];
             /// Torques where nothing accelerates.
             BiasTorques by Torques = "bias_torques": [InverseDynamics fixed::BIAS_TORQUES] [FloatingBase floating::BIAS_TORQUES];
             /// C(q, q̇) q̇: torques where nothing accelerates or weighs.
@@ -557,6 +557,13 @@ macro_rules! functions {
             ) -> Vector:
                 "Accelerations of a robot with closed loops and a payload at its tip for torques `tau`.",
                 "passive, qdd: as in forward_dynamics_of_loops. payload: as in inverse_dynamics_with_payload.";
+            FloatingGravityTorques [GravityTorques.floating] = floating_gravity_torques(
+                q: Positions, base_rotation: BaseRotation
+            ) -> FloatingVector:
+                "Wrench on a floating base and torques that hold a robot still against gravity.",
+                "base_rotation: as in tip_jacobians. gravity: force (N) and moment (N m) about the origin of frame 0 \
+                 that must act on the base, in axes of frame 0, then torques. Gravity is that of the robot file, in the \
+                 axes of the world. The part of inverse_dynamics_of_floating_base that only gravity causes.";
         }
     };
 }

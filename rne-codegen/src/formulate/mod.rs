@@ -227,6 +227,10 @@ impl<'s, 'r> Derivation<'s, 'r> {
             // the same quantities come again, at the accelerations that are solved for
             let is_first = function == Function::FloatingEulerStepDerivatives && !builder.has_accelerations();
             if is_first { builder.unnamed(of_base) } else { of_base() }
+        } else if function.is_of_floating_base() && function.what() == What::GravityTorques {
+            let still = builder.zeros(Cause::FixedBase);
+            let gravity = base_rotation(builder).transpose() * builder.unnamed(|| arm::gravity(builder, robot));
+            Motion::of_base(&arm, [still; 3], gravity)
         } else {
             let is_weightless = function.what() == What::CoriolisTorques;
             Motion::of_fixed_base(builder, if is_weightless { builder.zeros(Cause::NoGravity) } else { arm.gravity })

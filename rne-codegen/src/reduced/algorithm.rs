@@ -72,6 +72,7 @@ impl Algorithm {
             Recursion::Torques if matches!(base, Base::Moving) => &[],
             Recursion::Torques if carries => &[Algorithm::Rnea, Algorithm::UnturnedPayload],
             Recursion::Torques => &[Algorithm::Rnea],
+            Recursion::GravityTorques if matches!(base, Base::Floating) => &[Algorithm::Rnea],
             Recursion::GravityTorques if carries => {
                 &[Algorithm::Rnea, Algorithm::UnturnedPayload, BY_GROUPS, BY_JOINTS]
             }

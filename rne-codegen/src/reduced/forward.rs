@@ -10,7 +10,8 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::function::Argument;
+use crate::formulate::base_rotation;
+use crate::function::{Argument, What};
 use crate::ir::{Axis, Builder, ExactAngle, Matrix, Moving, Name, Number, Quantity, Symbol, Vector};
 use crate::reduced::inward::ExpressedIn;
 use crate::reduced::regrouping::{group_start, is_parallel};
@@ -201,13 +202,18 @@ pub(crate) fn motion_of_base<'s>(arm: &Arm<'_, 's>) -> Motion<'s> {
 
 /// The acceleration of the origin of frame 0 less gravity.
 pub(crate) fn acceleration_of_base<'s>(arm: &Arm<'_, 's>) -> Vector<'s> {
+    if arm.builder.function.what() == What::GravityTorques {
+        return base_rotation(arm.builder).transpose()
+            * arm.builder.vector(arm.joint_frames.gravity_in_world.map(|g| -g));
+    }
     of_base(arm.builder, Quantity::Acceleration) - of_base(arm.builder, Quantity::Gravity)
 }
 
 /// A vector of the motion of the base: accelerations, gravity included, are zero where they are no arguments and were
 /// not solved for.
 fn of_base(builder: &Builder, quantity: Quantity) -> Vector<'_> {
-    if quantity == Quantity::Omega || builder.function.takes(Argument::Base) {
+    let is_still = builder.function.what() == What::GravityTorques;
+    if quantity == Quantity::Omega && !is_still || builder.function.takes(Argument::Base) {
         Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, 0, axis))))
     } else {
         builder.solved_of_base(quantity).unwrap_or_else(|| builder.no_vector())

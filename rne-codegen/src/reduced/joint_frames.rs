@@ -77,6 +77,8 @@ pub(crate) struct JointFrames {
     pub(crate) coordinates: Coordinates,
     /// Acceleration of gravity in the frame of each joint on the base, at rest; zero for the other joints.
     pub(crate) gravity: Vec<Triple>,
+    /// That of a floating base, in axes of the world.
+    pub(crate) gravity_in_world: Triple,
     /// The tip frame, then those of the list `tips`.
     pub(crate) tips: Vec<Tip>,
     /// Constants on the diagonal of M, for each joint: G² Jm of a rotor that belongs to the arm, and the constant part
@@ -189,7 +191,7 @@ impl JointFrames {
 
     /// The same rows where nothing weighs.
     pub(crate) fn without_gravity(&self) -> Self {
-        Self { gravity: vec![Triple::default(); self.rows.len()], ..self.clone() }
+        Self { gravity: vec![Triple::default(); self.rows.len()], gravity_in_world: Triple::default(), ..self.clone() }
     }
 
     /// Whether nothing is zero in value alone.
@@ -304,11 +306,11 @@ impl JointFrames {
         let mut rotors: Vec<Number> = robot.joints.iter().map(of_arm).collect();
         let mut base = floating.then(|| Carrier { matter: matter_of_base(robot, embedding), gyrostats: Vec::new() });
         let coupled = put_rotors(robot, embedding, (&mut rows, base.as_mut()), &mut rotors)?;
-        let gravity = robot.gravity.map(decimal);
-        let of_base = |row: &JointFrame| if row.parent.is_none() { gravity } else { Triple::default() };
+        let gravity_in_world = robot.gravity.map(decimal);
+        let of_base = |row: &JointFrame| if row.parent.is_none() { gravity_in_world } else { Triple::default() };
         let gravity = rows.iter().map(of_base).collect();
         let coordinates = Coordinates::of(robot);
-        Some(Self { rows, coordinates, gravity, tips, rotors, coupled, embedding, known, base })
+        Some(Self { rows, coordinates, gravity, gravity_in_world, tips, rotors, coupled, embedding, known, base })
     }
 
     /// Moves the origin of each frame to a point that is so far along its axis from where the row has its joint.
