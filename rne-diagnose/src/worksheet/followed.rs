@@ -64,9 +64,19 @@ impl Formulas<'_> {
     }
 }
 
-/// Writes a component of a quantity into the values of a link.
+/// Writes a component of a result of the steps into the values of a link.
 pub(super) fn set(link: &mut LinkTrace<f64>, quantity: Quantity, component: usize, value: f64) {
-    let vector = match quantity {
+    let vector = vector(link, quantity).filter(|_| quantity.step() > 0);
+    if let Some(own) = vector.and_then(|vector| vector.get_mut(component)) {
+        *own = value;
+    }
+}
+
+/// A vector of a link.
+pub(super) fn vector(link: &mut LinkTrace<f64>, quantity: Quantity) -> Option<&mut [f64; 3]> {
+    Some(match quantity {
+        Quantity::D => &mut link.d,
+        Quantity::R => &mut link.r,
         Quantity::Omega => &mut link.omega,
         Quantity::OmegaDot => &mut link.omega_dot,
         Quantity::Velocity => &mut link.velocity,
@@ -78,9 +88,6 @@ pub(super) fn set(link: &mut LinkTrace<f64>, quantity: Quantity, component: usiz
         Quantity::NextMoment => &mut link.next_moment,
         Quantity::JointForce => &mut link.joint_force,
         Quantity::JointMoment => &mut link.joint_moment,
-        _ => return,
-    };
-    if let Some(own) = vector.get_mut(component) {
-        *own = value;
-    }
+        _ => return None,
+    })
 }

@@ -35,9 +35,12 @@ macro_rules! quantities {
             /// Its symbol for joint `i`, counted from 1: `ω̇2`, `f1,2`.
             #[must_use]
             pub fn symbol(self, i: usize) -> String {
-                let (p, n) = (i.saturating_sub(1).to_string(), (i + 1).to_string());
-                let symbol = match self { $(Self::$variant => $symbol,)* };
-                symbol.replace("{i}", &i.to_string()).replace("{p}", &p).replace("{n}", &n)
+                indexed(self.template(), i)
+            }
+
+            /// Its symbol with {i} for the number of the joint, {p} for the one before and {n} for the next.
+            pub(super) const fn template(self) -> &'static str {
+                match self { $(Self::$variant => $symbol,)* }
             }
 
             /// The step that finds it; 0 for inputs of the steps.
@@ -91,6 +94,12 @@ quantities! {
     JointForce: "joint_force", "f{p},{i}", 6, VECTOR, "N" | "N", "Step 6: f_{i-1,i}, N.";
     JointMoment: "joint_moment", "n{p},{i}", 6, VECTOR, "N m" | "N m", "Step 6: n_{i-1,i}, N m.";
     Tau: "tau", "τ{i}", 7, SCALAR, "N m" | "N", "Step 7: τ_i, N m or N.";
+}
+
+/// A text with the numbers of a joint, of the one before and of the next in the places of {i}, {p} and {n}.
+pub(super) fn indexed(text: &str, i: usize) -> String {
+    let (p, n) = (i.saturating_sub(1).to_string(), (i + 1).to_string());
+    text.replace("{i}", &i.to_string()).replace("{p}", &p).replace("{n}", &n)
 }
 
 impl Quantity {
