@@ -10,13 +10,15 @@ use crate::lecture::Misprint;
 use crate::order;
 use crate::typo::Typo;
 
-/// A row for each slip: its word for programs, what it changes, and its documentation.
+/// A row for each slip: its documentation, its word for programs, what it changes, and the words for the slip and for
+/// what is right; no words where they depend on the robot.
 macro_rules! slips {
-    ($($variant:ident $(($($of:ty),+))?: $name:literal, $subject:literal, $doc:literal;)*) => {
+    ($($(#[$doc:meta])* $variant:ident $(($($of:ty),+))?: $name:literal, $subject:literal,
+       $says:literal, $right:literal;)*) => {
         /// A slip that makes two tools disagree. In this order they are looked for: the commonest first.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
         #[non_exhaustive]
-        pub enum Slip { $(#[doc = $doc] $variant $(($($of),+))?,)* }
+        pub enum Slip { $($(#[$doc])* $variant $(($($of),+))?,)* }
 
         impl Slip {
             /// A word for programs: `gravity_reversed`, `joint_reversed`.
@@ -32,72 +34,135 @@ macro_rules! slips {
             fn subject(self) -> &'static str {
                 match self { $(Self::$variant { .. } => $subject,)* }
             }
+
+            /// The words for it and for what is right; empty where they depend on the robot.
+            pub(crate) const fn words(self) -> [&'static str; 2] {
+                match self { $(Self::$variant { .. } => [$says, $right],)* }
+            }
         }
     };
 }
 
 slips! {
-    OtherConvention: "other_convention", "convention",
-        "The rows are read in the other Denavit-Hartenberg convention.";
-    GravityReversed: "gravity_reversed", "gravity", "Gravity points up.";
-    NoGravity: "no_gravity", "gravity", "There is no gravity.";
-    GravityAlong(usize, bool): "gravity_along_another_axis", "gravity",
-        "Gravity points along another axis: 0 to 2, and whether the other way.";
-    GravityInWorld: "gravity_in_world", "gravity", "Gravity is given in the world's axes and turned by the base.";
-    InertiaAboutOrigin: "inertia_about_origin", "inertia",
-        "The inertia as it is written is taken for one about the origin of the link frame.";
-    InertiaShifted: "inertia_shifted", "inertia", "The inertia gets m (c² 1 - c cᵀ) once more.";
-    ProductsOfInertia: "products_of_inertia", "products", "xy, xz and yz have the other sign.";
+    /// The rows are read in the other Denavit-Hartenberg convention.
+    OtherConvention: "other_convention", "convention", "", "";
+    /// Gravity points up.
+    GravityReversed: "gravity_reversed", "gravity", "gravity points the other way", "";
+    /// There is no gravity.
+    NoGravity: "no_gravity", "gravity", "there is no gravity", "";
+    /// Gravity points along another axis: 0 to 2, and whether the other way.
+    GravityAlong(usize, bool): "gravity_along_another_axis", "gravity", "", "";
+    /// Gravity is given in the world's axes and turned by the base.
+    GravityInWorld: "gravity_in_world", "gravity", "gravity is taken in world axes, and is rotated by `base`", "";
+    /// The inertia as it is written is taken for one about the origin of the link frame.
+    InertiaAboutOrigin: "inertia_about_origin", "inertia", "", "";
+    /// The inertia gets m (c² 1 - c cᵀ) once more.
+    InertiaShifted: "inertia_shifted", "inertia", "", "";
+    /// xy, xz and yz have the other sign.
+    ProductsOfInertia: "products_of_inertia", "products",
+        "xy, xz and yz of the inertias have the other sign", "`xy` is the element of the tensor, -∫ x y dm";
+    /// The inertias of a standard table are not turned by alpha into axes with z along the joint.
     InertiaNotTwisted: "inertia_not_twisted", "inertia",
-        "The inertias of a standard table are not turned by alpha into axes with z along the joint.";
-    ComReversed: "com_reversed", "com", "The centres of mass are on the other side.";
-    ComFromOtherEnd: "com_from_other_end", "com",
-        "The centres of mass count from the frame at the other end of the link.";
-    ComOfOtherEnd: "com_of_other_end", "com",
-        "The centres of mass are given from the other end of the link and count from this one.";
-    PositionsAsDegrees: "positions_as_degrees", "units", "The angles are taken for degrees.";
-    PositionsInDegrees: "positions_in_degrees", "units", "Degrees are taken for radians.";
+        "the inertias are not turned by alpha: they are used in axes with z along the joint as the file has \
+         them, whose z is along the next joint",
+        "[I] = Rx(α) I Rx(α)ᵀ in axes with z along the joint";
+    /// The centres of mass are on the other side.
+    ComReversed: "com_reversed", "com", "the centres of mass have the other sign", "";
+    /// The centres of mass count from the frame at the other end of the link.
+    ComFromOtherEnd: "com_from_other_end", "com", "", "";
+    /// The centres of mass are given from the other end of the link and count from this one.
+    ComOfOtherEnd: "com_of_other_end", "com", "", "";
+    /// The angles are taken for degrees.
+    PositionsAsDegrees: "positions_as_degrees", "units",
+        "the angles are in radians, but are read as degrees",
+        "q in rad: deg(30) is pi/6. If your torques are right, the q that you gave here is in degrees";
+    /// Degrees are taken for radians.
+    PositionsInDegrees: "positions_in_degrees", "units",
+        "the angles are multiplied by 180/π, and then read as radians", "q in rad: deg(30) is pi/6";
+    /// Angles, speeds and accelerations of revolute joints are taken for degrees.
     StateAsDegrees: "state_as_degrees", "units",
-        "Angles, speeds and accelerations of revolute joints are taken for degrees.";
-    StateInDegrees: "state_in_degrees", "units", "Degrees are taken for radians in angles, speeds and accelerations.";
-    NoOffsets: "no_offsets", "offsets", "The constant parts of the joint variables are left out.";
-    OffsetsReversed: "offsets_reversed", "offsets", "The constant parts of the joint variables are subtracted.";
-    JointReversed(usize): "joint_reversed", "joint", "A joint, counted from 0, turns or slides the other way.";
-    NoVelocities: "no_velocities", "velocities", "The velocities do not count.";
-    NoAccelerations: "no_accelerations", "accelerations", "The accelerations do not count.";
+        "angles, speeds and accelerations are in rad, rad/s and rad/s², but are read as degrees",
+        "q, q̇ and q̈ in rad, rad/s and rad/s². If your torques are right, the state that you gave here is in degrees";
+    /// Degrees are taken for radians in angles, speeds and accelerations.
+    StateInDegrees: "state_in_degrees", "units",
+        "angles, speeds and accelerations are multiplied by 180/π", "q, q̇ and q̈ in rad, rad/s and rad/s²";
+    /// The constant parts of the joint variables are left out.
+    NoOffsets: "no_offsets", "offsets", "the constant `theta` (or `d`) of the joints' rows is left out", "";
+    /// The constant parts of the joint variables are subtracted.
+    OffsetsReversed: "offsets_reversed", "offsets",
+        "the constant `theta` (or `d`) of the joints' rows has the other sign", "";
+    /// A joint, counted from 0, turns or slides the other way.
+    JointReversed(usize): "joint_reversed", "joint",
+        "", "q, q̇, q̈ and τ are positive about (prismatic joints: along) +z of the joint";
+    /// The velocities do not count.
+    NoVelocities: "no_velocities", "velocities",
+        "the velocities are zero: no Coriolis and centrifugal terms", "n = I ω̇ + ω × I ω, and c̈ with its ω × (ω × …)";
+    /// The accelerations do not count.
+    NoAccelerations: "no_accelerations", "accelerations",
+        "the accelerations are zero: no inertia terms", "τ includes M(q) q̈";
+    /// The acceleration of a first joint that slides is dropped in modified tables, as in the C code of the Robotics
+    /// Toolbox for MATLAB.
     NoFirstSlide: "no_first_slide", "accelerations",
-        "The acceleration of a first joint that slides is dropped in modified tables, as in the C code of \
-         the Robotics Toolbox for MATLAB.";
-    RotorInertia: "rotor_inertia", "motors", "The rotors' inertia G² Jm belongs to the arm.";
-    MotorTorques: "motor_torques", "motors", "The motors' inertia and friction are added.";
-    WrenchReversed: "wrench_reversed", "wrench", "The wrench is that of the environment on the arm.";
-    NoWrench: "no_wrench", "wrench", "The wrench is left out.";
-    NoTool: "no_tool", "wrench", "The wrench acts at the last frame instead of the tip.";
-    WrenchInWorld: "wrench_in_world", "axes of the wrench", "The wrench at the tip is in world axes.";
-    WrenchInBase: "wrench_in_base", "axes of the wrench", "The wrench at the tip is in the axes of frame 0.";
+        "the acceleration of a prismatic first joint is ignored",
+        "the C code of the Robotics Toolbox for MATLAB has this mistake; its MATLAB code is right";
+    /// The rotors' inertia G² Jm belongs to the arm.
+    RotorInertia: "rotor_inertia", "motors",
+        "the rotors' inertia G² Jm is part of the arm",
+        "the arm consists of the links of the file; rotors are added only on request";
+    /// The motors' inertia and friction are added.
+    MotorTorques: "motor_torques", "motors",
+        "the motors' inertia and friction are in the torques",
+        "τ is without motors; `actuator_torques` adds their inertia and friction";
+    /// The wrench is that of the environment on the arm.
+    WrenchReversed: "wrench_reversed", "wrench",
+        "the wrench is what the environment exerts on the arm",
+        "the wrench is what the last link exerts on its environment: τ = τ_free + Jᵀ w";
+    /// The wrench is left out.
+    NoWrench: "no_wrench", "wrench", "the wrench is left out", "τ = τ_free + Jᵀ w";
+    /// The wrench acts at the last frame instead of the tip.
+    NoTool: "no_tool", "wrench", "", "the wrench acts at the tip frame, in its axes: frame n, then `tool`";
+    /// The wrench at the tip is in world axes.
+    WrenchInWorld: "wrench_in_world", "axes of the wrench", "the wrench at the tip is in world axes", "";
+    /// The wrench at the tip is in the axes of frame 0.
+    WrenchInBase: "wrench_in_base", "axes of the wrench", "the wrench at the tip is in the axes of frame 0", "";
+    /// The wrench is in world axes, and its moment is about the origin of the world.
     WrenchAboutWorld: "wrench_about_world", "axes of the wrench",
-        "The wrench is in world axes, and its moment is about the origin of the world.";
-    TipOnLastRow: "tip_on_last_row", "wrench", "The link of the last row of a tree carries the tip.";
-    TorquesReversed: "torques_reversed", "torques", "The torques are those of the arm on its motors.";
-    TorquesFromTheTip: "torques_from_the_tip", "order", "The torques stand from tip to base.";
-    TorquesByName: "torques_by_name", "order", "The torques stand in the alphabetical order of the joints.";
+        "the wrench is in world axes, and its moment is about the origin of the world", "";
+    /// The link of the last row of a tree carries the tip.
+    TipOnLastRow: "tip_on_last_row", "wrench", "the wrench acts at the link of the last row", "";
+    /// The torques are those of the arm on its motors.
+    TorquesReversed: "torques_reversed", "torques",
+        "the torques are what the arm exerts on its motors", "τ is what the motor exerts on the arm: positive lifts";
+    /// The torques stand from tip to base.
+    TorquesFromTheTip: "torques_from_the_tip", "order", "", "";
+    /// The torques stand in the alphabetical order of the joints.
+    TorquesByName: "torques_by_name", "order", "the torques are listed in the alphabetical order of the joints", "";
+    /// Positions, velocities, accelerations and torques stand in the alphabetical order of the joints.
     JointsByName: "joints_by_name", "order",
-        "Positions, velocities, accelerations and torques stand in the alphabetical order of the joints.";
+        "positions, velocities, accelerations and torques are listed in the alphabetical order of the joints", "";
+    /// Positions, velocities, accelerations and torques stand from tip to base.
     JointsFromTheTip: "joints_from_the_tip", "order",
-        "Positions, velocities, accelerations and torques stand from tip to base.";
+        "positions, velocities, accelerations and torques are listed from the last joint to the first", "";
+    /// Positions, velocities, accelerations and torques stand by the number of joints from the base: breadth first.
     JointsByLevel: "joints_by_level", "order",
-        "Positions, velocities, accelerations and torques stand by the number of joints from the base: breadth first.";
-    BranchesExchanged(usize, usize): "branches_exchanged", "order",
-        "Two branches of a tree with equally many joints are exchanged in all lists; each is given by its first joint.";
-    JointsExchanged(usize, usize): "joints_exchanged", "order",
-        "Two coordinates are exchanged in all lists; looked for alone, not in pairs.";
-    FollowerReversed(usize): "follower_reversed", "follower",
-        "A joint that follows others, counted from 0, follows them with the other sign.";
-    TorquesInNmm: "torques_in_nmm", "unit of torque", "The torques of revolute joints are N mm.";
-    RatesExchanged: "rates_exchanged", "rates", "Velocities and accelerations are exchanged.";
-    Misprint(Misprint): "misprint", "formula",
-        "A formula of the lecture as it was printed, or a common mistake in one.";
-    Typo(Typo): "typo", "number", "A sign that is mistyped in one row or link; looked for alone, not in pairs.";
+        "positions, velocities, accelerations and torques are listed breadth first: by the number of joints \
+         from the base", "";
+    /// Two branches of a tree with equally many joints are exchanged in all lists; each is given by its first joint.
+    BranchesExchanged(usize, usize): "branches_exchanged", "order", "", "";
+    /// Two coordinates are exchanged in all lists; looked for alone, not in pairs.
+    JointsExchanged(usize, usize): "joints_exchanged", "order", "", "";
+    /// A joint that follows others, counted from 0, follows them with the other sign.
+    FollowerReversed(usize): "follower_reversed", "follower", "", "";
+    /// The torques of revolute joints are N mm.
+    TorquesInNmm: "torques_in_nmm", "unit of torque",
+        "the torques of revolute joints are in N mm", "N m for a revolute joint, N for a prismatic joint";
+    /// Velocities and accelerations are exchanged.
+    RatesExchanged: "rates_exchanged", "rates",
+        "velocities and accelerations are exchanged", "q̇ before q̈: τ(q, q̇, q̈)";
+    /// A formula of the lecture as it was printed, or a common mistake in one.
+    Misprint(Misprint): "misprint", "formula", "", "";
+    /// A sign that is mistyped in one row or link; looked for alone, not in pairs.
+    Typo(Typo): "typo", "number", "", "";
 }
 
 impl Slip {

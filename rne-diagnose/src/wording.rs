@@ -7,27 +7,19 @@ use crate::slip::Slip;
 impl Slip {
     /// The mistake of the other computation, in a clause: "gravity points the other way".
     #[must_use]
-    #[allow(clippy::too_many_lines)] // an arm for each slip
     pub fn says(self, robot: &Robot) -> String {
-        let (this, other) = match robot.convention {
-            Convention::Standard => ("standard", "modified"),
-            Convention::Modified => ("modified", "standard"),
-        };
-        let [near, far] = match robot.convention {
-            Convention::Standard => ["far", "near"],
-            Convention::Modified => ["near", "far"],
+        let [this, other, near, far] = match robot.convention {
+            Convention::Standard => ["standard", "modified", "far", "near"],
+            Convention::Modified => ["modified", "standard", "near", "far"],
         };
         match self {
             Self::OtherConvention => {
                 format!("the rows are read in the {other} convention; the file has the {this} convention")
             }
-            Self::GravityReversed => "gravity points the other way".to_owned(),
-            Self::NoGravity => "there is no gravity".to_owned(),
             Self::GravityAlong(axis, reversed) => {
                 let sign = if reversed { "-" } else { "" };
                 format!("gravity points along {sign}{} of frame 0", ["x", "y", "z"][axis.min(2)])
             }
-            Self::GravityInWorld => "gravity is taken in world axes, and is rotated by `base`".to_owned(),
             Self::InertiaAboutOrigin => match reference(robot) {
                 InertiaReference::Com => {
                     "inertias about the centre of mass are read as inertias about the frame's origin"
@@ -44,11 +36,6 @@ impl Slip {
                 }
             }
             .to_owned(),
-            Self::ProductsOfInertia => "xy, xz and yz of the inertias have the other sign".to_owned(),
-            Self::InertiaNotTwisted => "the inertias are not turned by alpha: they are used in axes with z along the \
-                                        joint as the file has them, whose z is along the next joint"
-                .to_owned(),
-            Self::ComReversed => "the centres of mass have the other sign".to_owned(),
             Self::ComFromOtherEnd => {
                 format!(
                     "the file's centres of mass are measured from the {far} end of the link, not from its {near} end"
@@ -60,46 +47,15 @@ impl Slip {
                      its {near} end"
                 )
             }
-            Self::PositionsAsDegrees => "the angles are in radians, but are read as degrees".to_owned(),
-            Self::PositionsInDegrees => "the angles are multiplied by 180/π, and then read as radians".to_owned(),
-            Self::StateAsDegrees => {
-                "angles, speeds and accelerations are in rad, rad/s and rad/s², but are read as degrees".to_owned()
-            }
-            Self::StateInDegrees => "angles, speeds and accelerations are multiplied by 180/π".to_owned(),
-            Self::NoOffsets => "the constant `theta` (or `d`) of the joints' rows is left out".to_owned(),
-            Self::OffsetsReversed => "the constant `theta` (or `d`) of the joints' rows has the other sign".to_owned(),
             Self::JointReversed(joint) => {
                 format!("joint {} ({}) has the opposite positive direction", joint + 1, name(robot, joint))
             }
-            Self::NoVelocities => "the velocities are zero: no Coriolis and centrifugal terms".to_owned(),
-            Self::NoAccelerations => "the accelerations are zero: no inertia terms".to_owned(),
-            Self::NoFirstSlide => "the acceleration of a prismatic first joint is ignored".to_owned(),
-            Self::RotorInertia => "the rotors' inertia G² Jm is part of the arm".to_owned(),
-            Self::MotorTorques => "the motors' inertia and friction are in the torques".to_owned(),
-            Self::WrenchReversed => "the wrench is what the environment exerts on the arm".to_owned(),
-            Self::NoWrench => "the wrench is left out".to_owned(),
             Self::NoTool if robot.is_serial() => "the wrench acts at the last frame: the tool is left out".to_owned(),
             Self::NoTool => "the wrench acts at the frame of the link with the tip: the tool is left out".to_owned(),
-            Self::TipOnLastRow => "the wrench acts at the link of the last row".to_owned(),
-            Self::TorquesReversed => "the torques are what the arm exerts on its motors".to_owned(),
             Self::TorquesFromTheTip if robot.is_serial() => "the torques are listed from tip to base".to_owned(),
             Self::TorquesFromTheTip => "the torques are listed from the last row to the first".to_owned(),
-            Self::TorquesByName => "the torques are listed in the alphabetical order of the joints".to_owned(),
-            Self::JointsByName => {
-                "positions, velocities, accelerations and torques are listed in the alphabetical order of the joints"
-                    .to_owned()
-            }
-            Self::JointsFromTheTip => {
-                "positions, velocities, accelerations and torques are listed from the last joint to the first"
-                    .to_owned()
-            }
-            Self::JointsByLevel => {
-                "positions, velocities, accelerations and torques are listed breadth first: by the number of joints \
-                 from the base"
-                    .to_owned()
-            }
             Self::BranchesExchanged(one, other) => {
-                let [one, other] = [one, other].map(|joint| robot.joints.get(joint).map_or("", |joint| &joint.name));
+                let [one, other] = [one, other].map(|joint| joint_name(robot, joint));
                 format!("the branches that begin with {one} and {other} are exchanged in all lists")
             }
             Self::JointsExchanged(one, other) => {
@@ -107,18 +63,14 @@ impl Slip {
                 format!("the joints {one} and {other} are exchanged in all lists")
             }
             Self::FollowerReversed(joint) => {
-                let follower = robot.joints.get(joint).map_or("", |joint| &joint.name);
-                format!("the joint {follower} follows {} with the other sign", followed(robot, joint))
+                let follows = follows(robot, joint);
+                let names: Vec<&str> = follows.iter().map(|(joint, _)| robot.joints[*joint].name.as_str()).collect();
+                let follower = joint_name(robot, joint);
+                format!("the joint {follower} follows {} with the other sign", names.join(" and "))
             }
-            Self::WrenchInWorld => "the wrench at the tip is in world axes".to_owned(),
-            Self::WrenchInBase => "the wrench at the tip is in the axes of frame 0".to_owned(),
-            Self::WrenchAboutWorld => {
-                "the wrench is in world axes, and its moment is about the origin of the world".to_owned()
-            }
-            Self::TorquesInNmm => "the torques of revolute joints are in N mm".to_owned(),
-            Self::RatesExchanged => "velocities and accelerations are exchanged".to_owned(),
             Self::Misprint(misprint) => misprint.says().to_owned(),
             Self::Typo(typo) => typo.says(robot),
+            _ => self.words()[0].to_owned(),
         }
     }
 
@@ -149,55 +101,22 @@ impl Slip {
                 let about = if reference(robot) == InertiaReference::Com { "com" } else { "origin" };
                 format!("the file's inertias are about `{about}`; I_origin = I_com + m (c² 1 - c cᵀ)")
             }
-            Self::InertiaNotTwisted => "[I] = Rx(α) I Rx(α)ᵀ in axes with z along the joint".to_owned(),
-            Self::ProductsOfInertia => "`xy` is the element of the tensor, -∫ x y dm".to_owned(),
             Self::ComReversed | Self::ComFromOtherEnd | Self::ComOfOtherEnd => com.to_owned(),
-            Self::PositionsAsDegrees => {
-                "q in rad: deg(30) is pi/6. If your torques are right, the q that you gave here is in degrees"
-                    .to_owned()
-            }
-            Self::PositionsInDegrees => "q in rad: deg(30) is pi/6".to_owned(),
-            Self::StateAsDegrees => {
-                "q, q̇ and q̈ in rad, rad/s and rad/s². If your torques are right, the state that you gave here is in \
-                 degrees"
-                    .to_owned()
-            }
-            Self::StateInDegrees => "q, q̇ and q̈ in rad, rad/s and rad/s²".to_owned(),
             Self::NoOffsets | Self::OffsetsReversed => {
                 "the joint angle is theta + q; the offset of a prismatic joint is d + q".to_owned()
             }
-            Self::JointReversed(_) => {
-                "q, q̇, q̈ and τ are positive about (prismatic joints: along) +z of the joint".to_owned()
-            }
-            Self::NoVelocities => "n = I ω̇ + ω × I ω, and c̈ with its ω × (ω × …)".to_owned(),
-            Self::NoAccelerations => "τ includes M(q) q̈".to_owned(),
-            Self::NoFirstSlide => {
-                "the C code of the Robotics Toolbox for MATLAB has this mistake; its MATLAB code is right".to_owned()
-            }
-            Self::RotorInertia => {
-                "the arm consists of the links of the file; rotors are added only on request".to_owned()
-            }
-            Self::MotorTorques => "τ is without motors; `actuator_torques` adds their inertia and friction".to_owned(),
-            Self::WrenchReversed => {
-                "the wrench is what the last link exerts on its environment: τ = τ_free + Jᵀ w".to_owned()
-            }
-            Self::NoWrench => "τ = τ_free + Jᵀ w".to_owned(),
-            Self::NoTool => "the wrench acts at the tip frame, in its axes: frame n, then `tool`".to_owned(),
             Self::TipOnLastRow => {
-                let on = robot.tip().on.and_then(|on| robot.joints.get(on)).map_or("", |joint| &joint.name);
+                let on = robot.tip().on.map_or("", |on| joint_name(robot, on));
                 format!("the wrench acts at the tip, which is on the link of {on}: `tool: {{on: {on}}}`")
             }
-            Self::TorquesReversed => "τ is what the motor exerts on the arm: positive lifts".to_owned(),
             Self::TorquesFromTheTip if robot.is_serial() => "lists run from base to tip".to_owned(),
             Self::WrenchInWorld | Self::WrenchInBase | Self::WrenchAboutWorld => {
                 "the wrench is in the axes of the tip frame, and its moment is about the origin of that frame"
                     .to_owned()
             }
             Self::FollowerReversed(joint) => {
-                let coupling = robot.joints.get(joint).and_then(|joint| joint.coupling.as_ref());
-                let ratios = coupling
-                    .into_iter()
-                    .flat_map(|it| &it.follows)
+                let ratios = follows(robot, joint)
+                    .iter()
                     .map(|(joint, ratio)| format!("{}: {}", robot.joints[*joint].name, six_digits(*ratio)));
                 format!("`follows: {{{}}}`", ratios.collect::<Vec<_>>().join(", "))
             }
@@ -211,10 +130,9 @@ impl Slip {
                 let names: Vec<&str> = robot.independent_joints().map(|joint| joint.name.as_str()).collect();
                 format!("lists are in the order of the rows of the file: {}", names.join(", "))
             }
-            Self::TorquesInNmm => "N m for a revolute joint, N for a prismatic joint".to_owned(),
-            Self::RatesExchanged => "q̇ before q̈: τ(q, q̇, q̈)".to_owned(),
             Self::Misprint(misprint) => misprint.right().to_owned(),
             Self::Typo(typo) => typo.right(robot),
+            _ => self.words()[1].to_owned(),
         }
     }
 }
@@ -224,11 +142,15 @@ fn name(robot: &Robot, coordinate: usize) -> &str {
     robot.independent_joint(coordinate).map_or("", |joint| &joint.name)
 }
 
-/// The joints that a joint follows, in words.
-fn followed(robot: &Robot, joint: usize) -> String {
+/// The name of a joint, counted from 0.
+fn joint_name(robot: &Robot, joint: usize) -> &str {
+    robot.joints.get(joint).map_or("", |joint| &joint.name)
+}
+
+/// The joints that a joint follows, and the ratios.
+fn follows(robot: &Robot, joint: usize) -> &[(usize, f64)] {
     let coupling = robot.joints.get(joint).and_then(|joint| joint.coupling.as_ref());
-    let names = coupling.into_iter().flat_map(|it| &it.follows).map(|(joint, _)| robot.joints[*joint].name.as_str());
-    names.collect::<Vec<_>>().join(" and ")
+    coupling.map_or(&[], |coupling| &coupling.follows)
 }
 
 fn reference(robot: &Robot) -> InertiaReference {

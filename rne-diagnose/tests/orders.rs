@@ -145,3 +145,14 @@ fn a_follower_with_the_other_sign_is_named() {
         assert_eq!(first(&palletiser, other), [Slip::FollowerReversed(joint)]);
     }
 }
+
+#[test]
+fn every_slip_has_words() {
+    for file in rne_robots::all() {
+        let robot = robot(file.yaml);
+        for slip in Slip::candidates(&robot) {
+            let words = [slip.says(&robot), slip.right(&robot)];
+            assert!(words.iter().all(|words| !words.is_empty()), "{}: {slip:?}", file.name);
+        }
+    }
+}

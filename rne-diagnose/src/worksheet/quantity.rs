@@ -11,16 +11,16 @@ const VECTOR: &[&str] = &["x", "y", "z"];
 const SYMMETRIC: &[&str] = &["xx", "xy", "xz", "yy", "yz", "zz"];
 const MATRIX: &[&str] = &["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"];
 
-/// A row for each quantity: its name in files, its symbol for joint i (p is the one before, n the next), the step that
-/// finds it, its components, its units for a revolute and a prismatic joint, and its documentation.
+/// A row for each quantity: its documentation, its name in files, its symbol for joint i (p is the one before, n the
+/// next), the step that finds it, its components, and its units for a revolute and a prismatic joint.
 macro_rules! quantities {
-    ($($variant:ident: $name:literal, $symbol:literal, $step:literal, $components:ident,
-       $turns:literal | $slides:literal, $doc:literal;)*) => {
+    ($($(#[$doc:meta])* $variant:ident: $name:literal, $symbol:literal, $step:literal, $components:ident,
+       $turns:literal | $slides:literal;)*) => {
         /// A quantity of a worksheet: an input of a joint, or a result of the seven steps. The order is that in which a
         /// joint's are computed, outward and then back.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[non_exhaustive]
-        pub enum Quantity { $(#[doc = $doc] $variant,)* }
+        pub enum Quantity { $($(#[$doc])* $variant,)* }
 
         impl Quantity {
             /// All, in the order in which a joint's are computed.
@@ -66,34 +66,54 @@ macro_rules! quantities {
 }
 
 quantities! {
-    Q: "q", "q{i}", 0, SCALAR, "rad" | "m", "The joint's position as it is given, rad or m.";
-    Qd: "qd", "q̇{i}", 0, SCALAR, "rad/s" | "m/s", "Its rate, rad/s or m/s.";
-    Qdd: "qdd", "q̈{i}", 0, SCALAR, "rad/s²" | "m/s²", "Its acceleration, rad/s² or m/s².";
-    Theta: "theta", "θ{i}", 0, SCALAR, "rad" | "rad", "θ_i with its constant part, rad.";
-    Offset: "offset", "b{i}", 0, SCALAR, "m" | "m", "b_i with its constant part, the `d` of the row, m.";
-    Mass: "mass", "m{i}", 0, SCALAR, "kg" | "kg", "m_i, kg.";
-    Rotation: "rotation", "R{i}", 0, MATRIX, "1" | "1",
-        "R_i: from the axes of this joint's entry to those of the entry before; for the first, of frame 0.";
-    Orientation: "orientation", "A{i}", 0, MATRIX, "1" | "1",
-        "A_i, in base axes alone: from axes fixed to link i, z along joint i, to those of frame 0.";
-    Axis: "axis", "e{i}", 0, VECTOR, "1" | "1", "e_i, in base axes alone; (0, 0, 1) in all others.";
-    D: "d", "d{i}", 0, VECTOR, "m" | "m", "d_i, from the joint to the centre of mass, m.";
-    R: "r", "r{i}", 0, VECTOR, "m" | "m", "r_i, from the centre of mass to the next joint or the tip, m.";
-    Inertia: "inertia", "I{i}", 0, SYMMETRIC, "kg m²" | "kg m²", "I_i about the centre of mass, kg m².";
-    Omega: "omega", "ω{i}", 1, VECTOR, "rad/s" | "rad/s", "Step 1: ω_i, rad/s.";
-    OmegaDot: "omega_dot", "ω̇{i}", 2, VECTOR, "rad/s²" | "rad/s²", "Step 2: ω̇_i, rad/s².";
-    Velocity: "velocity", "ċ{i}", 3, VECTOR, "m/s" | "m/s", "Step 3: ċ_i, m/s.";
-    Acceleration: "acceleration", "c̈{i}", 4, VECTOR, "m/s²" | "m/s²", "Step 4: c̈_i, m/s².";
-    Gravity: "gravity", "g{i}", 5, VECTOR, "m/s²" | "m/s²", "Step 5: g_i, m/s².";
-    InertiaForce: "inertia_force", "f{i}", 6, VECTOR, "N" | "N", "Step 6: f_i, N.";
-    InertiaMoment: "inertia_moment", "n{i}", 6, VECTOR, "N m" | "N m", "Step 6: n_i, N m.";
-    NextForce: "next_force", "f{i},{n}", 6, VECTOR, "N" | "N",
-        "Step 6: f_{i,i+1} in the axes of joint i's entry, N.";
-    NextMoment: "next_moment", "n{i},{n}", 6, VECTOR, "N m" | "N m",
-        "Step 6: n_{i,i+1} in the axes of joint i's entry, N m.";
-    JointForce: "joint_force", "f{p},{i}", 6, VECTOR, "N" | "N", "Step 6: f_{i-1,i}, N.";
-    JointMoment: "joint_moment", "n{p},{i}", 6, VECTOR, "N m" | "N m", "Step 6: n_{i-1,i}, N m.";
-    Tau: "tau", "τ{i}", 7, SCALAR, "N m" | "N", "Step 7: τ_i, N m or N.";
+    /// The joint's position as it is given, rad or m.
+    Q: "q", "q{i}", 0, SCALAR, "rad" | "m";
+    /// Its rate, rad/s or m/s.
+    Qd: "qd", "q̇{i}", 0, SCALAR, "rad/s" | "m/s";
+    /// Its acceleration, rad/s² or m/s².
+    Qdd: "qdd", "q̈{i}", 0, SCALAR, "rad/s²" | "m/s²";
+    /// θ_i with its constant part, rad.
+    Theta: "theta", "θ{i}", 0, SCALAR, "rad" | "rad";
+    /// b_i with its constant part, the `d` of the row, m.
+    Offset: "offset", "b{i}", 0, SCALAR, "m" | "m";
+    /// m_i, kg.
+    Mass: "mass", "m{i}", 0, SCALAR, "kg" | "kg";
+    /// R_i: from the axes of this joint's entry to those of the entry before; for the first, of frame 0.
+    Rotation: "rotation", "R{i}", 0, MATRIX, "1" | "1";
+    /// A_i, in base axes alone: from axes fixed to link i, z along joint i, to those of frame 0.
+    Orientation: "orientation", "A{i}", 0, MATRIX, "1" | "1";
+    /// e_i, in base axes alone; (0, 0, 1) in all others.
+    Axis: "axis", "e{i}", 0, VECTOR, "1" | "1";
+    /// d_i, from the joint to the centre of mass, m.
+    D: "d", "d{i}", 0, VECTOR, "m" | "m";
+    /// r_i, from the centre of mass to the next joint or the tip, m.
+    R: "r", "r{i}", 0, VECTOR, "m" | "m";
+    /// I_i about the centre of mass, kg m².
+    Inertia: "inertia", "I{i}", 0, SYMMETRIC, "kg m²" | "kg m²";
+    /// Step 1: ω_i, rad/s.
+    Omega: "omega", "ω{i}", 1, VECTOR, "rad/s" | "rad/s";
+    /// Step 2: ω̇_i, rad/s².
+    OmegaDot: "omega_dot", "ω̇{i}", 2, VECTOR, "rad/s²" | "rad/s²";
+    /// Step 3: ċ_i, m/s.
+    Velocity: "velocity", "ċ{i}", 3, VECTOR, "m/s" | "m/s";
+    /// Step 4: c̈_i, m/s².
+    Acceleration: "acceleration", "c̈{i}", 4, VECTOR, "m/s²" | "m/s²";
+    /// Step 5: g_i, m/s².
+    Gravity: "gravity", "g{i}", 5, VECTOR, "m/s²" | "m/s²";
+    /// Step 6: f_i, N.
+    InertiaForce: "inertia_force", "f{i}", 6, VECTOR, "N" | "N";
+    /// Step 6: n_i, N m.
+    InertiaMoment: "inertia_moment", "n{i}", 6, VECTOR, "N m" | "N m";
+    /// Step 6: f_{i,i+1} in the axes of joint i's entry, N.
+    NextForce: "next_force", "f{i},{n}", 6, VECTOR, "N" | "N";
+    /// Step 6: n_{i,i+1} in the axes of joint i's entry, N m.
+    NextMoment: "next_moment", "n{i},{n}", 6, VECTOR, "N m" | "N m";
+    /// Step 6: f_{i-1,i}, N.
+    JointForce: "joint_force", "f{p},{i}", 6, VECTOR, "N" | "N";
+    /// Step 6: n_{i-1,i}, N m.
+    JointMoment: "joint_moment", "n{p},{i}", 6, VECTOR, "N m" | "N m";
+    /// Step 7: τ_i, N m or N.
+    Tau: "tau", "τ{i}", 7, SCALAR, "N m" | "N";
 }
 
 /// A text with the numbers of a joint, of the one before and of the next in the places of {i}, {p} and {n}.
