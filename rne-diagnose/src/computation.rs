@@ -54,7 +54,8 @@ pub(crate) fn is_of_lecture(robot: &Robot) -> bool {
     robot.is_serial() && !robot.has_couplings() && !robot.has_spinning_rotors()
 }
 
-/// A state as a computation understands it.
+/// A state as a computation understands it, with the wrench at the tip in the axes of the tip.
+#[derive(Clone)]
 pub(crate) struct Moved {
     pub(crate) q: Vec<f64>,
     pub(crate) qd: Vec<f64>,
@@ -118,28 +119,23 @@ impl Computation {
     /// # Errors
     /// When a list of the observation does not have one number per joint.
     pub(crate) fn torques(&self, arm: &DynArm, at: &Observation) -> Result<Vec<f64>, WrongLength> {
-        let Moved { q, qd, qdd, wrench } = self.moved(at.q.clone(), at.qd.clone(), at.qdd.clone(), at.wrench);
-        let wrench = wrench.map(|wrench| self.in_tip_axes(arm, &q, &wrench)).transpose()?;
+        let moved = self.moved(arm, at.q.clone(), at.qd.clone(), at.qdd.clone(), at.wrench)?;
+        let Moved { q, qd, qdd, wrench } = &moved;
         let tau = if self.misprints.is_empty() {
-            arm.inverse_dynamics_with_wrench(&q, &qd, &qdd, &wrench.unwrap_or_else(Wrench::zero))?
+            arm.inverse_dynamics_with_wrench(q, qd, qdd, &wrench.unwrap_or_else(Wrench::zero))?
         } else {
-            self.by_the_lecture(&q, &qd, &qdd, wrench)
+            self.by_the_lecture(&moved)
         };
-        self.printed(arm, tau, &qd, &qdd)
+        self.printed(arm, tau, &moved)
     }
 
     /// The wrench at the tip in its axes, from one as this computation understands it.
-    pub(crate) fn in_tip_axes(
-        &self,
-        arm: &DynArm,
-        q: &[f64],
-        wrench: &Wrench<f64>,
-    ) -> Result<Wrench<f64>, WrongLength> {
+    fn in_tip_axes(&self, arm: &DynArm, q: &[f64], wrench: Wrench<f64>) -> Result<Wrench<f64>, WrongLength> {
         if self.wrench_axes == WrenchAxes::Tip {
-            return Ok(*wrench);
+            return Ok(wrench);
         }
         let pose = arm.forward_kinematics(q)?;
-        let (mut force, mut moment) = (Vector3::from(wrench.force), Vector3::from(wrench.moment));
+        let (mut force, mut moment) = wrench.vectors();
         if self.wrench_axes == WrenchAxes::Base {
             let base = rotation(&self.robot.base);
             (force, moment) = (base * force, base * moment);
@@ -152,13 +148,17 @@ impl Computation {
     }
 
     /// The state as this computation understands it.
+    ///
+    /// # Errors
+    /// When `q` does not have one number per joint, and the wrench has to be turned.
     pub(crate) fn moved(
         &self,
+        arm: &DynArm,
         mut q: Vec<f64>,
         mut qd: Vec<f64>,
         mut qdd: Vec<f64>,
         wrench: Option<Wrench<f64>>,
-    ) -> Moved {
+    ) -> Result<Moved, WrongLength> {
         if self.rates_exchanged {
             std::mem::swap(&mut qd, &mut qdd);
         }
@@ -185,19 +185,14 @@ impl Computation {
         }
         let scaled = |v: [f64; 3]| v.map(|x| x * self.wrench_factor);
         let wrench = wrench.map(|Wrench { force, moment }| Wrench { force: scaled(force), moment: scaled(moment) });
-        Moved { q, qd, qdd, wrench }
+        let wrench = wrench.map(|wrench| self.in_tip_axes(arm, &q, wrench)).transpose()?;
+        Ok(Moved { q, qd, qdd, wrench })
     }
 
     /// Torques as this computation prints them.
-    pub(crate) fn printed(
-        &self,
-        arm: &DynArm,
-        mut tau: Vec<f64>,
-        qd: &[f64],
-        qdd: &[f64],
-    ) -> Result<Vec<f64>, WrongLength> {
+    pub(crate) fn printed(&self, arm: &DynArm, mut tau: Vec<f64>, moved: &Moved) -> Result<Vec<f64>, WrongLength> {
         if self.motor_torques {
-            let motors = arm.actuator_torques(qd, qdd)?;
+            let motors = arm.actuator_torques(&moved.qd, &moved.qdd)?;
             tau.iter_mut().zip(motors).for_each(|(tau, motor)| *tau += motor);
         }
         for (index, (tau, row)) in tau.iter_mut().zip(self.rows()).enumerate() {
@@ -213,28 +208,29 @@ impl Computation {
     /// Every vector of the lecture's formulas, in the lecture's axes, with the links where they stand.
     pub(crate) fn lecture(&self, moved: &Moved) -> (Vec<lecture::Placed>, Vec<lecture::LinkVectors>) {
         let rows: Vec<_> = self.robot.rows().copied().collect();
-        let state = self.state(&moved.q, &moved.qd, &moved.qdd, moved.wrench);
+        let state = self.state(moved);
         (lecture::place(&rows, &state.q, &self.misprints), lecture::seven_steps(&rows, &state, &self.misprints))
     }
 
-    fn state(&self, q: &[f64], qd: &[f64], qdd: &[f64], wrench: Option<Wrench<f64>>) -> lecture::State {
+    fn state(&self, moved: &Moved) -> lecture::State {
         let Robot { tool, gravity, .. } = &self.robot;
         // the lecture's wrench stands in frame n+1, where rne has the tool
-        let Wrench { force, moment } = wrench.unwrap_or_else(Wrench::zero);
+        let (force, moment) = moved.wrench.unwrap_or_else(Wrench::zero).vectors();
         let turn = rotation(tool);
-        let force = turn * nalgebra::Vector3::from(force);
-        let moment = turn * nalgebra::Vector3::from(moment) + nalgebra::Vector3::from(tool.xyz).cross(&force);
+        let force = turn * force;
+        let moment = turn * moment + Vector3::from(tool.xyz).cross(&force);
         let wrench = Wrench { force: force.into(), moment: moment.into() };
-        lecture::State { q: q.to_vec(), qd: qd.to_vec(), qdd: qdd.to_vec(), gravity: *gravity, wrench }
+        let Moved { q, qd, qdd, .. } = moved.clone();
+        lecture::State { q, qd, qdd, gravity: *gravity, wrench }
     }
 
-    pub(crate) fn by_the_lecture(&self, q: &[f64], qd: &[f64], qdd: &[f64], wrench: Option<Wrench<f64>>) -> Vec<f64> {
-        let state = self.state(q, qd, qdd, wrench);
+    pub(crate) fn by_the_lecture(&self, moved: &Moved) -> Vec<f64> {
+        let state = self.state(moved);
         let rows: Vec<_> = self.robot.rows().copied().collect();
         let mut tau: Vec<f64> =
             lecture::seven_steps(&rows, &state, &self.misprints).into_iter().map(|link| link.tau).collect();
         if self.robot.rotors {
-            for ((tau, joint), qdd) in tau.iter_mut().zip(&self.robot.joints).zip(qdd) {
+            for ((tau, joint), qdd) in tau.iter_mut().zip(&self.robot.joints).zip(&moved.qdd) {
                 *tau += joint.motor.map_or(0.0, |motor| motor.gear_ratio * motor.gear_ratio * motor.inertia * qdd);
             }
         }

@@ -114,8 +114,8 @@ impl Worksheet {
         given: &[GivenValue],
         digits: u8,
     ) -> Result<Comparison, WrongLength> {
-        let given = Ordered::new(self, given, digits);
-        let verdicts = given.verdicts(robot, at)?;
+        let given = Ordered::new(self, robot, at, given, digits);
+        let verdicts = given.verdicts()?;
         let mut comparison = Comparison {
             compared: given.values.len(),
             differing: verdicts.values().filter(|verdict| **verdict != Verdict::Right).count(),
@@ -125,7 +125,7 @@ impl Worksheet {
         };
         let first = given.values.iter().find(|(at, _)| !given.agrees(**at, self.value(**at)));
         let Some((&(line, component), value)) = first else { return Ok(comparison) };
-        let reasons = given.reasons(robot, at, line, component)?;
+        let reasons = given.reasons(line, component)?;
         let (theirs, ours) = (value.value, self.value((line, component)));
         comparison.first = Some(Difference { line, component, theirs, ours, reasons });
         Ok(comparison)
@@ -142,6 +142,8 @@ pub(super) type Place = (usize, usize);
 /// Given values in the order of computation.
 struct Ordered<'a> {
     sheet: &'a Worksheet,
+    robot: &'a Robot,
+    at: &'a Situation,
     values: BTreeMap<Place, GivenValue>,
     digits: u8,
     /// The rounding error of the largest value of each unit.
@@ -149,7 +151,7 @@ struct Ordered<'a> {
 }
 
 impl<'a> Ordered<'a> {
-    fn new(sheet: &'a Worksheet, given: &[GivenValue], digits: u8) -> Self {
+    fn new(sheet: &'a Worksheet, robot: &'a Robot, at: &'a Situation, given: &[GivenValue], digits: u8) -> Self {
         let places: BTreeMap<(usize, Quantity), usize> =
             sheet.lines.iter().enumerate().map(|(index, line)| ((line.joint, line.quantity), index)).collect();
         let place = |value: &GivenValue| {
@@ -158,7 +160,7 @@ impl<'a> Ordered<'a> {
         };
         let units = sheet.lines.iter().map(Line::unit);
         let rounding = units.map(|unit| (unit, ROUNDING * sheet.largest(unit))).collect();
-        Self { sheet, values: given.iter().filter_map(place).collect(), digits, rounding }
+        Self { sheet, robot, at, values: given.iter().filter_map(place).collect(), digits, rounding }
     }
 
     /// The error of a hand that rounds to these digits at each line, in a line of this size: two units of the last
@@ -195,7 +197,7 @@ impl<'a> Ordered<'a> {
 
     /// The verdict on each given value. Line by line in the order of computation, the formula takes the values that are
     /// given before it, and its own results where none is given.
-    fn verdicts(&self, robot: &Robot, at: &Situation) -> Result<BTreeMap<Place, Verdict>, WrongLength> {
+    fn verdicts(&self) -> Result<BTreeMap<Place, Verdict>, WrongLength> {
         let of_place = |(place, _): (&Place, _)| {
             (*place, if self.agrees(*place, self.sheet.value(*place)) { Verdict::Right } else { Verdict::Wrong })
         };
@@ -203,10 +205,10 @@ impl<'a> Ordered<'a> {
         if verdicts.values().all(|verdict| *verdict == Verdict::Right) {
             return Ok(verdicts);
         }
-        let computed = Computed::new(robot, at, self.sheet.axes)?;
+        let computed = Computed::new(self.robot, self.at, self.sheet.axes)?;
         let mut links = computed.links.clone();
         for (index, line) in self.sheet.lines.iter().enumerate() {
-            let Some(own) = computed.formulas(robot, at, &links).by_formula(line.joint, line.quantity) else {
+            let Some(own) = computed.formulas(self.robot, self.at, &links).by_formula(line.joint, line.quantity) else {
                 continue;
             };
             for (component, value) in own.values.iter().enumerate() {
@@ -233,14 +235,8 @@ impl<'a> Ordered<'a> {
         &self.sheet.lines[index]
     }
 
-    fn reasons(
-        &self,
-        robot: &Robot,
-        at: &Situation,
-        line: usize,
-        component: usize,
-    ) -> Result<Vec<Reason>, WrongLength> {
-        let slipped = slipped::all(robot, at, self.sheet)?;
+    fn reasons(&self, line: usize, component: usize) -> Result<Vec<Reason>, WrongLength> {
+        let slipped = slipped::all(self.robot, self.at, self.sheet)?;
         let explains = |values: &[Vec<f64>], up_to: usize| {
             // somewhere it has to differ from what is right, or it says nothing
             let here = |place: Place| values.get(place.0).and_then(|line| line.get(place.1)).copied();
@@ -256,7 +252,7 @@ impl<'a> Ordered<'a> {
         let mut reasons: Vec<Reason> =
             everything.map(|slipped| of_slip(slipped, Reach::Everything)).take(MOST).collect();
         if reasons.is_empty() {
-            reasons.extend(self.of_other_axes(robot, at, line)?);
+            reasons.extend(self.of_other_axes(line)?);
         }
         if reasons.iter().all(|reason| reason.reach != Reach::Everything) {
             let wrong = self.wrong();
@@ -265,7 +261,7 @@ impl<'a> Ordered<'a> {
             let torques = of(&|place| self.line(place.0).quantity == Quantity::Tau);
             let mut found: Vec<(usize, Reason)> =
                 self.of_the_line(line, component).into_iter().map(|reason| (here, reason)).collect();
-            found.extend(self.of_torques(robot, at)?.into_iter().map(|reason| (torques, reason)));
+            found.extend(self.of_torques()?.into_iter().map(|reason| (torques, reason)));
             let so_far = slipped.iter().filter(|slipped| explains(&slipped.values, line));
             found.extend(so_far.map(|slipped| {
                 let explained = of(&|&place| self.agrees(place, slipped.values[place.0][place.1]));
@@ -290,10 +286,10 @@ impl<'a> Ordered<'a> {
 
     /// The other axes in which somebody may have written all vectors: those that explain every value, or every value up
     /// to a line and more than half of those that differ.
-    fn of_other_axes(&self, robot: &Robot, at: &Situation, line: usize) -> Result<Vec<Reason>, WrongLength> {
+    fn of_other_axes(&self, line: usize) -> Result<Vec<Reason>, WrongLength> {
         let wrong = self.wrong();
         let mut found = Vec::new();
-        for other in other_axes::all(robot, at, self.sheet)? {
+        for other in other_axes::all(self.robot, self.at, self.sheet)? {
             let agrees = |place: Place| self.agrees(place, other.values[place.0][place.1]);
             let explained = wrong.iter().filter(|&&place| agrees(place)).count();
             let reach = match self.values.keys().find(|&&place| !agrees(place)) {
@@ -338,7 +334,8 @@ impl<'a> Ordered<'a> {
     }
 
     /// The reasons that `diagnose` finds for the torques, where all of them are given.
-    fn of_torques(&self, robot: &Robot, at: &Situation) -> Result<Vec<Reason>, WrongLength> {
+    fn of_torques(&self) -> Result<Vec<Reason>, WrongLength> {
+        let (robot, at) = (self.robot, self.at);
         let of_tau = |joint: usize| self.values.values().find(|v| v.quantity == Quantity::Tau && v.joint == joint);
         let tau: Vec<GivenValue> = (1..=robot.dof()).filter_map(of_tau).copied().collect();
         if tau.len() < robot.dof() || at.base.is_some() || at.payload.is_some() {

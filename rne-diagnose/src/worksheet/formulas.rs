@@ -7,7 +7,7 @@ use rne_model::{Convention, JointKind, Robot, Row};
 use rne_runtime::{BaseMotion, LinkTrace};
 
 use super::quantity::indexed;
-use super::{Axes, Input, Line, Quantity, Situation, Term, first_lever, followed, orientations};
+use super::{Axes, Input, Line, Quantity, Situation, Term, first_lever, followed, orientations, symmetric};
 
 /// The data that the lines are made of.
 pub(super) struct Formulas<'a> {
@@ -191,8 +191,8 @@ impl Formulas<'_> {
         };
         let about = if row.link.has_first_moment() { "the origin" } else { "com" };
         let formula = format!("{} I {right}, I of the file, about {about}", left.trim_end());
-        let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = link.inertia;
-        lines.push(here.line(Quantity::Inertia, vec![xx, xy, xz, yy, yz, zz], formula.trim_start()));
+        let inertia = symmetric(&Matrix3::from(link.inertia).transpose());
+        lines.push(here.line(Quantity::Inertia, inertia, formula.trim_start()));
         lines
     }
 

@@ -242,6 +242,11 @@ fn orientations(fixed: &[LinkTrace<f64>]) -> Vec<nalgebra::Matrix3<f64>> {
     fixed.iter().map(next).collect()
 }
 
+/// The components of a symmetric matrix.
+fn symmetric(matrix: &nalgebra::Matrix3<f64>) -> Vec<f64> {
+    [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(|at| matrix[at]).to_vec()
+}
+
 pub(crate) fn norm(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum::<f64>().sqrt()
 }

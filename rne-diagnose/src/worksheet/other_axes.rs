@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use rne_model::{Angle, Convention, Robot};
 use rne_runtime::WrongLength;
 
-use super::{Axes, Line, Quantity, Situation, Worksheet};
+use super::{Axes, Line, Quantity, Situation, Worksheet, symmetric};
 
 /// Axes that somebody may take for those of a worksheet, and the values of each of its lines in them.
 pub(super) struct OtherAxes {
@@ -56,8 +56,7 @@ fn in_table_frame(line: &Line, alphas: &[Angle]) -> Vec<f64> {
         }
         (_, &[x, y, z]) => (own * Vector3::new(x, y, z)).as_slice().to_vec(),
         (Quantity::Inertia, &[xx, xy, xz, yy, yz, zz]) => {
-            let inertia = own * Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) * own.transpose();
-            [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(|at| inertia[at]).to_vec()
+            symmetric(&(own * Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) * own.transpose()))
         }
         (_, values) => values.to_vec(),
     }

@@ -5,7 +5,7 @@ use rne_model::{JointKind, Robot};
 use rne_runtime::{DynArm, LinkTrace, WrongLength};
 
 use super::formulas::about_z;
-use super::{Axes, Computed, Line, Quantity, Situation, Worksheet, followed, orientations};
+use super::{Axes, Computed, Line, Quantity, Situation, Worksheet, followed, orientations, symmetric};
 use crate::computation::{Computation, Moved};
 use crate::lecture::{LinkVectors, Misprint, Placed};
 use crate::slip::Slip;
@@ -107,12 +107,10 @@ fn values(
     at: &Situation,
     sheet: &Worksheet,
 ) -> Result<Vec<Vec<f64>>, WrongLength> {
-    let moved = computation.moved(at.q.clone(), at.qd.clone(), at.qdd.clone(), at.wrench);
     let arm = DynArm::from_robot(&computation.robot);
-    let wrench = moved.wrench.map(|wrench| computation.in_tip_axes(&arm, &moved.q, &wrench)).transpose()?;
-    let moved = Moved { wrench, ..moved };
-    let Moved { q, qd, qdd, wrench } = &moved;
-    let slipped = Situation { q: q.clone(), qd: qd.clone(), qdd: qdd.clone(), wrench: *wrench, ..at.clone() };
+    let moved = computation.moved(&arm, at.q.clone(), at.qd.clone(), at.qdd.clone(), at.wrench)?;
+    let Moved { q, qd, qdd, wrench } = moved.clone();
+    let slipped = Situation { q, qd, qdd, wrench, ..at.clone() };
     let own = Worksheet::new(&computation.robot, &slipped, sheet.axes)?;
     let mut values: Vec<Vec<f64>> = own.lines.iter().map(|line| line.values.clone()).collect();
     let mut tau = own.tau();
@@ -124,9 +122,9 @@ fn values(
                 *values = misprinted;
             }
         }
-        tau = computation.by_the_lecture(q, qd, qdd, *wrench);
+        tau = computation.by_the_lecture(&moved);
     }
-    let tau = computation.printed(&arm, tau, qd, qdd)?;
+    let tau = computation.printed(&arm, tau, &moved)?;
     for (line, values) in sheet.lines.iter().zip(&mut values) {
         match line.quantity {
             // the state is what was asked about, whatever somebody makes of it
@@ -178,8 +176,7 @@ fn misprinted(
         Quantity::JointForce => link.joint_force,
         Quantity::JointMoment => link.joint_moment,
         Quantity::Inertia => {
-            let inertia = turn * place.inertia * turn.transpose();
-            return Some([(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(|at| inertia[at]).to_vec());
+            return Some(symmetric(&(turn * place.inertia * turn.transpose())));
         }
         _ => return None,
     };
