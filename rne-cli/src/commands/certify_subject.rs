@@ -178,9 +178,15 @@ impl Subject<'_> {
                 Self::Joints(JointFunction::Friction(_) | JointFunction::FrictionDerivatives(_)) => vec![speed],
                 Self::Joints(JointFunction::Limits(_)) => vec![effort(BEYOND * torque)],
                 Self::Program(program) | Self::Observer(program, _) => {
-                    let takes_torques = program.function.takes(Argument::Torques);
-                    let acceleration = format!("acceleration up to {acceleration} {unit}/s²");
-                    vec![position, speed, if takes_torques { effort(torque) } else { acceleration }]
+                    let takes = |argument| program.function.takes(argument);
+                    let parts = [
+                        (takes(Argument::Positions), position),
+                        (takes(Argument::Rates), speed),
+                        (takes(Argument::Accelerations), format!("acceleration up to {acceleration} {unit}/s²")),
+                        (takes(Argument::Torques), effort(torque)),
+                        (takes(Argument::Multipliers), format!("multiplier up to {acceleration}")),
+                    ];
+                    parts.into_iter().filter_map(|(is_there, part)| is_there.then_some(part)).collect()
                 }
             };
             format!("joint {}: {}", index + 1, parts.join(", "))

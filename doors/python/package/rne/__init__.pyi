@@ -510,6 +510,11 @@ class Arm:
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
         """Accelerations of a robot with closed loops and a payload at its tip for torques `tau`."""
+    def floating_gravity_torques(
+        self, q: Joints, base_rotation: ArrayLike, *,
+        parameters: Parameters = ..., out: Floats | None = ...,
+    ) -> Floats:
+        """Wrench on a floating base and torques that hold a robot still against gravity."""
     # <!-- end -->
     def runge_kutta_step(
         self, q: Joints, qd: Joints, tau: Joints, step: ArrayLike, *, steps: int = ...,
