@@ -189,9 +189,10 @@ pub(crate) fn products<'a>(
 /// The products of all joints.
 pub(crate) fn products_of_joints<'a>(
     structure: &Structure,
-    stretches: impl IntoIterator<Item = &'a Stretch> + Clone,
+    stretches: impl IntoIterator<Item = &'a Stretch>,
 ) -> Vec<DMatrix<f64>> {
-    (0..structure.dof()).map(|joint| products(structure, joint, stretches.clone())).collect()
+    let stretches: Vec<_> = stretches.into_iter().collect();
+    (0..structure.dof()).map(|joint| products(structure, joint, stretches.iter().copied())).collect()
 }
 
 /// The squares of what a model leaves of the torques of a joint.
