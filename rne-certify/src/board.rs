@@ -81,7 +81,7 @@ impl Call {
 #[must_use]
 pub fn cases(header: &str, dof: usize, call: &Call) -> String {
     let Call { function, arguments, length, before, element, lengths } = call;
-    let brackets = |lengths: &[usize]| lengths.iter().map(|length| format!("[{length}]")).collect::<String>();
+    let brackets = |lengths: &[usize]| lengths.iter().map(|length| format!("[{length}]")).collect::<Vec<_>>().concat();
     let declared = format!("{element} out{}", brackets(lengths));
     let pointer = |name: &str| match lengths.get(1..) {
         Some(rows @ [_, ..]) => format!("{element} (*{name}){}", brackets(rows)),
@@ -104,14 +104,14 @@ pub fn cases(header: &str, dof: usize, call: &Call) -> String {
     let before: String = before.iter().flat_map(|line| ["    ", line, "\n"]).collect();
     let out = pointer("out");
     // the arguments of the function itself, what it does to `out`, and its last statement
-    let of_function = |list: &str, out: &str| match is_returned {
-        true => list.trim_end_matches(", ").to_owned(),
-        false => format!("{list}{out}"),
+    let of_function = |list: &str, out: &str| {
+        if is_returned { list.trim_end_matches(", ").to_owned() } else { format!("{list}{out}") }
     };
-    let (returned, into, into_pointer, end) = match is_returned {
+    let (returned, into, into_pointer, end) = if is_returned {
         // any number of a register of the FPU: no instruction loads it
-        true => ("float", "out = ", "*out = ", "float out;\n    __asm__(\"\" : \"=t\"(out));\n    return out;"),
-        false => ("void", "", "", "(void)out;"),
+        ("float", "out = ", "*out = ", "float out;\n    __asm__(\"\" : \"=t\"(out));\n    return out;")
+    } else {
+        ("void", "", "", "(void)out;")
     };
     let (types, empty) = (of_function(&types, &pointer("")), of_function(&parameters, &out));
     let (call, call_measured) = (of_function(&values, place), of_function(&names, "out"));
