@@ -355,6 +355,10 @@ impl FloatingBase<0, 6, 0> for Top {
         unreachable!("no step needs it")
     }
 
+    fn floating_gravity_torques<T: Scalar>(&self, _: &[T; 0], _: &[[T; 3]; 3]) -> [T; 6] {
+        unreachable!("no step needs it")
+    }
+
     /// Euler's equations. The acceleration of the origin less gravity is zero.
     fn floating_forward_dynamics<T: Scalar>(
         &self,
