@@ -223,9 +223,7 @@ impl Slip {
         all.extend(
             (0..robot.joints.len()).filter(|&at| robot.joints[at].coupling.is_some()).map(Self::FollowerReversed),
         );
-        if !order::by_name(robot).is_sorted() {
-            all.push(Self::TorquesByName);
-        }
+        all.extend((!order::by_name(robot).is_sorted()).then_some(Self::TorquesByName));
         all.extend(Self::orders(robot));
         all
     }

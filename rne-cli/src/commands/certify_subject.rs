@@ -178,15 +178,16 @@ impl Subject<'_> {
                 Self::Joints(JointFunction::Friction(_) | JointFunction::FrictionDerivatives(_)) => vec![speed],
                 Self::Joints(JointFunction::Limits(_)) => vec![effort(BEYOND * torque)],
                 Self::Program(program) | Self::Observer(program, _) => {
-                    let takes = |argument| program.function.takes(argument);
+                    let arrays = program.arrays_without_parameters();
                     let parts = [
-                        (takes(Argument::Positions), position),
-                        (takes(Argument::Rates), speed),
-                        (takes(Argument::Accelerations), format!("acceleration up to {acceleration} {unit}/s²")),
-                        (takes(Argument::Torques), effort(torque)),
-                        (takes(Argument::Multipliers), format!("multiplier up to {acceleration}")),
+                        ("q", position),
+                        ("qd", speed),
+                        ("qdd", format!("acceleration up to {acceleration} {unit}/s²")),
+                        ("tau", effort(torque)),
+                        ("multipliers", format!("multiplier up to {acceleration}")),
                     ];
-                    parts.into_iter().filter_map(|(is_there, part)| is_there.then_some(part)).collect()
+                    let is_taken = |name| arrays.iter().any(|array| array.name == name);
+                    parts.into_iter().filter(|(name, _)| is_taken(*name)).map(|(_, part)| part).collect()
                 }
             };
             format!("joint {}: {}", index + 1, parts.join(", "))
