@@ -197,7 +197,7 @@ fn each_derive_has_its_tests() {
         ("four_bar_closed_loops_tests", 9),
         ("four_bar_closed_loops_payload_dynamics_tests", 5),
         ("leg_floating_closed_loops_tests", 3),
-        ("hopper_floating_base_tests", 4),
+        ("hopper_floating_base_tests", 5),
         ("hopper_contact_dynamics_tests", 1),
         ("elsewhere::massless_forward_dynamics_tests", 2),
         ("elsewhere::planar_inverse_dynamics_tests", 8),

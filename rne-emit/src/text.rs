@@ -301,9 +301,11 @@ fn function(robot: &Robot, program: &Program, sin_cos: SinCos) -> String {
         } else if let Some(row) = row {
             let rows: Vec<String> =
                 elements.chunks(*row).map(|row| format!("[{}]", names(row.iter().copied()))).collect();
-            match rows.as_slice() {
-                [only] => writeln!(text, "    let [{only}] = *{name};"),
-                rows => writeln!(text, "    let [\n        {},\n    ] = *{name};", rows.join(",\n        ")),
+            let line = rows.join(", ");
+            if rows.len() == 1 || line.len() + 2 <= PATTERN {
+                writeln!(text, "    let [{line}] = *{name};")
+            } else {
+                writeln!(text, "    let [\n        {},\n    ] = *{name};", rows.join(",\n        "))
             }
         } else {
             let names = names(elements.iter().copied());

@@ -39,7 +39,8 @@ fn a_compiler_that_is_missing_is_named_with_its_package() {
     assert!(called.status == 1 && called.said().contains("apt-get install gcc-arm-none-eabi"), "{called:?}");
     fails(2, &["certify", ROBOT, "--states", "0"], &["--states", "give 1 or more"]);
     fails(2, &["certify", ROBOT, "--cpu", "cortex-m0"], &["cortex-m4 and cortex-m7"]);
-    fails(2, &["certify", ROBOT, "--function", "jacobian"], &["jacobian", "gravity_torques"]);
+    let record = ["certify", ROBOT, "--lang", "rust", "--function", "momentum_and_rate"];
+    fails(2, &record, &["a vector or a matrix", "momentum_and_rate", "--lang c"]);
 }
 
 #[test]

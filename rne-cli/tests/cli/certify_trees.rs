@@ -96,7 +96,27 @@ fn functions_with_a_payload_and_wrenches_are_certified() {
         let how = certified["accuracy"]["how"].as_str().expect("words");
         assert!(how.contains("At each state"), "{how}");
     }
-    fails(2, &["certify", "docs/dual_arm.yaml", "--function", "jacobian"], &["a payload and wrenches", "jacobian"]);
+}
+
+/// Results of every shape: a number, a matrix, a struct, and the state after a step, whose duration is a number, too.
+#[test]
+fn results_of_every_shape_are_certified() {
+    if !has_tools() {
+        return;
+    }
+    let functions = "kinetic_energy,mass_matrix,momentum_and_rate,euler_step,regressor";
+    let json = fine(&["certify", "docs/dual_arm.yaml", "--states", "5", "--function", functions, "--json"]);
+    let json: Value = serde_json::from_str(&json).expect("JSON");
+    let units = json["more"].as_array().expect("functions").iter().chain([&json]).map(|certified| {
+        assert_eq!(certified["emulation"]["states"], 32, "{}", certified["function"]);
+        let results = certified["accuracy"]["results"].as_array().expect("results");
+        let unit = results[0]["unit"].as_str().expect("a unit").to_owned();
+        (certified["function"].as_str().expect("a name").to_owned(), unit)
+    });
+    let units: std::collections::BTreeMap<String, String> = units.collect();
+    assert_eq!(units["mass_matrix"], "SI");
+    assert_eq!(units["euler_step"], "rad");
+    assert_eq!(units.len(), 5);
 }
 
 /// What a controller calls: the functions that `rne emit` writes by default, among them one that takes sines and
