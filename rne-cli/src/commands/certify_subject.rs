@@ -220,9 +220,12 @@ fn fixed(function: Function) -> String {
 fn named(program: &Program, robot: &Robot, name: Name) -> (String, Option<usize>, &'static str) {
     let joint = name.joint.checked_sub(1);
     let kind = joint.and_then(|joint| robot.joints.get(joint)).map_or(JointKind::Revolute, |joint| joint.row.kind);
-    let is_element = name.by.is_some() || name.indices != [0; 2];
+    // an index of what one link exerts on another names the link
+    let is_of_pair = matches!(name.quantity, Quantity::JointForce | Quantity::JointMoment);
     let unit = match name.quantity {
-        _ if is_element => "SI",
+        _ if name.by.is_some() || name.indices != [0; 2] && !is_of_pair => "SI",
+        Quantity::ContactForce => "N",
+        Quantity::ContactMoment => "N m",
         Quantity::LinearMomentum => "N s",
         Quantity::CentroidalMoment if program.function.takes(Argument::BaseTwist) => "N m s",
         // a distance of two places, or a product of axes
@@ -233,8 +236,16 @@ fn named(program: &Program, robot: &Robot, name: Name) -> (String, Option<usize>
             unit => unit,
         },
     };
-    let is_of_base = matches!(name.quantity, Quantity::BaseForce | Quantity::BaseMoment | Quantity::Residual);
-    (name.to_string(), joint.filter(|_| !is_of_base), unit)
+    // these count tips and equations, or are of the base
+    let is_of_no_joint = matches!(
+        name.quantity,
+        Quantity::BaseForce
+            | Quantity::BaseMoment
+            | Quantity::Residual
+            | Quantity::ContactForce
+            | Quantity::ContactMoment
+    );
+    (name.to_string(), joint.filter(|_| !is_of_no_joint), unit)
 }
 
 /// Sines or cosines of the positions at the states of the board, in C.
