@@ -62,8 +62,8 @@ pub trait FloatingBase<DOF, NV, TIPS> {
     fn floating_bias(q: joints, qd: joints, omega: omega, wrenches: wrenches) -> FloatingVector =
         |robot| robot.floating_bias([q, qd], omega, AtTip::Wrenches(wrenches));
 
-    /// The wrench on the base, force (N) above moment (N m), and the torques (N m or N) that hold the robot still against
-    /// gravity, which the robot file has in the axes of the world.
+    /// The wrench on the base, force (N) above moment (N m), and the torques (N m or N) that hold the robot still
+    /// against gravity, which the robot file has in the axes of the world.
     ///
     /// `base_rotation`: its columns are the axes of frame 0 in the world.
     fn floating_gravity_torques(q: joints, base_rotation: rotation) -> FloatingVector =
