@@ -77,7 +77,7 @@ pub(crate) struct JointFrames {
     pub(crate) coordinates: Coordinates,
     /// Acceleration of gravity in the frame of each joint on the base, at rest; zero for the other joints.
     pub(crate) gravity: Vec<Triple>,
-    /// That of a floating base, in axes of the world.
+    /// Acceleration of gravity on a floating base, in axes of the world.
     pub(crate) gravity_in_world: Triple,
     /// The tip frame, then those of the list `tips`.
     pub(crate) tips: Vec<Tip>,

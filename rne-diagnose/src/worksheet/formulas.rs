@@ -26,8 +26,9 @@ type V = Vector3<f64>;
 /// The axis of a joint where it is (0, 0, 1).
 const AXIS: &str = "e";
 
-/// The sums that vectors of the steps are, with {i} for the joint, {p} and {n} for those before and after it: the terms of the link before, which are turned into these axes, those of the link itself, and what a joint
-/// adds that turns, and one that slides. A link without mass that has a first moment h adds the terms with h.
+/// The sums that vectors of the steps are, with {i} for the joint, {p} and {n} for those before and after it: the terms
+/// of the link before, which are turned into these axes, those of the link itself, and what a joint adds that turns, and
+/// one that slides. A link without mass that has a first moment h adds the terms with h.
 #[rustfmt::skip]
 const SUMS: [(Quantity, [&str; 4]); 9] = [
     (Quantity::Omega, ["ω{p}", "", "q̇{i} e{i}", ""]),
@@ -231,7 +232,7 @@ impl Formulas<'_> {
         }
     }
 
-    /// What a symbol of a formula is here.
+    /// The meaning of a symbol of a formula at this joint.
     fn input(&self, here: &Here<'_>, template: &str) -> Input {
         let of = |link, template: &str| {
             let quantity = Quantity::ALL.into_iter().find(|quantity| quantity.template() == template)?;
@@ -254,8 +255,8 @@ impl Formulas<'_> {
         input(self.written(here, template), &values, unit)
     }
 
-    /// A term of a sum, by its text: a product from right to left of numbers, matrices and vectors, with a sign or with 2
-    /// before it.
+    /// A term of a sum, by its text: a product from right to left of numbers, matrices and vectors, with a sign or with
+    /// 2 before it.
     fn part(&self, here: &Here<'_>, text: &str) -> Part {
         let (factor, product) = match (text.strip_prefix('-'), text.strip_prefix("2 ")) {
             (Some(product), _) => (-1.0, product),
