@@ -27,8 +27,8 @@ type V = Vector3<f64>;
 const AXIS: &str = "e";
 
 /// The sums that vectors of the steps are, with {i} for the joint, {p} and {n} for those before and after it: the terms
-/// of the link before, which are turned into these axes, those of the link itself, and what a joint adds that turns, and
-/// one that slides. A link without mass that has a first moment h adds the terms with h.
+/// of the link before, which are turned into these axes, those of the link itself, and what a joint adds that turns,
+/// and one that slides. A link without mass that has a first moment h adds the terms with h.
 #[rustfmt::skip]
 const SUMS: [(Quantity, [&str; 4]); 9] = [
     (Quantity::Omega, ["ω{p}", "", "q̇{i} e{i}", ""]),
