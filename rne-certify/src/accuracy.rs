@@ -63,7 +63,10 @@ static STEP: [f32; 1] = [0.01];
 pub static BASE_ROTATION: [f32; 9] = [0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6];
 
 /// The rotation of the base, by rows, and the origin of frame 0, m.
-static POSE: [f32; 12] = [0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6, 0.3, -0.2, 0.5];
+static POSE: [f32; 12] = {
+    let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = BASE_ROTATION;
+    [xx, xy, xz, yx, yy, yz, zx, zy, zz, 0.3, -0.2, 0.5]
+};
 
 /// The arrays that are the same at each state: the name, the numbers of the state or of a tip, and a clause about them,
 /// with `{}` in the place of the numbers.

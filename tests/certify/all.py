@@ -10,7 +10,7 @@ c f64      check_c.py checks the C with `double`, and the tests of `rne emit --t
 rust f64   the tests of `rne emit --lang rust --with-sin-cos --tests` run on this computer
 
 A Cortex-M4 has no unit for double precision, so `rne certify` has no figures of it. A cell of the table is the number of
-instructions of inverse_dynamics, or the number of tests. Then comes every function of three small robots, alone, in C and,
+instructions of inverse_dynamics, or the number of tests. Then comes every function of four small robots, alone, in C and,
 where it takes joints alone, in Rust. Then come random arms (arms.py), whose C is also compared with a
 recursion of its own, and changed sources, which check_c.py must refuse.
 """

@@ -119,8 +119,8 @@ fn evaluate_in<'py, T: Element + Number>(
     as_python(arm, function, result, many, &of_state)
 }
 
-/// What is computed from arguments of all states, into `out` or into new memory, and how many states they have. The
-/// shapes are the axes before that of the states, and those after it.
+/// Computes results from the arguments of all states, into `out` or into new memory. Returns the results and the number
+/// of states, `None` for one state without an axis. The result has the axes `before`, that of the states, then `after`.
 pub(crate) fn computed<'py, T: Element + Number>(
     py: Python<'py>,
     given: &[Given<'py>],

@@ -379,7 +379,7 @@ impl Here<'_> {
         Line { joint, kind, quantity, values, formula, terms: Vec::new(), inputs: Vec::new() }
     }
 
-    /// A line with terms. Each input is told once; an axis (0, 0, 1) is none.
+    /// A line with terms. Each input is in the list once. An axis (0, 0, 1) is not an input.
     fn of_terms(
         &self,
         quantity: Quantity,
