@@ -355,7 +355,7 @@ impl fmt::Display for CompileError {
             Self::TooLarge { function, dof, most } => write!(
                 f,
                 "`{function}` of {dof} joints is straight-line code of more than {most} operations, which no compiler \
-                 can compile in reasonable time. Leave this function out; `rne::DynArm` computes it in a loop"
+                 can compile in reasonable time. Compute it at run time by `rne::DynArm` instead, which has loops"
             ),
             Self::HasClosedLoops { function, name } => {
                 write!(
@@ -384,7 +384,7 @@ impl fmt::Display for CompileError {
             Self::OfEveryLink { function, follower } => write!(
                 f,
                 "`{function}` returns numbers of every link, and the joint `{follower}` follows other joints: arrays \
-                 have no element for it. Leave this function out; `rne::DynArm` computes it"
+                 have no element for it. Compute it at run time by `rne::DynArm` instead"
             ),
             Self::NoFloatingBase { function, robot } => write!(
                 f,

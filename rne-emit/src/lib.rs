@@ -32,7 +32,7 @@ pub use annotated::{Annotated, Part};
 pub use ascii::ascii;
 pub use c::{
     Additions, BadPrefix, CCode, ConstantTooLarge, JointFriction, NoFriction, Origin, Prefix, c_code, c_code_with,
-    casadi_collision, casadi_derivatives, is_for_casadi, record_name,
+    casadi_collision, casadi_derivatives, is_for_casadi, record_name, result_elements,
 };
 pub use cuda::cuda;
 pub use emitted_sine::sin_cos_f32;

@@ -140,7 +140,9 @@ impl Entries {
 
     fn entry(&mut self, input: ParseStream<'_>) -> syn::Result<()> {
         if !input.peek(Ident::peek_any) {
-            return Err(input.error(format!("a key is missing here; {}", keys())));
+            let meant = input.fork().parse::<LitStr>();
+            let meant = meant.map(|file| format!(": write `path = {:?}`", file.value())).unwrap_or_default();
+            return Err(input.error(format!("a key is missing here{meant}; {}", keys())));
         }
         let key = Ident::parse_any(input)?;
         let name = key.to_string();

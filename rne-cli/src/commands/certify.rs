@@ -9,7 +9,7 @@ use rne_certify::accuracy::Sample;
 use rne_certify::board::Call;
 use rne_certify::certificate::{Certificate, Certified, Cost, trace};
 use rne_certify::cycles::{self, Core, Counter};
-use rne_certify::image::Image;
+use rne_certify::image::{Image, NoFigures};
 use rne_certify::joint_functions::JointFunction;
 use rne_certify::observer::LowPass;
 use rne_certify::{misra, sha256};
@@ -29,6 +29,7 @@ use crate::files::chosen_arm::Rotors;
 use crate::files::input_file::is_stream;
 use crate::files::output_file::{self, Existing, is_standard_output};
 use crate::files::plan_file::{self, Compiler};
+use crate::files::reading;
 use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{TITLE, TYPED};
@@ -310,8 +311,8 @@ fn fits_together(arguments: &Arguments) -> Result<(), Failure> {
         && let Some(function) = arguments.functions.iter().find(|of| !in_rust(of))
     {
         return Err(Failure::usage(format_args!(
-            "{TYPED}--lang rust{TYPED:#} certifies functions of joints alone that return a number, a vector or a \
-             matrix; for {function}, give {TYPED}--lang c{TYPED:#}"
+            "{TYPED}--lang rust{TYPED:#} certifies functions that take arrays of the joints alone and return a number, \
+             a vector or a matrix, and no struct; for {function}, give {TYPED}--lang c{TYPED:#}"
         )));
     }
     if arguments.evidence.is_some() {
@@ -340,6 +341,25 @@ fn is_ours(text: &str) -> bool {
         || text.starts_with("{\n  \"command\": \"rne certify")
 }
 
+/// The compiler, its `objdump`, and the versions of both and of rne.
+fn compiler(arguments: &Arguments) -> Result<(String, String, BTreeMap<String, String>), Failure> {
+    let compiler = arguments.cc.clone().unwrap_or_else(|| arguments.lang.compiler().to_owned());
+    let version = match arguments.lang {
+        Language::C => toolchain::version_of_gcc(&compiler)?,
+        Language::Rust => toolchain::version(&compiler)?,
+    };
+    let objdump = match arguments.lang {
+        Language::C => toolchain::objdump_of(&compiler),
+        Language::Rust => toolchain::objdump_of(""),
+    };
+    let tools = BTreeMap::from([
+        ("rne".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
+        (compiler.clone(), version),
+        (objdump.clone(), toolchain::version(&objdump)?),
+    ]);
+    Ok((compiler, objdump, tools))
+}
+
 /// The certificate, and remarks on missing tools, on the checker and on warnings of the robot file.
 fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> {
     let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[], Frames::Dropped, Shape::Closed)?;
@@ -357,21 +377,8 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
     let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(&robot));
     let call = |subject: &Subject| subject.call(prefix.as_str(), &robot);
     let calls: Vec<Call> = subjects.iter().map(call).collect::<Result<_, _>>()?;
-    let compiler = arguments.cc.clone().unwrap_or_else(|| arguments.lang.compiler().to_owned());
-    let version = match arguments.lang {
-        Language::C => toolchain::version_of_gcc(&compiler)?,
-        Language::Rust => toolchain::version(&compiler)?,
-    };
-    let objdump = match arguments.lang {
-        Language::C => toolchain::objdump_of(&compiler),
-        Language::Rust => toolchain::objdump_of(""),
-    };
+    let (compiler, objdump, mut tools) = compiler(arguments)?;
     let ([qemu, cppcheck], mut remarks) = certify_tools::versions(arguments.lang, &arguments.require)?;
-    let mut tools = BTreeMap::from([
-        ("rne".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
-        (compiler.clone(), version),
-        (objdump.clone(), toolchain::version(&objdump)?),
-    ]);
     remarks += &notes(arguments, &robot);
     let folder = tempfile::tempdir().map_err(Failure::input)?;
     let folder = folder.path();
@@ -381,9 +388,13 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
     let code = build(arguments, &robot, &programs, &compiler, &calls, &bytes, folder)?;
     tools.extend(qemu.iter().map(|version| ("qemu-system-arm".to_owned(), version.clone())));
     let sample = Sample { states: arguments.states, seed: arguments.seed };
-    let certified = |((subject, call), elf): ((&Subject, &Call), &String)| {
+    let bar = reading::bar("certified", false);
+    let certified = |(index, ((subject, call), elf)): (usize, ((&Subject, &Call), &String))| {
+        #[expect(clippy::cast_precision_loss, reason = "functions are few")]
+        reading::show(&bar, index as f64 / subjects.len() as f64);
         let callees: Vec<String> = subject.callees().iter().map(|callee| format!("{prefix}_{callee}")).collect();
-        let cost = cost(arguments.cpu, &toolchain::image(&objdump, folder, elf)?, &call.function, &callees)?;
+        let image = toolchain::image(&objdump, folder, elf)?;
+        let cost = cost(arguments.cpu, &image, &call.function, &callees).map_err(|fault| subject.refused(&fault))?;
         let emulation = match qemu {
             None => None,
             Some(_) => Some(emulate(arguments.cpu, &robot, subject, elf, cost.instructions, folder)?),
@@ -396,7 +407,7 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
             proof: subject.proof(),
         })
     };
-    let certified = subjects.iter().zip(&calls).zip(&code.images).map(certified);
+    let certified = subjects.iter().zip(&calls).zip(&code.images).enumerate().map(certified);
     let mut certified = certified.collect::<Result<Vec<Certified>, Failure>>()?.into_iter();
     let first = certified.next().ok_or_else(|| Failure::usage("no function is named"))?;
     let misra = match cppcheck {
@@ -471,18 +482,18 @@ fn violations(folder: &Path, code: &Code) -> Result<BTreeMap<String, usize>, Fai
 }
 
 /// The cost of a call: of the function and of those that it calls.
-fn cost(core: Core, image: &Image, symbol: &str, callees: &[String]) -> Result<Cost, Failure> {
+fn cost(core: Core, image: &Image, symbol: &str, callees: &[String]) -> Result<Cost, NoFigures> {
     // the compiler makes copies of static functions, with a point in their names
     let is_of = |name: &str, own: &String| name.strip_prefix(own).is_some_and(|s| s.is_empty() || s.starts_with('.'));
     let may_be_called = |name: &str| name.contains("sin_cos") || callees.iter().any(|own| is_of(name, own));
-    let figures = image.straight_but_for(symbol, may_be_called).map_err(Failure::input)?;
-    let executed = image.executed(symbol, &may_be_called).map_err(Failure::input)?;
+    let figures = image.straight_but_for(symbol, may_be_called)?;
+    let executed = image.executed(symbol, &may_be_called)?;
     let mut counter = Counter::default();
     for name in &executed {
-        counter.add(core, &image.function(name).map_err(Failure::input)?.lines);
+        counter.add(core, &image.function(name)?.lines);
     }
     let frame = |function: &rne_certify::image::Function| cycles::stack(&function.lines);
-    let stack = image.deepest(symbol, &may_be_called, &frame).map_err(Failure::input)?;
+    let stack = image.deepest(symbol, &may_be_called, &frame)?;
     let worst = counter.cycles();
     let mut called = BTreeMap::new();
     for callee in executed.into_iter().skip(1) {

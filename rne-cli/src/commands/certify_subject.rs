@@ -3,12 +3,14 @@
 use rne_certify::accuracy::{self, Error, Sample};
 use rne_certify::board::{self, Call};
 use rne_certify::certificate::{Accuracy, NamedError};
+use rne_certify::image::NoFigures;
 use rne_certify::joint_functions::{BEYOND, JointFunction};
 use rne_certify::observer::{self, LowPass};
-use rne_codegen::{Argument, ArgumentArray, Function, Interpreter, Layout, Name, Program, Quantity};
+use rne_codegen::{Argument, ArgumentArray, Function, Interpreter, Layout, Name, Output, Program, Quantity};
 use rne_model::{JointKind, Limits, Robot};
 
 use crate::outcome::Failure;
+use crate::palette::TYPED;
 
 /// A function of the code.
 pub(super) enum Subject<'a> {
@@ -35,6 +37,17 @@ impl Subject<'_> {
             Self::Program(_) => Vec::new(),
             Self::Observer(program, _) => vec![program.function.name()],
             Self::Joints(function) => vec![function.helper()],
+        }
+    }
+
+    /// Why there is no certificate of it.
+    pub(super) fn refused(&self, fault: &NoFigures) -> Failure {
+        match self {
+            Self::Program(program) if program.function == Function::ActuatorTorques => Failure::input(format_args!(
+                "{fault}\nThe robot file has dry friction: its code branches over the sign of each velocity. \
+                 {TYPED}--friction{TYPED:#} certifies the smooth law of friction"
+            )),
+            _ => Failure::input(fault),
         }
     }
 
@@ -114,7 +127,11 @@ impl Subject<'_> {
                 .collect()
         };
         let names: Vec<(String, Option<usize>, &str)> = match self {
-            Self::Program(program) => program.outputs.iter().map(|output| named(program, robot, output.name)).collect(),
+            Self::Program(program) => {
+                let places = rne_emit::result_elements(program, program.function.entry().output).into_iter();
+                let of_output = |(output, place): (&Output, String)| named(program, robot, output.name, &place);
+                program.outputs.iter().zip(places).map(of_output).collect()
+            }
             Self::Observer(..) => of_joints("external", &JointKind::effort_unit),
             Self::Joints(function) => of_joints(function.result(), &|kind| function.unit(kind)),
         };
@@ -215,37 +232,45 @@ fn fixed(function: Function) -> String {
     words
 }
 
-/// A number that a program returns: its name, its joint and its unit; `SI` for an element of a matrix, whose row and
-/// column have units of their own.
-fn named(program: &Program, robot: &Robot, name: Name) -> (String, Option<usize>, &'static str) {
+/// A number that a program returns: its place in the result, its joint and its unit; `SI` for an element of a matrix,
+/// whose row and column have units of their own.
+fn named(program: &Program, robot: &Robot, name: Name, place: &str) -> (String, Option<usize>, &'static str) {
     let joint = name.joint.checked_sub(1);
     let kind = joint.and_then(|joint| robot.joints.get(joint)).map_or(JointKind::Revolute, |joint| joint.row.kind);
     // an index of what one link exerts on another names the link
     let is_of_pair = matches!(name.quantity, Quantity::JointForce | Quantity::JointMoment);
+    let is_of_matrix = name.by.is_some() || name.indices != [0; 2] && !is_of_pair;
     let unit = match name.quantity {
-        _ if name.by.is_some() || name.indices != [0; 2] && !is_of_pair => "SI",
+        _ if is_of_matrix => "SI",
         Quantity::ContactForce => "N",
         Quantity::ContactMoment => "N m",
         Quantity::LinearMomentum => "N s",
+        Quantity::ComPosition | Quantity::FrameOrigin => "m",
+        Quantity::Kinetic | Quantity::Potential => "J",
+        Quantity::Momentum => match kind {
+            JointKind::Revolute => "N m s",
+            JointKind::Prismatic => "N s",
+        },
         Quantity::CentroidalMoment if program.function.takes(Argument::BaseTwist) => "N m s",
         // a distance of two places, or a product of axes
         Quantity::Residual => "m or 1",
-        Quantity::ActuatorTorque => kind.effort_unit(),
+        Quantity::ActuatorTorque | Quantity::MomentumRate => kind.effort_unit(),
         quantity => match quantity.unit(kind) {
             "" => "SI",
             unit => unit,
         },
     };
-    // these count tips and equations, or are of the base
-    let is_of_no_joint = matches!(
-        name.quantity,
-        Quantity::BaseForce
-            | Quantity::BaseMoment
-            | Quantity::Residual
-            | Quantity::ContactForce
-            | Quantity::ContactMoment
-    );
-    (name.to_string(), joint.filter(|_| !is_of_no_joint), unit)
+    // these count tips and equations, or are of the base; elements of a matrix have a row and a column
+    let is_of_no_joint = is_of_matrix
+        || matches!(
+            name.quantity,
+            Quantity::BaseForce
+                | Quantity::BaseMoment
+                | Quantity::Residual
+                | Quantity::ContactForce
+                | Quantity::ContactMoment
+        );
+    (format!("`{place}`"), joint.filter(|_| !is_of_no_joint), unit)
 }
 
 /// Sines or cosines of the positions at the states of the board, in C.

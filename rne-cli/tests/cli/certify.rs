@@ -141,7 +141,7 @@ fn options_of_the_compiler_make_robots_smaller() {
     fails(1, &[&certify[..], &["--cc-options=-fno-such-option"]].concat(), &["-fno-such-option"]);
     // what would write another file, and a function that the certificate of Rust does not call
     fails(2, &[&certify[..], &["--cc-options=-O3 -o arm.o"]].concat(), &["options that choose the code", "`-o`"]);
-    fails(2, &[&certify[..], &["--lang", "rust"]].concat(), &["functions of joints alone", "--lang c"]);
+    fails(2, &[&certify[..], &["--lang", "rust"]].concat(), &["arrays of the joints alone", "--lang c"]);
 }
 
 /// The code of the certificate is a file that anybody can write: by its command, and of a robot file on standard input.

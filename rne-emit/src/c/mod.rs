@@ -26,8 +26,8 @@ use super::wrap::{WIDTH, fill};
 pub use casadi::{casadi_collision, casadi_derivatives, is_for_casadi};
 pub use joint_functions::{JointFriction, NoFriction};
 pub use prefix::{BadPrefix, Prefix};
-pub use signature::record_name;
-pub(super) use signature::{array_name, element_type, elements_of, inputs, layout_elements, result_elements};
+pub(super) use signature::{array_name, element_type, elements_of, inputs, layout_elements};
+pub use signature::{record_name, result_elements};
 pub(crate) use source::{SIN_COS, UNUSED};
 
 /// The code of one robot.

@@ -138,7 +138,8 @@ pub(super) fn places(program: &Program) -> Vec<String> {
 }
 
 /// The numbers of a result that is a variable.
-pub(crate) fn result_elements(program: &Program, variable: &str) -> Vec<String> {
+#[must_use]
+pub fn result_elements(program: &Program, variable: &str) -> Vec<String> {
     layout_elements(&program.layout(), variable)
 }
 
