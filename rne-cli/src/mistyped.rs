@@ -31,7 +31,8 @@ pub(crate) fn explained(error: &clap::Error, words: &[String]) -> Option<(String
         let is_stray = error.kind() == ErrorKind::UnknownArgument;
         is_stray.then(|| refused(command, words).or_else(|| of_others(&grammar, command, error))).flatten()
     });
-    let text = text.or_else(|| needed_by_another(command, error, words)).or_else(|| beside_states(command, error));
+    let text =
+        text.or_else(|| needed_by_another(command, error, words)).or_else(|| beside_states(command, error, words));
     let text = text.or_else(|| missing_or_too_many(command, error))?;
     Some((format!("rne {name}"), Failure::usage(text)))
 }
@@ -239,29 +240,23 @@ fn needed_by_another(command: &Command, error: &clap::Error, words: &[String]) -
     Some(format!("{TYPED}{needing}{TYPED:#} needs {}; {advice}", joined(&names)))
 }
 
-/// Numbers of one state beside a table, which has them in its columns: `--states TABLE --payload LIST`.
-fn beside_states(command: &Command, error: &clap::Error) -> Option<String> {
-    if error.kind() != ErrorKind::ArgumentConflict {
-        return None;
-    }
-    let names = |kind| match error.get(kind) {
-        Some(ContextValue::String(name)) => vec![name.clone()],
-        Some(ContextValue::Strings(names)) => names.clone(),
-        _ => Vec::new(),
-    };
-    let names = [ContextKind::InvalidArg, ContextKind::PriorArg].map(names).concat();
-    let args = || names.iter().filter_map(|name| Some(option(command, name.split_whitespace().next()?)?.0));
-    args().find(|arg| arg.get_long() == Some("states"))?;
-    let list = args().find(|arg| takes_list(arg))?.get_long()?;
-    let payload = if list == "payload" {
+/// Numbers of one state beside an option that has states of its own: `--states TABLE --payload LIST`.
+fn beside_states(command: &Command, error: &clap::Error, words: &[String]) -> Option<String> {
+    let conflicts = error.kind() == ErrorKind::ArgumentConflict && command.get_name() == "eval";
+    let given = || words.iter().filter(|_| conflicts).filter_map(|word| Some(option(command, word)?.0));
+    let of_table = given().find(|arg| arg.get_long() == Some("states"));
+    let own = of_table.or_else(|| given().find(|arg| arg.get_long() == Some("golden")))?.get_long()?;
+    let of_state = command.get_groups().find(|group| group.get_id() == "Given")?;
+    let is_of_state =
+        |arg: &&Arg| of_state.get_args().any(|id| id == arg.get_id()) || arg.get_long() == Some("payload");
+    let list = given().find(is_of_state)?.get_long()?;
+    let states = if of_table.is_some() { "the columns of the table have its numbers" } else { "the states are random" };
+    let payload = if of_table.is_some() && list == "payload" {
         "; a function such as --function mass_matrix_with_payload has columns for the payload"
     } else {
         ""
     };
-    Some(format!(
-        "{TYPED}--{list}{TYPED:#} is for one state; with {TYPED}--states{TYPED:#}, the columns of the table have its \
-         numbers{payload}"
-    ))
+    Some(format!("{TYPED}--{list}{TYPED:#} is for one state; with {TYPED}--{own}{TYPED:#}, {states}{payload}"))
 }
 
 /// Arguments that are missing, and words that no argument takes, where the parser proposes nothing: with an example.

@@ -187,13 +187,13 @@ fn observation(arguments: &Arguments, robot: &Robot) -> Result<(Observation, Vec
         None => Function::InverseDynamics,
     };
     let given = Given {
-        q: Some(&arguments.q),
-        qd: Some(&arguments.qd),
-        qdd: Some(&arguments.qdd),
-        wrench: arguments.wrench.as_ref(),
+        q: Some(arguments.q.clone()),
+        qd: Some(arguments.qd.clone()),
+        qdd: Some(arguments.qdd.clone()),
+        wrench: arguments.wrench.clone(),
         ..Given::default()
     };
-    let state = State::new(function, given, robot)?;
+    let state = State::new(function, &given, robot)?;
     let right = state.numbers(&DynArm::from_robot(robot)).map_err(Failure::usage)?;
     if let Some(index) = right.iter().position(|number| !number.is_finite()) {
         return Err(Failure::input(not_finite(robot, function, index, &state.q)));

@@ -30,8 +30,9 @@ use crate::values::choice;
 use crate::values::closure;
 use crate::values::definite::{BUT_FOR_ROUNDING, NOT_DEFINITE, is_indefinite, is_singular};
 use crate::values::limits;
-use crate::values::numbers::{List, duration};
-use crate::values::state::{Given, State, TipWrench, payload};
+use crate::values::numbers::List;
+use crate::values::payload::payload;
+use crate::values::state::{Given, State};
 
 /// Compute torques, or another function of an arm, at given states
 #[derive(Args)]
@@ -49,69 +50,16 @@ pub(crate) struct Arguments {
     /// Function to compute; see `rne explain functions`
     #[arg(long, value_name = "F", value_parser = choice::function(), hide_possible_values = true)]
     function: Option<Function>,
-    /// Joint positions, base to tip, rad or m
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    q: Option<List>,
-    /// Joint velocities, rad/s or m/s [default: 0]
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    qd: Option<List>,
-    /// Joint accelerations, rad/s² or m/s² [default: 0]
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    qdd: Option<List>,
-    /// Joint torques for forward_dynamics, N m or N
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    tau: Option<List>,
-    /// Duration of the step of an integrator, s
-    #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = duration())]
-    duration: Option<List>,
-    /// Multipliers for torque_gradient, torque_hessian
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    multipliers: Option<List>,
-    /// Wrench by the tip: fx,fy,fz,nx,ny,nz, tip axes
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    wrench: Option<List>,
-    /// A wrench at the tip N of `tips`; may be repeated
-    #[arg(long, value_name = "N=LIST", allow_hyphen_values = true)]
-    tip_wrench: Vec<TipWrench>,
-    /// Guess of the dependent joints of closed loops
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    passive: Option<List>,
-    /// Angular velocity of the base, rad/s [default: 0]
-    #[arg(long, value_name = "V", allow_hyphen_values = true)]
-    base_omega: Option<List>,
-    /// Its angular acceleration, rad/s² [default: 0]
-    #[arg(long, value_name = "V", allow_hyphen_values = true)]
-    base_omega_dot: Option<List>,
-    /// Its acceleration, m/s² [default: 0]
-    #[arg(long, value_name = "V", allow_hyphen_values = true)]
-    base_acceleration: Option<List>,
-    /// Velocity of its origin, m/s [default: 0]
-    #[arg(long, value_name = "V", allow_hyphen_values = true)]
-    base_velocity: Option<List>,
-    /// Frame 0 in the world, x,y,z,roll,pitch,yaw
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    base_pose: Option<List>,
-    /// Gravity in frame 0, x,y,z, m/s² [default: FILE]
-    #[arg(long, value_name = "V", allow_hyphen_values = true)]
-    gravity: Option<List>,
-    /// Rotation of the base, 9 numbers [default: 1]
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
-    base_rotation: Option<List>,
+    #[command(flatten)]
+    given: Given,
     /// Print a golden file of torques at N random states
     #[arg(long, value_name = "N", value_parser = golden::states, allow_negative_numbers = true, conflicts_with_all = [
-        "function", "q", "passive", "qd", "qdd", "tau", "duration", "multipliers", "wrench", "tip_wrench", "payload",
-        "base_omega", "base_omega_dot", "base_acceleration", "base_velocity", "base_pose",
-        "gravity", "base_rotation", "trace",
-        "json", "csv", "compare", "frame",
+        "function", "Given", "payload", "trace", "json", "csv", "compare", "frame",
     ])]
     golden: Option<u16>,
     /// Compute it at each state of a table; - is stdin
     #[arg(long, value_name = "TABLE", conflicts_with_all = [
-        "q", "passive", "qd", "qdd", "tau", "duration", "multipliers", "wrench", "tip_wrench", "payload",
-        "base_omega", "base_omega_dot", "base_acceleration", "base_velocity", "base_pose",
-        "gravity", "base_rotation", "golden",
-        "trace", "axes",
-        "joint", "step", "json", "csv", "compare", "digits",
+        "Given", "payload", "golden", "trace", "axes", "joint", "step", "json", "csv", "compare", "digits",
     ])]
     states: Option<PathBuf>,
     /// Output file of --states: CSV, or NAME.npy
@@ -156,7 +104,7 @@ pub(crate) const DIGITS_BY_HAND: u8 = 4;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let (robot, lints) = arguments.robot()?;
-    let q = arguments.q.as_ref().map_or(&[][..], |List(q)| q);
+    let q = arguments.given.q.as_ref().map_or(&[][..], |List(q)| q);
     let degrees = limits::Degrees::of(&robot, [q]).remark(|q| format!("write {q}deg"));
     let remark = degrees + &turned_base(arguments) + &far_payload(arguments) + &impossible_payload(arguments) + &lints;
     let outcome = computed(arguments, robot)?;
@@ -173,7 +121,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 
 /// A remark on an angle of the base that is probably in degrees.
 fn turned_base(arguments: &Arguments) -> String {
-    let pose = arguments.base_pose.as_ref().map(|List(pose)| pose).filter(|pose| pose.len() == 6);
+    let pose = arguments.given.base_pose.as_ref().map(|List(pose)| pose).filter(|pose| pose.len() == 6);
     let mut remark = String::new();
     for (name, angle) in pose.into_iter().flat_map(|pose| ["roll", "pitch", "yaw"].into_iter().zip(&pose[3..])) {
         if angle.abs() > std::f64::consts::TAU && (10.0 * angle).fract() == 0.0 {
@@ -217,10 +165,10 @@ fn impossible_payload(arguments: &Arguments) -> String {
 fn computed(arguments: &Arguments, robot: Robot) -> Result<Outcome, Failure> {
     let is_at_frame = arguments.at.frame.is_some();
     let has_loops = !robot.closed.is_empty();
-    let function = arguments.function.unwrap_or(match (&arguments.wrench, is_at_frame) {
-        _ if has_loops && !arguments.tip_wrench.is_empty() => Function::InverseDynamicsOfLoopsWithWrenches,
+    let function = arguments.function.unwrap_or(match (&arguments.given.wrench, is_at_frame) {
+        _ if has_loops && !arguments.given.tip_wrench.is_empty() => Function::InverseDynamicsOfLoopsWithWrenches,
         (None, false) if has_loops => Function::InverseDynamicsOfLoops,
-        _ if !arguments.tip_wrench.is_empty() => Function::InverseDynamicsWithWrenches,
+        _ if !arguments.given.tip_wrench.is_empty() => Function::InverseDynamicsWithWrenches,
         (Some(_), true) => Function::WrenchTorques,
         (None, true) => Function::ForwardKinematics,
         (Some(_), false) => Function::InverseDynamicsWithWrench,
@@ -251,10 +199,11 @@ fn computed(arguments: &Arguments, robot: Robot) -> Result<Outcome, Failure> {
     }
     let (function, robot) = arguments.loaded(function, robot)?;
     arguments.check(function, &robot)?;
-    let zeros = [robot.dof(), 3, 6].map(|count| List(vec![0.0; count]));
     let (sheet, of_sheet) = arguments.sheet(function, &robot)?;
-    let (given, assumed) = arguments.given(function).or_state(&of_sheet).at_rest(function, zeros.each_ref());
-    let state = State::new(function, given, &robot)?;
+    let payload = arguments.arm.carried.payload.clone().filter(|_| function.takes(Argument::Payload));
+    let given = Given { payload, ..arguments.given.clone() };
+    let (given, assumed) = given.or_state(of_sheet).at_rest(function, robot.dof());
+    let state = State::new(function, &given, &robot)?;
     let arm = DynArm::from_robot(&robot);
     // The lengths are checked, so this error does not occur; if it does, it says what is wrong.
     let numbers = state.numbers(&arm).map_err(Failure::usage)?;
@@ -265,7 +214,7 @@ fn computed(arguments: &Arguments, robot: Robot) -> Result<Outcome, Failure> {
         return Err(Failure::input(format_args!("{function} has no result: {BUT_FOR_ROUNDING}")));
     }
     let mut remark = limits::remark(&robot, [&state.q, &state.qd], &state.passive)
-        + &closure::remark(&robot, &arm, &state, arguments.passive.is_some());
+        + &closure::remark(&robot, &arm, &state, arguments.given.passive.is_some());
     if is_indefinite(&robot, function, [&state.q, &state.passive], state.payload.as_ref()) {
         let _ = writeln!(remark, "note: {NOT_DEFINITE}");
     }
@@ -373,28 +322,6 @@ impl Arguments {
             )));
         }
         Ok((function, robot))
-    }
-
-    fn given(&self, function: Function) -> Given<'_> {
-        Given {
-            q: self.q.as_ref(),
-            passive: self.passive.as_ref(),
-            qd: self.qd.as_ref(),
-            qdd: self.qdd.as_ref(),
-            tau: self.tau.as_ref(),
-            duration: self.duration.as_ref(),
-            multipliers: self.multipliers.as_ref(),
-            wrench: self.wrench.as_ref(),
-            tip_wrenches: &self.tip_wrench,
-            payload: self.arm.carried.payload.as_ref().filter(|_| function.takes(Argument::Payload)),
-            base_omega: self.base_omega.as_ref(),
-            base_omega_dot: self.base_omega_dot.as_ref(),
-            base_acceleration: self.base_acceleration.as_ref(),
-            base_velocity: self.base_velocity.as_ref(),
-            base_pose: self.base_pose.as_ref(),
-            gravity: self.gravity.as_ref(),
-            base_rotation: self.base_rotation.as_ref(),
-        }
     }
 }
 
@@ -523,8 +450,8 @@ mod tests {
             (lists(&[0.3, 0.7]), lists(&[0.4, -0.5, 0.6]), lists(&[0.1, 0.2, 0.3, 0.4, 0.5, 0.6]));
         let (one, payload) = (lists(&[0.01]), lists(&[1.0, 0.1, 0.0, 0.2]));
         for function in Function::ALL.into_iter().filter(|function| function.check_for(&robot).is_ok()) {
-            let take = |argument, list| Some(list).filter(|_| function.takes(argument));
-            let base = |list| Some(list).filter(|_| function.takes(Base));
+            let take = |argument, list: &List| Some(list.clone()).filter(|_| function.takes(argument));
+            let base = |list| take(Base, list);
             let given = Given {
                 q: take(Positions, &joints),
                 qd: take(Rates, &joints),
@@ -542,7 +469,7 @@ mod tests {
                 ..Given::default()
             };
             // a floating base needs no wrenches, and what needs them is that with one wrench
-            let Ok(state) = State::new(function, given, &robot) else { continue };
+            let Ok(state) = State::new(function, &given, &robot) else { continue };
             let [alone, loaded] = [&robot, &loaded]
                 .map(|robot| state.numbers(&DynArm::from_robot(robot)).expect("arrays of the right length"));
             assert_eq!(alone != loaded, function.entry().feels_links, "{function}");

@@ -13,7 +13,7 @@ use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::Failure;
 use crate::palette::{TITLE, TYPED};
 use crate::values::numbers::{List, not_a_number};
-use crate::values::state::payload;
+use crate::values::payload::payload;
 
 /// Rotors belong to the arm.
 #[derive(Args, Clone, Copy, Default)]

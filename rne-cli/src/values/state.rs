@@ -1,69 +1,103 @@
 //! Arguments of a function, complete and of the right lengths.
 
-use std::str::FromStr;
-
+use clap::Args;
 use rne::{BaseMotion, BaseTwist, DynArm, Inputs, Payload, Pose, Quaternion, Wrench, WrongLength};
 use rne_codegen::{Argument, Capability, Function};
-use rne_model::{Robot, nearest_name};
+use rne_model::Robot;
 
 use crate::outcome::Failure;
 use crate::values::closure;
-use crate::values::numbers::List;
+use crate::values::numbers::{List, duration};
+use crate::values::payload::{PAYLOAD, payload};
+use crate::values::tip_wrench::{TipWrench, tip_wrenches};
 
 const IDENTITY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// The lists of the command line, where they are given.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Given<'a> {
-    pub(crate) q: Option<&'a List>,
-    pub(crate) passive: Option<&'a List>,
-    pub(crate) qd: Option<&'a List>,
-    pub(crate) qdd: Option<&'a List>,
-    pub(crate) tau: Option<&'a List>,
-    pub(crate) duration: Option<&'a List>,
-    pub(crate) multipliers: Option<&'a List>,
-    pub(crate) wrench: Option<&'a List>,
-    pub(crate) tip_wrenches: &'a [TipWrench],
-    pub(crate) payload: Option<&'a List>,
-    pub(crate) base_omega: Option<&'a List>,
-    pub(crate) base_omega_dot: Option<&'a List>,
-    pub(crate) base_acceleration: Option<&'a List>,
-    pub(crate) base_velocity: Option<&'a List>,
-    pub(crate) base_pose: Option<&'a List>,
-    pub(crate) gravity: Option<&'a List>,
-    pub(crate) base_rotation: Option<&'a List>,
+/// The arguments of a function on the command line, where they are given.
+#[derive(Args, Clone, Default)]
+pub(crate) struct Given {
+    /// Joint positions, base to tip, rad or m
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub(crate) q: Option<List>,
+    /// Joint velocities, rad/s or m/s [default: 0]
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub(crate) qd: Option<List>,
+    /// Joint accelerations, rad/s² or m/s² [default: 0]
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub(crate) qdd: Option<List>,
+    /// Joint torques for forward_dynamics, N m or N
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub(crate) tau: Option<List>,
+    /// Duration of the step of an integrator, s
+    #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = duration())]
+    pub(crate) duration: Option<List>,
+    /// Multipliers for torque_gradient, torque_hessian
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub(crate) multipliers: Option<List>,
+    /// Wrench by the tip: fx,fy,fz,nx,ny,nz, tip axes
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub(crate) wrench: Option<List>,
+    /// A wrench at the tip N of `tips`; may be repeated
+    #[arg(long, value_name = "N=LIST", allow_hyphen_values = true)]
+    pub(crate) tip_wrench: Vec<TipWrench>,
+    /// Guess of the dependent joints of closed loops
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub(crate) passive: Option<List>,
+    /// Angular velocity of the base, rad/s [default: 0]
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    pub(crate) base_omega: Option<List>,
+    /// Its angular acceleration, rad/s² [default: 0]
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    pub(crate) base_omega_dot: Option<List>,
+    /// Its acceleration, m/s² [default: 0]
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    pub(crate) base_acceleration: Option<List>,
+    /// Velocity of its origin, m/s [default: 0]
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    pub(crate) base_velocity: Option<List>,
+    /// Frame 0 in the world, x,y,z,roll,pitch,yaw
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub(crate) base_pose: Option<List>,
+    /// Gravity in frame 0, x,y,z, m/s² [default: FILE]
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    pub(crate) gravity: Option<List>,
+    /// Rotation of the base, 9 numbers [default: 1]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) base_rotation: Option<List>,
+    /// Of the option of the robot.
+    #[arg(skip)]
+    pub(crate) payload: Option<List>,
 }
 
-impl<'a> Given<'a> {
+impl Given {
     /// The lists with q, q̇ and q̈ of a state, where no positions are given.
-    pub(crate) fn or_state(mut self, state: &'a [Option<List>; 3]) -> Self {
+    pub(crate) fn or_state(mut self, state: [Option<List>; 3]) -> Self {
         if self.q.is_none() {
             for (own, of_state) in [&mut self.q, &mut self.qd, &mut self.qdd].into_iter().zip(state) {
-                *own = own.or(of_state.as_ref());
+                *own = own.take().or(of_state);
             }
         }
         self
     }
 
     /// The lists with zeros for velocities and accelerations that a function takes and that are not given, of the
-    /// joints, of a base that moves and of its pose; with their options. `zeros` has a number for each joint, three for
-    /// the base and six for its pose.
-    pub(crate) fn at_rest(mut self, function: Function, zeros: [&'a List; 3]) -> (Self, Vec<&'static str>) {
+    /// joints, of a base that moves and of its pose; with their options.
+    pub(crate) fn at_rest(mut self, function: Function, dof: usize) -> (Self, Vec<&'static str>) {
         use Argument::{Accelerations, Base, BasePose, BaseTwist, BaseVelocity, Rates};
-        let (mut assumed, [of_joints, of_base, of_pose]) = (Vec::new(), zeros);
+        let mut assumed = Vec::new();
         let turning = [BaseTwist, BaseVelocity].into_iter().find(|kind| function.takes(*kind)).unwrap_or(Base);
         let lists = [
-            ("--qd", &mut self.qd, Rates, of_joints),
-            ("--qdd", &mut self.qdd, Accelerations, of_joints),
-            ("--base-velocity", &mut self.base_velocity, BaseTwist, of_base),
-            ("--base-omega", &mut self.base_omega, turning, of_base),
-            ("--base-omega-dot", &mut self.base_omega_dot, Base, of_base),
-            ("--base-acceleration", &mut self.base_acceleration, Base, of_base),
-            ("--base-pose", &mut self.base_pose, BasePose, of_pose),
+            ("--qd", &mut self.qd, Rates, dof),
+            ("--qdd", &mut self.qdd, Accelerations, dof),
+            ("--base-velocity", &mut self.base_velocity, BaseTwist, 3),
+            ("--base-omega", &mut self.base_omega, turning, 3),
+            ("--base-omega-dot", &mut self.base_omega_dot, Base, 3),
+            ("--base-acceleration", &mut self.base_acceleration, Base, 3),
+            ("--base-pose", &mut self.base_pose, BasePose, 6),
         ];
-        for (name, list, kind, zeros) in lists {
+        for (name, list, kind, count) in lists {
             if list.is_none() && function.takes(kind) {
-                *list = Some(zeros);
+                *list = Some(List(vec![0.0; count]));
                 assumed.push(name);
             }
         }
@@ -97,26 +131,26 @@ pub(crate) struct State {
 
 impl State {
     /// Checks that the function's arguments, all of them and no others, are there.
-    pub(crate) fn new(function: Function, given: Given<'_>, robot: &Robot) -> Result<Self, Failure> {
+    pub(crate) fn new(function: Function, given: &Given, robot: &Robot) -> Result<Self, Failure> {
         use Argument::{Accelerations, Base, Positions, Rates, Torques};
         let joints: Vec<&str> = robot.independent_joints().map(|joint| joint.name.as_str()).collect();
         let which = if robot.closed.is_empty() { "" } else { " that is not dependent" };
         let per_joint = format!("one number for each joint of {}{which}: {}", robot.name, joints.join(", "));
         let of_joints = |name, list, kind| argument(function, name, list, kind, robot.dof(), &per_joint);
-        let q = of_joints("--q", given.q, Positions)?;
-        let passive = passive(function, given.passive, q.as_deref(), robot)?;
-        let qd = of_joints("--qd", given.qd, Rates)?;
-        let qdd = of_joints("--qdd", given.qdd, Accelerations)?;
-        let tau = of_joints("--tau", given.tau, Torques)?;
+        let q = of_joints("--q", given.q.as_ref(), Positions)?;
+        let passive = passive(function, given.passive.as_ref(), q.as_deref(), robot)?;
+        let qd = of_joints("--qd", given.qd.as_ref(), Rates)?;
+        let qdd = of_joints("--qdd", given.qdd.as_ref(), Accelerations)?;
+        let tau = of_joints("--tau", given.tau.as_ref(), Torques)?;
         let seconds = "the duration of the step in seconds, one number";
-        let step = argument(function, "--duration", given.duration, Argument::Step, 1, seconds)?;
+        let step = argument(function, "--duration", given.duration.as_ref(), Argument::Step, 1, seconds)?;
         let step = step.and_then(|list| list.first().copied()).unwrap_or_default();
-        let multipliers = of_joints("--multipliers", given.multipliers, Argument::Multipliers)?;
+        let multipliers = of_joints("--multipliers", given.multipliers.as_ref(), Argument::Multipliers)?;
         let wrench = "three forces and three moments: fx,fy,fz,nx,ny,nz";
-        let wrench = argument(function, "--wrench", given.wrench, Argument::Wrench, 6, wrench)?;
+        let wrench = argument(function, "--wrench", given.wrench.as_ref(), Argument::Wrench, 6, wrench)?;
         let wrench = wrench.map(|w| Wrench { force: triple(&w, 0), moment: triple(&w, 3) });
-        let wrenches = tip_wrenches(function, given.tip_wrenches, robot)?;
-        let payload = match given.payload {
+        let wrenches = tip_wrenches(function, &given.tip_wrench, robot)?;
+        let payload = match &given.payload {
             Some(list) => Some(payload(list)?),
             None if function.takes(Argument::Payload) => {
                 return Err(Failure::usage(format_args!("{function} needs --payload, {PAYLOAD}")));
@@ -124,33 +158,33 @@ impl State {
             None => None,
         };
         let axes = "three numbers x,y,z, in the axes of frame 0";
-        let of_base = |name, list| {
+        let of_base = |name, list: &Option<List>| {
             let kind = match name {
                 "--base-velocity" => Argument::BaseTwist,
                 "--base-omega" if function.takes(Argument::BaseVelocity) => Argument::BaseVelocity,
                 "--base-omega" if function.takes(Argument::BaseTwist) => Argument::BaseTwist,
                 _ => Base,
             };
-            let list = argument(function, name, list, kind, 3, axes)?;
+            let list = argument(function, name, list.as_ref(), kind, 3, axes)?;
             Ok::<_, Failure>(list.map_or([0.0; 3], |list| triple(&list, 0)))
         };
         let base = BaseMotion {
-            omega: of_base("--base-omega", given.base_omega)?,
-            omega_dot: of_base("--base-omega-dot", given.base_omega_dot)?,
-            velocity: of_base("--base-velocity", given.base_velocity)?,
-            acceleration: of_base("--base-acceleration", given.base_acceleration)?,
+            omega: of_base("--base-omega", &given.base_omega)?,
+            omega_dot: of_base("--base-omega-dot", &given.base_omega_dot)?,
+            velocity: of_base("--base-velocity", &given.base_velocity)?,
+            acceleration: of_base("--base-acceleration", &given.base_acceleration)?,
             // a base that only moves stays under the gravity of the file
-            gravity: if given.gravity.is_some() { of_base("--gravity", given.gravity)? } else { robot.gravity },
+            gravity: if given.gravity.is_some() { of_base("--gravity", &given.gravity)? } else { robot.gravity },
         };
         let rows = "nine numbers, row by row; its columns are the axes of frame 0 in the world";
-        let base_rotation = match given.base_rotation {
+        let base_rotation = match given.base_rotation.as_ref() {
             // the world has the axes of frame 0
             None => IDENTITY,
             list => argument(function, "--base-rotation", list, Argument::BaseRotation, 9, rows)?
                 .map_or(Ok(IDENTITY), |list| rotation("--base-rotation", &list))?,
         };
         let [q, qd, qdd, tau, multipliers] = [q, qd, qdd, tau, multipliers].map(Option::unwrap_or_default);
-        let pose = pose_of_base(function, given.base_pose)?;
+        let pose = pose_of_base(function, given.base_pose.as_ref())?;
         Ok(Self {
             function,
             q,
@@ -237,24 +271,6 @@ fn passive(function: Function, list: Option<&List>, q: Option<&[f64]>, robot: &R
     }
 }
 
-/// The numbers of a payload in words.
-const PAYLOAD: &str =
-    "mass, centre of mass and inertia about it: m,cx,cy,cz,xx,yy,zz,xy,xz,yz; or m,cx,cy,cz of a point";
-
-/// A payload from its list: mass and centre of mass, and inertia where it is given.
-pub(crate) fn payload(List(values): &List) -> Result<Payload<f64>, Failure> {
-    if values.len() != 4 && values.len() != 10 {
-        let found = values.len();
-        return Err(Failure::usage(format_args!("--payload needs 10 numbers, not {found}: {PAYLOAD}")));
-    }
-    let mut all = [0.0; 10];
-    all.iter_mut().zip(values).for_each(|(number, value)| *number = *value);
-    let payload = Payload::from_array(all);
-    payload.check().map_err(|error| Failure::usage(format_args!("--payload: {error}")))?;
-    payload.inertia.check_of_payload().map_err(|error| Failure::usage(format_args!("--payload: {error}")))?;
-    Ok(payload)
-}
-
 /// The numbers of a pose in words.
 const POSE: &str = "position and rotation of frame 0 in the world: x,y,z,roll,pitch,yaw; or the rows of the rotation \
                     matrix, then x,y,z";
@@ -289,70 +305,7 @@ fn rotation(name: &str, numbers: &[f64]) -> Result<[[f64; 3]; 3], Failure> {
     Err(Failure::usage(format_args!("{name} is no rotation: {ROTATION}")))
 }
 
-/// The wrench at a tip: `left=0,0,-5,0,0,0`.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct TipWrench {
-    tip: String,
-    numbers: List,
-}
-
-impl FromStr for TipWrench {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (tip, numbers) = text.split_once('=').ok_or("write NAME=fx,fy,fz,nx,ny,nz, such as left=0,0,-5,0,0,0")?;
-        let numbers: List = numbers.parse()?;
-        match numbers.0.len() {
-            6 => Ok(Self { tip: tip.trim().to_owned(), numbers }),
-            found => Err(format!("a wrench has 6 numbers, not {found}: fx,fy,fz,nx,ny,nz")),
-        }
-    }
-}
-
-/// The wrench at each tip of a robot, for a function that takes them: that of the command line, or zero.
-fn tip_wrenches(function: Function, given: &[TipWrench], robot: &Robot) -> Result<Vec<Wrench<f64>>, Failure> {
-    let names = robot.tip_names();
-    if !function.takes(Argument::Wrenches) {
-        let refused = given.first().map(|_| not_taken(function, "--tip-wrench", Argument::Wrenches));
-        return refused.map_or(Ok(Vec::new()), Err);
-    }
-    let mut wrenches = vec![Wrench::zero(); names.len()];
-    if given.is_empty() && !function.is_of_floating_base() {
-        return Err(Failure::usage(format_args!(
-            "{function} needs --tip-wrench NAME=fx,fy,fz,nx,ny,nz for at least one tip of {}: `{}`",
-            robot.name,
-            names.join("`, `")
-        )));
-    }
-    for (index, TipWrench { tip, numbers: List(numbers) }) in given.iter().enumerate() {
-        if let Some(two) = robot.two_tips(tip) {
-            return Err(Failure::usage(two));
-        }
-        let Some(place) = names.iter().position(|name| name == tip) else {
-            if robot.frames.iter().any(|frame| frame.name == *tip) {
-                let listed = if robot.tips.is_empty() { tip.clone() } else { format!("{}, {tip}", names.join(", ")) };
-                return Err(Failure::usage(format_args!(
-                    "`{tip}` is a frame of {}, but not a tip; list it under `tips` of the robot file: tips: [{listed}]",
-                    robot.name
-                )));
-            }
-            let meant = nearest_name(tip, &names).map(|meant| format!("; did you mean `{meant}`?"));
-            return Err(Failure::usage(format_args!(
-                "{} has no tip `{tip}`; its tips are `{}`{}",
-                robot.name,
-                names.join("`, `"),
-                meant.unwrap_or_default()
-            )));
-        };
-        if given[..index].iter().any(|other| other.tip == *tip) {
-            return Err(Failure::usage(format_args!("--tip-wrench gives the wrench at `{tip}` twice")));
-        }
-        wrenches[place] = Wrench { force: triple(numbers, 0), moment: triple(numbers, 3) };
-    }
-    Ok(wrenches)
-}
-
-fn triple(list: &[f64], from: usize) -> [f64; 3] {
+pub(super) fn triple(list: &[f64], from: usize) -> [f64; 3] {
     [0, 1, 2].map(|index| list.get(from + index).copied().unwrap_or_default())
 }
 
@@ -410,7 +363,7 @@ pub(crate) fn options(function: Function) -> String {
 }
 
 /// The error of an option that a function does not take, with the functions that do.
-fn not_taken(function: Function, name: &str, kind: Argument) -> Failure {
+pub(super) fn not_taken(function: Function, name: &str, kind: Argument) -> Failure {
     // --payload chooses the others
     // no robot has functions of closed loops and others
     let is_named = |other: &Function| {

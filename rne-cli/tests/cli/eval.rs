@@ -508,7 +508,7 @@ fn a_golden_file_is_written() {
     for bad in ["0", "-3", "65536", "ten", "1.5"] {
         fails(2, &["eval", robot, "--golden", bad], &["a golden file has 1 to 65535 states, such as --golden 100"]);
     }
-    fails(2, &["eval", robot, "--golden", "3", "--q", "0,0,0"], &["cannot be used with"]);
+    fails(2, &["eval", robot, "--golden", "3", "--q", "0,0,0"], &["--q is for one state; with --golden"]);
     let rotors = fine(&["eval", "robots/puma560.yaml", "--golden", "1", "--rotors"]);
     assert_ne!(rotors.lines().last(), fine(&["eval", "robots/puma560.yaml", "--golden", "1"]).lines().last());
     assert!(rotors.starts_with("# Torques of puma560, with its rotors"), "{rotors}");

@@ -1,0 +1,24 @@
+//! A payload on the command line.
+
+use rne::Payload;
+
+use crate::outcome::Failure;
+use crate::values::numbers::List;
+
+/// The numbers of a payload in words.
+pub(super) const PAYLOAD: &str =
+    "mass, centre of mass and inertia about it: m,cx,cy,cz,xx,yy,zz,xy,xz,yz; or m,cx,cy,cz of a point";
+
+/// A payload from its list: mass and centre of mass, and inertia where it is given.
+pub(crate) fn payload(List(values): &List) -> Result<Payload<f64>, Failure> {
+    if values.len() != 4 && values.len() != 10 {
+        let found = values.len();
+        return Err(Failure::usage(format_args!("--payload needs 10 numbers, not {found}: {PAYLOAD}")));
+    }
+    let mut all = [0.0; 10];
+    all.iter_mut().zip(values).for_each(|(number, value)| *number = *value);
+    let payload = Payload::from_array(all);
+    payload.check().map_err(|error| Failure::usage(format_args!("--payload: {error}")))?;
+    payload.inertia.check_of_payload().map_err(|error| Failure::usage(format_args!("--payload: {error}")))?;
+    Ok(payload)
+}
