@@ -86,7 +86,7 @@ macro_rules! methods {
             /// When an argument does not have one element per joint or tip, when it is
             /// [out of range](crate::OutOfRange), or when the function cannot be compiled for this robot.
             #[allow(clippy::too_many_arguments)] // those of the table
-            pub fn $name<T: Number>(
+            pub fn $name<'a, T: Number>(
                 &self,
                 $($argument: argument_type!($kind),)*
             ) -> Result<results::$returned<T>, EvaluationError> {

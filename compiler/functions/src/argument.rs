@@ -3,9 +3,10 @@
 use crate::layout::returned;
 use crate::{Length, Shape, Sizes};
 
-/// The arguments: variant, name, type where the number of joints is known at run time, and shape.
+/// The arguments: variant, name, type where the number of joints is known at run time, with the lifetime `'a`, and
+/// shape.
 macro_rules! arguments {
-    ($($(#[$doc:meta])* $argument:ident = $name:literal, ($($type:tt)*): $shape:ident;)*) => {
+    ($($(#[$doc:meta])* $argument:ident = $name:ident, ($($type:tt)*): $shape:ident;)*) => {
         /// An argument of a function.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Argument { $($(#[$doc])* $argument),* }
@@ -14,7 +15,7 @@ macro_rules! arguments {
             /// Its name in Rust, in Python and on the command line.
             #[must_use]
             pub const fn name(self) -> &'static str {
-                match self { $(Self::$argument => $name),* }
+                match self { $(Self::$argument => stringify!($name)),* }
             }
 
             /// The shape of its numbers.
@@ -28,44 +29,51 @@ macro_rules! arguments {
         #[doc(hidden)]
         #[macro_export]
         macro_rules! argument_type { $(($argument) => { $($type)* };)* }
+
+        /// The names of all arguments, with their types. `$callback!` is given the list.
+        #[doc(hidden)]
+        #[macro_export]
+        macro_rules! every_argument {
+            ($callback:ident) => { $callback! { $($(#[$doc])* $name: ($($type)*);)* } };
+        }
     };
 }
 
 arguments! {
     /// Sines of the joint positions.
-    Sines = "sin", (&[T]): Vector;
+    Sines = sin, (&'a [T]): Vector;
     /// Cosines of the joint positions.
-    Cosines = "cos", (&[T]): Vector;
-    /// Joint positions.
-    Positions = "q", (&[T]): Vector;
-    /// Joint rates.
-    Rates = "qd", (&[T]): Vector;
-    /// Joint accelerations.
-    Accelerations = "qdd", (&[T]): Vector;
-    /// Joint torques.
-    Torques = "tau", (&[T]): Vector;
-    /// Force and moment at the tip.
-    Wrench = "wrench", (&Wrench<T>): Wrench;
+    Cosines = cos, (&'a [T]): Vector;
+    /// Joint positions, rad or m.
+    Positions = q, (&'a [T]): Vector;
+    /// Joint velocities, rad/s or m/s.
+    Rates = qd, (&'a [T]): Vector;
+    /// Joint accelerations, rad/s² or m/s².
+    Accelerations = qdd, (&'a [T]): Vector;
+    /// Joint torques, N m or N.
+    Torques = tau, (&'a [T]): Vector;
+    /// Force and moment that the last link exerts at the tip.
+    Wrench = wrench, (&'a Wrench<T>): Wrench;
     /// Mass, centre of mass and inertia of what is fixed to the tip.
-    Payload = "payload", (&Payload<T>): Payload;
+    Payload = payload, (&'a Payload<T>): Payload;
     /// Motion of the base, and gravity.
-    Base = "base", (&BaseMotion<T>): BaseMotion;
-    /// Force and moment at each tip.
-    Wrenches = "wrenches", (&[Wrench<T>]): TipWrenches;
-    /// Angular velocity of a base whose accelerations are no argument.
-    BaseVelocity = "omega", (&[T; 3]): Point;
+    Base = base, (&'a BaseMotion<T>): BaseMotion;
+    /// Force and moment that the robot exerts at each tip.
+    Wrenches = wrenches, (&'a [Wrench<T>]): TipWrenches;
+    /// Angular velocity of a floating base, rad/s, in axes of frame 0.
+    BaseVelocity = omega, (&'a [T; 3]): Point;
     /// Linear and angular velocity of a floating base.
-    BaseTwist = "twist", (&BaseTwist<T>): BaseTwist;
-    /// Where such a base stands in the world.
-    BasePose = "pose", (&Pose<T>): Pose;
-    /// Axes of the base in the world.
-    BaseRotation = "base_rotation", (&[[T; 3]; 3]): Rotation;
-    /// Positions of the dependent joints of closed loops.
-    Passive = "passive", (&[T]): PassiveVector;
+    BaseTwist = twist, (&'a BaseTwist<T>): BaseTwist;
+    /// Pose of a floating base in the world.
+    BasePose = pose, (&'a Pose<T>): Pose;
+    /// Rows of the rotation from axes of frame 0 to those of the world.
+    BaseRotation = base_rotation, (&'a [[T; 3]; 3]): Rotation;
+    /// Positions of the dependent joints of closed loops, rad or m.
+    Passive = passive, (&'a [T]): PassiveVector;
     /// Multipliers of the joint torques.
-    Multipliers = "multipliers", (&[T]): Vector;
-    /// Duration of a step: one number, which is passed by value.
-    Step = "step", (T): Number;
+    Multipliers = multipliers, (&'a [T]): Vector;
+    /// Duration of a step, s: one number, which is passed by value.
+    Step = step, (T): Number;
 }
 
 /// The part of a robot that the numbers of an array belong to.
