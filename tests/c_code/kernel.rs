@@ -98,7 +98,7 @@ fn the_constants_are_those_of_the_runtime() {
     {
         let rust = if real == "double" { "f64" } else { "f32" };
         for file in [format!("c/sin_cos_{real}.c"), format!("sin_cos_{rust}.rs")] {
-            let emitted = constants(&read(&format!("rne-emit/src/{file}")));
+            let emitted = constants(&read(&format!("compiler/emit/src/{file}")));
             assert_eq!(emitted, constants(&format!("{parts} {sums} 0.5 1.0 {inverse}")), "{file}");
         }
     }

@@ -107,11 +107,11 @@ fn the_observer_in_c_without_a_period_writes_zeros() {
 fn the_observer_in_c_is_that_of_the_runtime() {
     let Some(compiler) = Compiler::found() else { return };
     compare::<3>(&compiler, "robots/planar3");
-    compare::<4>(&compiler, "rne-cli/tests/cli/arms/lift");
+    compare::<4>(&compiler, "cli/tests/cli/arms/lift");
     if shipped::is_exhaustive() {
         compare::<4>(&compiler, "robots/scara_cobra600");
-        compare::<4>(&compiler, "rne-cli/tests/cli/arms/palletizer");
-        compare::<6>(&compiler, "rne-cli/tests/cli/arms/wrist");
+        compare::<4>(&compiler, "cli/tests/cli/arms/palletizer");
+        compare::<6>(&compiler, "cli/tests/cli/arms/wrist");
         compare::<6>(&compiler, "robots/puma560");
     }
 }

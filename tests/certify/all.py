@@ -27,7 +27,7 @@ from pathlib import Path
 import arms
 
 ROOT = Path(__file__).resolve().parents[2]
-CHECKER = ROOT / "rne-certify/checker/check_c.py"
+CHECKER = ROOT / "firmware/certify/checker/check_c.py"
 FUNCTIONS = "inverse_dynamics,gravity_torques"
 SMALL = ["robots/scara_cobra600.yaml", "docs/satellite.yaml", "benches/trees/loops/five_bar.yaml",
          "benches/trees/loops/floating_four_bar_leg.yaml"]

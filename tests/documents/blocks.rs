@@ -41,12 +41,12 @@ fn block(name: &str) -> String {
         "control" => control(),
         "two_hands" => two_hands(),
         "ros2_controller" => {
-            format!("```cpp\n{}```\n", read(&root().join("doors/capi/examples/ros2_control/gravity_controller.cpp")))
+            format!("```cpp\n{}```\n", read(&root().join("doors/c/examples/ros2_control/gravity_controller.cpp")))
         }
-        "controller" => format!("```c\n{}```\n", read(&root().join("doors/capi/examples/controller.c"))),
-        "torque" => format!("```rust\n{}```\n", read(&root().join("rne-cli/src/commands/firmware/main.rs"))),
+        "controller" => format!("```c\n{}```\n", read(&root().join("doors/c/examples/controller.c"))),
+        "torque" => format!("```rust\n{}```\n", read(&root().join("cli/src/commands/firmware/main.rs"))),
         "config" => {
-            let config = read(&root().join("rne-cli/src/commands/firmware/config.toml"));
+            let config = read(&root().join("cli/src/commands/firmware/config.toml"));
             let lines = config.lines().filter(|line| !line.trim_start().starts_with('#'));
             lines.fold("```toml\n".to_owned(), |text, line| text + line + "\n") + "```\n"
         }

@@ -2,7 +2,7 @@
 //!
 //! With `RNE_WRITE_DOCUMENTS` set, the blocks are written anew. What is measured (`<!-- begin: measured NAME … -->`)
 //! stays as it is: `cargo xtask performance` writes it. What a command prints (`<!-- begin: output … -->`) is for
-//! `rne-cli/tests/cli/documents.rs`, which runs it. In the stubs of Python the markers are comments. And what the
+//! `cli/tests/cli/documents.rs`, which runs it. In the stubs of Python the markers are comments. And what the
 //! documents lead to is there: links, files, tests.
 
 mod blocks;

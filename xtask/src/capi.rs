@@ -84,7 +84,7 @@ pub(crate) fn built(prefix: &Path) -> Result<PathBuf> {
     let prefix = prefix.canonicalize()?;
     let build = cmd!(
         shell,
-        "cargo build --quiet --profile {profile} --locked --manifest-path doors/capi/Cargo.toml --target-dir {folder}"
+        "cargo build --quiet --profile {profile} --locked --manifest-path doors/c/Cargo.toml --target-dir {folder}"
     );
     machine::without_flags(build).quiet().run()?;
     lay_out(&folder.join(built), &prefix)?;
@@ -105,16 +105,16 @@ fn lay_out(built: &Path, prefix: &Path) -> Result<()> {
         Ok(())
     };
     let shared = shared();
-    copy(&machine::root().join("doors/capi/include/rne.h"), "include/rne.h")?;
+    copy(&machine::root().join("doors/c/include/rne.h"), "include/rne.h")?;
     copy(&built.join(&shared), &format!("lib/{shared}"))?;
     copy(&built.join("librne.a"), "lib/librne.a")?;
-    let manifest = machine::read("doors/capi/Cargo.toml")?;
+    let manifest = machine::read("doors/c/Cargo.toml")?;
     let version = manifest.lines().find_map(|line| line.strip_prefix("version = \"")?.strip_suffix('"'));
-    let version = version.context("doors/capi/Cargo.toml has no version")?;
+    let version = version.context("doors/c/Cargo.toml has no version")?;
     for (folder, file) in
         [("lib/pkgconfig", "rne.pc"), ("lib/cmake/rne", "rneConfig.cmake"), ("lib/cmake/rne", "rneConfigVersion.cmake")]
     {
-        let text = machine::read(&format!("doors/capi/cmake/{file}.in"))?;
+        let text = machine::read(&format!("doors/c/cmake/{file}.in"))?;
         // CMake separates by semicolons
         let system = if file == "rne.pc" { SYSTEM.to_owned() } else { SYSTEM.replace(' ', ";") };
         let text = text.replace("@VERSION@", version).replace("@SHARED@", &shared).replace("@SYSTEM@", &system);
@@ -145,12 +145,12 @@ fn holds(shell: &Shell, prefix: &Path, programs: &Path) -> Result<bool> {
     let include = prefix.join("include");
     let system: Vec<&str> = SYSTEM.split(' ').collect();
     let sources = [
-        ("doors/capi/examples/torque.c", "cc", "-std=c11"),
-        ("doors/capi/examples/torque.cpp", "c++", "-std=c++17"),
-        ("doors/capi/examples/controller.c", "cc", "-std=c11"),
-        ("doors/capi/tests/threads.c", "cc", "-std=c11"),
-        ("doors/capi/tests/fork.c", "cc", "-std=c11"),
-        ("doors/capi/tests/ros2_control.cpp", "c++", "-std=c++17"),
+        ("doors/c/examples/torque.c", "cc", "-std=c11"),
+        ("doors/c/examples/torque.cpp", "c++", "-std=c++17"),
+        ("doors/c/examples/controller.c", "cc", "-std=c11"),
+        ("doors/c/tests/threads.c", "cc", "-std=c11"),
+        ("doors/c/tests/fork.c", "cc", "-std=c11"),
+        ("doors/c/tests/ros2_control.cpp", "c++", "-std=c++17"),
     ];
     let sanitized = programs.join("sanitized");
     fs::create_dir_all(&sanitized)?;
@@ -176,7 +176,7 @@ fn holds(shell: &Shell, prefix: &Path, programs: &Path) -> Result<bool> {
     }
     // the static one
     let program = programs.join("torque_static");
-    let source = "doors/capi/examples/torque.c";
+    let source = "doors/c/examples/torque.c";
     cmd!(shell, "cc -std=c11 {STRICT...} -I{include} {source} {archive} {system...} -o {program}").quiet().run()?;
     Ok(holds & runs(shell, &program, false)?)
 }
@@ -238,7 +238,7 @@ fn cmake(shell: &Shell, prefix: &Path, programs: &Path) -> Result<bool> {
     }
     let build = programs.join("cmake");
     let found = format!("-DCMAKE_PREFIX_PATH={}", prefix.display());
-    cmd!(shell, "cmake -S doors/capi/examples -B {build} {found}").quiet().ignore_stdout().run()?;
+    cmd!(shell, "cmake -S doors/c/examples -B {build} {found}").quiet().ignore_stdout().run()?;
     cmd!(shell, "cmake --build {build}").quiet().ignore_stdout().run()?;
     let tested = cmd!(shell, "ctest --test-dir {build} --output-on-failure").quiet().ignore_status().output()?;
     let holds = tested.status.success();

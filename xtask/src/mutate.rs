@@ -6,9 +6,9 @@
 //!
 //! ```sh
 //! cargo install cargo-mutants --locked
-//! cargo mutants --file rne-codegen/src/ir/graph.rs        # one file, with the tests that compare and prove
+//! cargo mutants --file compiler/codegen/src/ir/graph.rs        # one file, with the tests that compare and prove
 //! cargo mutants --in-diff <(git diff main)                # what a change has touched
-//! cargo mutants --list --file 'rne-codegen/src/**/*.rs'   # which there are
+//! cargo mutants --list --file 'compiler/codegen/src/**/*.rs'   # which there are
 //! ```
 
 use std::collections::BTreeSet;
@@ -29,7 +29,7 @@ use crate::mutants::{self, Check, Mutant};
 ///
 /// The mutants are those of xtask/mutants.yaml; docs/mutations.md is what this prints. A mutant of the reduced form
 /// takes some ten to thirty seconds, another one some minutes. Plain mutants (an operator, a comparison) are the
-/// business of cargo-mutants: `cargo mutants --file rne-codegen/src/ir/graph.rs`, set up in .cargo/mutants.toml.
+/// business of cargo-mutants: `cargo mutants --file compiler/codegen/src/ir/graph.rs`, set up in .cargo/mutants.toml.
 #[derive(Args)]
 #[command(after_help = "\
 Exit status: 1 when a mutant survives, 2 when a mutant's text is not in the source any more.

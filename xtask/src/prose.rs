@@ -78,72 +78,72 @@ const DOCUMENTS: &[&str] = &[
 const SOURCES: &[&str] = &[
     "src",
     "compiler/functions/src",
-    "rne-cli/src",
-    "rne-codegen/src",
-    "rne-convert/src",
-    "rne-diagnose/src",
-    "rne-emit/src",
-    "rne-gpu/src",
-    "rne-identify/src",
-    "rne-inspection/src",
-    "rne-logs/src",
-    "rne-machine/src",
+    "cli/src",
+    "compiler/codegen/src",
+    "import/src",
+    "teaching/diagnose/src",
+    "compiler/emit/src",
+    "doors/gpu/src",
+    "logs/identify/src",
+    "teaching/inspection/src",
+    "logs/read/src",
+    "compiler/machine/src",
     "rne-macro/src",
-    "rne-model/src",
-    "rne-plot/src",
-    "rne-report/src",
+    "compiler/model/src",
+    "teaching/plot/src",
+    "teaching/report/src",
     "rne-runtime/src",
-    "rne-search/src",
-    "rne-symbolic/src",
-    "rne-watch/src",
-    "rne-certify/src",
+    "compiler/search/src",
+    "teaching/symbolic/src",
+    "logs/watch/src",
+    "firmware/certify/src",
     "xtask/src",
 ];
 
 /// Sources in these folders that are emitted, or quote what is: their bytes are frozen.
 const EMITTED: &[&str] =
-    &["rne-emit/src/own_tests/rust.rs", "rne-emit/src/sin_cos_f32.rs", "rne-emit/src/sin_cos_f64.rs"];
+    &["compiler/emit/src/own_tests/rust.rs", "compiler/emit/src/sin_cos_f32.rs", "compiler/emit/src/sin_cos_f64.rs"];
 
 /// Folders of libraries, whose strings name no option and no command of the command line: users of Python, C and SQL
 /// read them too.
 const LIBRARIES: &[&str] = &[
     "compiler/functions/src",
-    "rne-codegen/src",
-    "rne-convert/src",
-    "rne-diagnose/src",
-    "rne-emit/src",
-    "rne-gpu/src",
-    "rne-identify/src",
-    "rne-inspection/src",
-    "rne-logs/src",
-    "rne-machine/src",
-    "rne-model/src",
-    "rne-plot/src",
-    "rne-report/src",
+    "compiler/codegen/src",
+    "import/src",
+    "teaching/diagnose/src",
+    "compiler/emit/src",
+    "doors/gpu/src",
+    "logs/identify/src",
+    "teaching/inspection/src",
+    "logs/read/src",
+    "compiler/machine/src",
+    "compiler/model/src",
+    "teaching/plot/src",
+    "teaching/report/src",
     "rne-runtime/src",
-    "rne-search/src",
-    "rne-symbolic/src",
-    "rne-watch/src",
-    "rne-certify/src",
+    "compiler/search/src",
+    "teaching/symbolic/src",
+    "logs/watch/src",
+    "firmware/certify/src",
 ];
 
 /// Folders of sources whose strings are messages: every rule that may hold anywhere is searched in them.
 const MESSAGES: &[&str] = &[
-    "rne-cli/src",
-    "rne-convert/src",
-    "rne-diagnose/src",
-    "rne-gpu/src",
-    "rne-identify/src",
-    "rne-logs/src",
+    "cli/src",
+    "import/src",
+    "teaching/diagnose/src",
+    "doors/gpu/src",
+    "logs/identify/src",
+    "logs/read/src",
     "rne-macro/src",
-    "rne-model/src",
-    "rne-search/src",
-    "rne-watch/src",
-    "rne-certify/src",
+    "compiler/model/src",
+    "compiler/search/src",
+    "logs/watch/src",
+    "firmware/certify/src",
 ];
 
 /// Folders of sources whose helps are checked.
-const HELPS: &[&str] = &["rne-cli/src"];
+const HELPS: &[&str] = &["cli/src"];
 
 /// A text without breaks of lines, and where its lines begin.
 #[derive(Default)]

@@ -63,7 +63,7 @@ impl Surface {
             keys(&format!("json {command} "), &value, &mut names);
         }
         of_python(&machine::read("doors/python/package/rne/__init__.pyi")?, &mut names)?;
-        for found in Regex::new(r"\b(rne|RNE)_\w+")?.find_iter(&machine::read("doors/capi/include/rne.h")?) {
+        for found in Regex::new(r"\b(rne|RNE)_\w+")?.find_iter(&machine::read("doors/c/include/rne.h")?) {
             names.insert(format!("c {}", found.as_str()));
         }
         if self.update {

@@ -17,7 +17,7 @@ use rne_datafusion::{Robots, register};
 use rne_identify::{Options, Structure};
 
 /// Two bodies in three dimensions, with friction.
-const ARM: &str = include_str!("../../../rne-identify/tests/two.yaml");
+const ARM: &str = include_str!("../../../logs/identify/tests/two.yaml");
 const JOINTS: usize = 2;
 
 /// Three joints and a finger that follows another.

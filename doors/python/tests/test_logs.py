@@ -16,7 +16,7 @@ import rne
 # what is warned of has a test of its own
 pytestmark = pytest.mark.filterwarnings("ignore::UserWarning")
 
-LOGS = Path(__file__).parents[3] / "rne-identify/tests/logs"
+LOGS = Path(__file__).parents[3] / "logs/identify/tests/logs"
 ARMS = ["ur10", "panda"]
 
 
@@ -142,7 +142,7 @@ def test_a_written_table_is_read_everywhere(program, tmp_path):
 
 
 def test_bags_are_logs():
-    log = rne.log(Path(__file__).parents[3] / "rne-logs/tests/data/ur10.db3")
+    log = rne.log(Path(__file__).parents[3] / "logs/read/tests/data/ur10.db3")
     assert len(log.joints) == 6 and log.q.shape == log.tau.shape == (len(log.time), 6)
 
 

@@ -9,7 +9,7 @@ import pytest
 
 import rne
 
-MODELS = Path(__file__).parents[3] / "rne-convert/tests/mjcf"
+MODELS = Path(__file__).parents[3] / "import/tests/mjcf"
 
 
 def states(arm):

@@ -48,7 +48,7 @@ pub(crate) fn examine(workspace: &Path, sample: bool, expected: &Log) -> Result<
         sources.push(write_source(workspace, &folder, robot, has_all)?);
     }
     fs::write(folder.join("cases.c"), cases(&sources)?)?;
-    let board_folder = workspace.join("../rne-certify/board");
+    let board_folder = workspace.join("certify/board");
     let flags = Core::M4.flags();
     let include = format!("-I{}", board_folder.display());
     let mut files: Vec<String> = sources.iter().map(|source| format!("{}.c", source.prefix)).collect();

@@ -1,0 +1,251 @@
+//! Motions in a file, filtered or as they were recorded: CSV, Parquet or an array of numpy.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+use std::path::Path;
+
+use indicatif::ProgressBar;
+#[cfg(feature = "parquet")]
+use rne_logs::MotionParquet;
+use rne_logs::{Heading, Layout, Log, LogError, Motion, Npy, Quantity, RecordedState, Survey};
+
+use crate::files::file_name::{self, Format};
+use crate::files::reading;
+use crate::outcome::Failure;
+use crate::palette::TYPED;
+use crate::render::layout::cell;
+
+/// The format of a file of motions, by its name.
+pub(crate) fn format(path: &Path, is_raw: bool) -> Result<Format, Failure> {
+    if !is_raw && file_name::format(path, &[Format::Npy]).is_ok() {
+        return Err(Failure::usage(format_args!(
+            "{} is an array of numpy, which {TYPED}rne log{TYPED:#} writes with {TYPED}--raw{TYPED:#} only; name a \
+             file that ends with {TYPED}.csv{TYPED:#} or {TYPED}.parquet{TYPED:#}",
+            path.display()
+        )));
+    }
+    let written = [Format::Csv, Format::Parquet, Format::Npy];
+    let format = file_name::format(path, if is_raw { &written } else { &written[..2] })?;
+    if format == Format::Parquet && cfg!(not(feature = "parquet")) {
+        return Err(Failure::input(format_args!(
+            "{}: this build of rne does not write Parquet; `cargo install --path cli --features full` in a clone \
+             of rne builds one that does",
+            path.display()
+        )));
+    }
+    Ok(format)
+}
+
+/// A log whose motions are written, with the text that they have in the column of [`write`].
+pub(crate) struct Written<'a> {
+    pub(crate) log: &'a Log,
+    pub(crate) survey: &'a Survey,
+    pub(crate) label: &'a str,
+}
+
+/// How motions are written.
+#[derive(Clone, Copy)]
+pub(crate) struct Manner<'a> {
+    pub(crate) format: Format,
+    /// States as they were recorded, not filtered ones.
+    pub(crate) is_raw: bool,
+    /// Columns have the order of the joints of a robot: they are `q1`, `q2`, … as in other commands.
+    pub(crate) is_by_order: bool,
+    /// The name of a column that says of which log a state is.
+    pub(crate) label: Option<&'a str>,
+}
+
+impl Manner<'_> {
+    /// The names of the columns of joints.
+    pub(crate) fn heading<'l>(&self, layout: &'l Layout) -> Heading<'l> {
+        if self.is_by_order { Heading::numbered(&layout.joints) } else { Heading::of(&layout.joints) }
+    }
+
+    /// The quantities that are written.
+    pub(crate) fn quantities(&self, layout: &Layout) -> Vec<Quantity> {
+        let all = [
+            (Quantity::Position, true),
+            (Quantity::Velocity, !self.is_raw || layout.has_velocities),
+            (Quantity::Acceleration, !self.is_raw),
+            (Quantity::Effort, layout.has_efforts),
+        ];
+        all.into_iter().filter(|(_, is_there)| *is_there).map(|(quantity, _)| quantity).collect()
+    }
+
+    /// Whether rows of CSV begin with an absolute time stamp: where the times of a log are absolute, states as they
+    /// were recorded keep their stamps, as in Parquet.
+    fn is_stamped(&self, layout: &Layout) -> bool {
+        self.is_raw && layout.origin != 0
+    }
+
+    /// The first line of a table of text.
+    fn header(&self, layout: &Layout) -> String {
+        let heading = self.heading(layout);
+        let mut header = if self.is_stamped(layout) { "timestamp_ns,t" } else { "t" }.to_owned();
+        for column in self.quantities(layout).into_iter().flat_map(|quantity| heading.columns(quantity)) {
+            let _ = write!(header, ",{column}");
+        }
+        header += ",run";
+        if let Some(label) = self.label {
+            let _ = write!(header, ",{}", cell(label));
+        }
+        header
+    }
+}
+
+/// Reason for which writing stopped.
+pub(crate) enum Stopped {
+    Unreadable(LogError),
+    Unwritable(io::Error),
+}
+
+/// Writes the motions of logs; the result is the number of their states.
+pub(crate) fn write(
+    logs: &[Written<'_>],
+    manner: Manner<'_>,
+    bar: &ProgressBar,
+    out: &mut (impl Write + Send),
+) -> Result<u64, Stopped> {
+    let Some(first) = logs.first() else { return Ok(0) };
+    let expected = logs.iter().map(|log| log.survey.counts.states).sum();
+    let mut table = Table::begin(manner, out, first.log.layout(), expected).map_err(Stopped::Unwritable)?;
+    let mut states = 0;
+    for Written { log, survey, label } in logs {
+        if manner.is_raw {
+            let mut recorded = log.recorded(survey).map_err(Stopped::Unreadable)?;
+            while let Some(state) = recorded.read().map_err(Stopped::Unreadable)? {
+                table.push_recorded(log.layout(), &state, label).map_err(Stopped::Unwritable)?;
+                states += 1;
+                if states % 4096 == 0 {
+                    reading::show(bar, recorded.progress());
+                }
+            }
+            continue;
+        }
+        let mut motions = log.motions(survey).map_err(Stopped::Unreadable)?;
+        while let Some(piece) = motions.next() {
+            let piece = piece.map_err(Stopped::Unreadable)?;
+            reading::show(bar, motions.progress());
+            table.push(log.layout(), piece.run, &piece.motion, label).map_err(Stopped::Unwritable)?;
+            states += piece.motion.len() as u64;
+        }
+    }
+    table.finish(states == expected).map_err(Stopped::Unwritable)?;
+    Ok(states)
+}
+
+/// A table that is written.
+enum Table<W: Write + Send> {
+    Csv(Csv<W>),
+    /// An array whose header, with the number of states, is written.
+    Npy(W),
+    #[cfg(feature = "parquet")]
+    Parquet(Box<MotionParquet<W>>),
+}
+
+/// A table of text.
+struct Csv<W> {
+    out: W,
+    /// The first line, until it is written: a file without states has none.
+    header: String,
+    /// Whether there is a column of labels.
+    has_label: bool,
+    is_stamped: bool,
+    line: String,
+}
+
+impl<W: Write> Csv<W> {
+    /// Writes a row.
+    fn row(
+        &mut self,
+        stamp: i64,
+        time: f64,
+        numbers: impl Iterator<Item = f64>,
+        run: u64,
+        label: &str,
+    ) -> io::Result<()> {
+        if !self.header.is_empty() {
+            writeln!(self.out, "{}", self.header)?;
+            self.header.clear();
+        }
+        let line = &mut self.line;
+        line.clear();
+        if self.is_stamped {
+            let _ = write!(line, "{stamp},");
+        }
+        let _ = write!(line, "{time}");
+        for number in numbers {
+            let _ = write!(line, ",{number}");
+        }
+        let _ = write!(line, ",{}", run + 1);
+        if self.has_label {
+            let _ = write!(line, ",{}", cell(label));
+        }
+        writeln!(self.out, "{line}")
+    }
+}
+
+impl<W: Write + Send> Table<W> {
+    fn begin(manner: Manner<'_>, mut out: W, layout: &Layout, states: u64) -> io::Result<Self> {
+        #[cfg(feature = "parquet")]
+        if manner.format == Format::Parquet {
+            let begin = if manner.is_raw { MotionParquet::of_recorded } else { MotionParquet::new };
+            return Ok(Self::Parquet(Box::new(begin(out, layout, manner.label)?)));
+        }
+        if manner.format == Format::Npy {
+            let columns = 1 + manner.quantities(layout).len() * layout.joints.len();
+            out.write_all(&Npy::header(states, columns as u64))?;
+            return Ok(Self::Npy(out));
+        }
+        debug_assert!(manner.format == Format::Csv);
+        Ok(Self::Csv(Csv {
+            out,
+            header: manner.header(layout),
+            has_label: manner.label.is_some(),
+            is_stamped: manner.is_stamped(layout),
+            line: String::new(),
+        }))
+    }
+
+    /// Appends filtered states. An array has none.
+    fn push(&mut self, layout: &Layout, run: u64, motion: &Motion, label: &str) -> io::Result<()> {
+        let table = match self {
+            Self::Csv(table) => table,
+            Self::Npy(_) => return Err(io::Error::other("an array has only states as they were recorded")),
+            #[cfg(feature = "parquet")]
+            Self::Parquet(table) => return table.push(layout, run, motion, label),
+        };
+        let _ = layout;
+        let Motion { time, q, qd, qdd, tau, .. } = motion;
+        for (i, time) in time.iter().enumerate() {
+            table.row(0, *time, [q, qd, qdd, tau].into_iter().flatten().map(|list| list[i]), run, label)?;
+        }
+        Ok(())
+    }
+
+    /// Appends a state as it was recorded.
+    fn push_recorded(&mut self, layout: &Layout, state: &RecordedState<'_>, label: &str) -> io::Result<()> {
+        let RecordedState { run, stamp, time, q, qd, tau } = *state;
+        let numbers = [q, qd, tau].into_iter().flatten().copied();
+        let _ = layout;
+        match self {
+            Self::Csv(table) => table.row(stamp, time, numbers, run, label),
+            Self::Npy(out) => {
+                std::iter::once(time).chain(numbers).try_for_each(|number| out.write_all(&number.to_le_bytes()))
+            }
+            #[cfg(feature = "parquet")]
+            Self::Parquet(table) => table.push_recorded(layout, state, label),
+        }
+    }
+
+    /// Ends the table. `is_whole` says whether it has the states that were counted before.
+    fn finish(self, is_whole: bool) -> io::Result<()> {
+        match self {
+            Self::Csv(mut table) => table.out.flush(),
+            Self::Npy(_) if !is_whole => Err(io::Error::other("the log changed while it was read")),
+            Self::Npy(mut out) => out.flush(),
+            #[cfg(feature = "parquet")]
+            Self::Parquet(table) => table.finish(),
+        }
+    }
+}
