@@ -64,7 +64,7 @@ pub(crate) struct Given {
     /// Rotation of the base, 9 numbers [default: 1]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) base_rotation: Option<List>,
-    /// Of the option of the robot.
+    /// Payload, which the options of the robot have.
     #[arg(skip)]
     pub(crate) payload: Option<List>,
 }
