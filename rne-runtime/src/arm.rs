@@ -5,17 +5,17 @@ use core::marker::PhantomData;
 
 use rne_model::{Contact, ContactKind, FixedFrame, Link, Model, Motor};
 
-use crate::at_tip::Tip;
-use crate::coordinates::Joints;
 use crate::definition::Definition;
-use crate::floating_base::BASE;
-use crate::link_frame::{Chain, LinkFrame, Table};
-use crate::link_state::JointMotions;
-use crate::mechanism::Mechanism;
-use crate::mount::Mount;
-use crate::per_joint::Known;
-use crate::spin::Spins;
-use crate::trace::{self, LinkTrace, Trace};
+use crate::definition::coordinates::Joints;
+use crate::definition::floating_base::BASE;
+use crate::definition::per_joint::Known;
+use crate::seven_steps::at_tip::Tip;
+use crate::seven_steps::link_frame::{Chain, LinkFrame, Table};
+use crate::seven_steps::link_state::JointMotions;
+use crate::seven_steps::mechanism::Mechanism;
+use crate::seven_steps::mount::Mount;
+use crate::seven_steps::spin::Spins;
+use crate::seven_steps::trace::{self, LinkTrace, Trace};
 use crate::{BaseMotion, Constant, Scalar, Wrench};
 
 /// A robot at run time: the seven steps as loops over links. It answers every question that generated code answers, and

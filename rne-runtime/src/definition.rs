@@ -1,13 +1,39 @@
 //! The functions of a robot by their definitions: the seven steps on numbers, and everything else derived from them.
 //! They stand once, for [`Arm`](crate::Arm) with its arrays and for `DynArm` with its lists.
 
+pub(crate) mod actuation;
+#[cfg(all(feature = "arm", feature = "std"))]
+pub(crate) mod base_parameters;
+pub(crate) mod centre_of_mass;
+#[cfg(all(feature = "arm", feature = "std"))]
+pub(crate) mod closed_loops;
+pub(crate) mod contact_dynamics;
+pub(crate) mod coordinates;
+#[cfg(all(feature = "arm", feature = "std"))]
+pub(crate) mod couplings;
+pub(crate) mod derivatives;
+pub(crate) mod energy;
+pub(crate) mod floating_base;
+pub(crate) mod floating_change;
+pub(crate) mod floating_euler_step;
+pub(crate) mod floating_kinematics;
+pub(crate) mod forward_dynamics;
+pub(crate) mod joint_wrenches;
+pub(crate) mod kinematics;
+pub(crate) mod mass_matrix;
+pub(crate) mod momentum;
+#[cfg(all(feature = "arm", feature = "std"))]
+pub(crate) mod motors;
+pub(crate) mod per_joint;
+pub(crate) mod regressor;
+
 use rne_model::{Contact, FixedFrame};
 
-use crate::at_tip::AtTip;
-use crate::coordinates::Coordinates;
-use crate::link_state::JointMotions;
-use crate::mechanism::Mechanism;
-use crate::per_joint::{PerJoint, Square};
+use crate::definition::coordinates::Coordinates;
+use crate::definition::per_joint::{PerJoint, Square};
+use crate::seven_steps::at_tip::AtTip;
+use crate::seven_steps::link_state::JointMotions;
+use crate::seven_steps::mechanism::Mechanism;
 use crate::{BaseMotion, Constant, Dual, Scalar, Wrench};
 
 /// A robot, from its coordinates to its joints. Arguments and results have one element for each coordinate.

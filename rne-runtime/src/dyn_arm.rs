@@ -2,19 +2,19 @@
 
 use rne_model::{Contact, Convention, FixedFrame, Joint, Link, Model, Motor, Robot, Row, Transform};
 
-use crate::at_tip::{AtTip, Tip};
-use crate::closed_loops::Loops;
-use crate::coordinates::Coordinates as _;
-use crate::couplings::Couplings;
 use crate::definition::Definition;
-use crate::floating_base::BASE;
-use crate::link_frame::{Chain, LinkFrame, Table};
-use crate::link_state::JointMotions;
-use crate::mechanism::Mechanism;
-use crate::motors::Motors;
-use crate::mount::Mount;
-use crate::per_joint::Counted;
-use crate::trace::{self, LinkTrace, turn_to_base, turn_to_lecture};
+use crate::definition::closed_loops::Loops;
+use crate::definition::coordinates::Coordinates as _;
+use crate::definition::couplings::Couplings;
+use crate::definition::floating_base::BASE;
+use crate::definition::motors::Motors;
+use crate::definition::per_joint::Counted;
+use crate::seven_steps::at_tip::{AtTip, Tip};
+use crate::seven_steps::link_frame::{Chain, LinkFrame, Table};
+use crate::seven_steps::link_state::JointMotions;
+use crate::seven_steps::mechanism::Mechanism;
+use crate::seven_steps::mount::Mount;
+use crate::seven_steps::trace::{self, LinkTrace, turn_to_base, turn_to_lecture};
 use crate::{BaseMotion, Constant, Payload, Scalar, Wrench, WrongLength};
 
 /// [`Arm`](crate::Arm) for a number of joints known at run time: the same recursion, the same bits, with slices for

@@ -2,7 +2,7 @@
 
 use rne_functions::Function;
 
-use crate::numbers::Numbers;
+use crate::values::numbers::Numbers;
 use crate::{BaseMotion, BaseTwist, Constant, DynArm, Payload, Pose, Scalar, Wrench, WrongLength};
 
 macro_rules! inputs {

@@ -14,8 +14,8 @@
 //! ```
 //!
 //! Link i is the one that joint i moves, link p the one that carries joint i: its `parent`, or the base. In a chain p
-//! is i-1, and the lecture's r_{i-1} is the r_i of here, for it depends on where joint i is mounted: [`crate::mount`].
-//! What a kind of joint adds stands in [`crate::joint`]. The vectors of link i stand in the axes of form P: fixed to
+//! is i-1, and the lecture's r_{i-1} is the r_i of here, for it depends on where joint i is mounted: [`crate::seven_steps::mount`].
+//! What a kind of joint adds stands in [`crate::seven_steps::joint`]. The vectors of link i stand in the axes of form P: fixed to
 //! link i, z along joint i. The lecture writes the same vectors in axes fixed to link i-1: Rz(θ_i) leads there and
 //! leaves z elements, so τ, as they are.
 //!
@@ -24,12 +24,21 @@
 //!
 //! The order of the operations is part of the contract: generated code repeats it and is compared bit for bit.
 
+pub(crate) mod at_tip;
+pub(crate) mod joint;
+pub(crate) mod link_frame;
+pub(crate) mod link_state;
+pub(crate) mod mechanism;
+pub(crate) mod mount;
+pub(crate) mod spin;
+pub(crate) mod trace;
+
 use nalgebra::Vector3;
 
-use crate::at_tip::AtTip;
-use crate::joint::JointLaws;
-use crate::link_frame::{Chain, LinkFrame};
-use crate::link_state::{Carried, ForceMoment, Joint, JointMotions, LinkLoad, LinkMotion};
+use crate::seven_steps::at_tip::AtTip;
+use crate::seven_steps::joint::JointLaws;
+use crate::seven_steps::link_frame::{Chain, LinkFrame};
+use crate::seven_steps::link_state::{Carried, ForceMoment, Joint, JointMotions, LinkLoad, LinkMotion};
 use crate::{BaseMotion, Constant, Scalar};
 
 /// Step 1: angular velocity.
@@ -232,9 +241,9 @@ mod tests {
     use rne_model::{Angle, Convention, Dh, Inertia, JointKind, Link, Row, Transform};
 
     use super::*;
-    use crate::link_frame::Table;
-    use crate::mount::Mount;
-    use crate::spin::Spins;
+    use crate::seven_steps::link_frame::Table;
+    use crate::seven_steps::mount::Mount;
+    use crate::seven_steps::spin::Spins;
 
     fn row(kind: JointKind, [a, d, alpha, mass]: [f64; 4]) -> Row {
         let inertia = Inertia { xx: 0.2, yy: 0.3, zz: 0.25, xy: 0.01, xz: -0.02, yz: 0.03 };

@@ -1,6 +1,10 @@
 //! Steps of integrators and their derivatives, written once: over arrays where the number of joints is known, and over
 //! lists where it is not. They allocate nothing over arrays, and no branch depends on a number.
 
+pub(crate) mod floating_integrator;
+pub(crate) mod floating_runge_kutta;
+pub(crate) mod runge_kutta;
+
 use crate::Scalar;
 
 /// Numbers beside each other: an array or a list.

@@ -10,8 +10,8 @@ use serde::Deserialize;
 use xshell::{Shell, cmd};
 
 use crate::machine::{self, Missing};
-use crate::python::Place;
-use crate::{Verdict, capi};
+use crate::packages::python::Place;
+use crate::{Verdict, packages::capi};
 
 /// Gives hostile inputs to the command line, the Python package and the C library
 ///

@@ -6,7 +6,7 @@ use xshell::cmd;
 
 use crate::Verdict;
 use crate::machine::Missing;
-use crate::python::Place;
+use crate::packages::python::Place;
 
 /// Packages that the tests need.
 const PACKAGES: [&str; 4] = ["fmpy==0.3.32", "scipy>=1.11", "pytest>=8", "cmake>=3.20,<5"];

@@ -3,45 +3,29 @@
 //! Each subcommand is a module of this crate, and its `--help` says what it needs and what it takes. Nothing of this is
 //! published; `.ci/run` is the list of those that must succeed before a change lands.
 
-mod bare;
-mod batch_profile;
-mod capi;
 mod certificate;
 mod certify_all;
-mod counts;
 mod derivatives;
 mod doors;
-mod features;
-mod fleet;
 mod fmu;
 mod frozen;
 mod fuzz;
-mod gpu;
-mod growth;
-mod instructions;
-mod light;
-mod lines;
 mod loops;
 mod machine;
+mod measures;
 mod mutants;
 mod mutate;
-mod package;
+mod packages;
 mod page;
-mod performance;
-mod plain_build;
-mod playground;
-mod prose;
-mod python;
-mod ros2;
-mod sbom;
-mod single_calls;
-mod site;
 mod surface;
 mod tool;
-mod tree_counts;
 mod urdf;
 mod verify;
-mod wrapping;
+mod writing;
+
+use measures::{batch_profile, gpu, growth, instructions, performance, tree_counts};
+use packages::{bare, capi, features, fleet, light, package, playground, python, ros2, sbom, site};
+use writing::{lines, prose};
 
 use std::process::ExitCode;
 

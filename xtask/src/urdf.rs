@@ -8,7 +8,7 @@ use xshell::cmd;
 
 use crate::Verdict;
 use crate::machine::{self, Missing};
-use crate::python::Place;
+use crate::packages::python::Place;
 
 /// Packages that have whole robots beside those.
 const CORPORA: [&str; 3] = ["dm_control==1.0.50", "gymnasium==1.4.0", "robosuite-models==1.0.0"];

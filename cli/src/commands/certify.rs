@@ -1,5 +1,11 @@
 //! `rne certify`: what the code of an arm costs on a microcontroller, and how exact it is.
 
+pub(super) mod check;
+pub(super) mod code;
+pub(super) mod subject;
+pub(super) mod tools;
+pub(super) mod trace;
+
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -18,13 +24,13 @@ use rne_codegen::{Argument, Form, Function, Order, Program};
 use rne_emit::{CCode, Precision, Prefix};
 use rne_model::Robot;
 
-use crate::commands::certify_check::check;
-use crate::commands::certify_code::{Code, build, emulate};
-use crate::commands::certify_subject::Subject;
-use crate::commands::certify_tools::{self, Tool};
+use crate::commands::certify::check::check;
+use crate::commands::certify::code::{Code, build, emulate};
+use crate::commands::certify::subject::Subject;
+use crate::commands::certify::tools::Tool;
+use crate::commands::emit::c::{self, Request};
 use crate::commands::emit::{self, Real};
-use crate::commands::emit_c::{self, Request};
-use crate::commands::{certify_trace, toolchain};
+use crate::commands::toolchain;
 use crate::files::chosen_arm::Rotors;
 use crate::files::input_file::is_stream;
 use crate::files::output_file::{self, Existing, is_standard_output};
@@ -191,7 +197,7 @@ impl Arguments {
         };
         let mut subjects: Vec<Subject> = programs.iter().map(subject).collect();
         if self.friction {
-            let friction = emit_c::friction(&self.file, robot)?;
+            let friction = c::friction(&self.file, robot)?;
             subjects.push(Subject::Joints(JointFunction::Friction(friction.clone())));
             subjects.push(Subject::Joints(JointFunction::FrictionDerivatives(friction)));
         }
@@ -224,7 +230,7 @@ impl Arguments {
             tests: self.tests,
             ascii: self.ascii,
         };
-        emit_c::c_code(&request, robot, programs)
+        c::c_code(&request, robot, programs)
     }
 }
 
@@ -316,7 +322,7 @@ fn fits_together(arguments: &Arguments) -> Result<(), Failure> {
         )));
     }
     if arguments.evidence.is_some() {
-        certify_trace::check_options(arguments, &arguments.programs())?;
+        trace::check_options(arguments, &arguments.programs())?;
     }
     if !arguments.observer {
         return Ok(());
@@ -378,12 +384,12 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
     let call = |subject: &Subject| subject.call(prefix.as_str(), &robot);
     let calls: Vec<Call> = subjects.iter().map(call).collect::<Result<_, _>>()?;
     let (compiler, objdump, mut tools) = compiler(arguments)?;
-    let ([qemu, cppcheck], mut remarks) = certify_tools::versions(arguments.lang, &arguments.require)?;
+    let ([qemu, cppcheck], mut remarks) = tools::versions(arguments.lang, &arguments.require)?;
     remarks += &notes(arguments, &robot);
     let folder = tempfile::tempdir().map_err(Failure::input)?;
     let folder = folder.path();
     if let Some(evidence) = &arguments.evidence {
-        remarks += &certify_trace::write(arguments, evidence, &robot, &programs, &bytes)?;
+        remarks += &trace::write(arguments, evidence, &robot, &programs, &bytes)?;
     }
     let code = build(arguments, &robot, &programs, &compiler, &calls, &bytes, folder)?;
     tools.extend(qemu.iter().map(|version| ("qemu-system-arm".to_owned(), version.clone())));

@@ -1,5 +1,7 @@
 //! `rne emit`: code that compiles by itself.
 
+pub(super) mod c;
+
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,8 +12,8 @@ use rne_codegen::{Form, Function, Order, Program, Target, ordered_for_registers}
 use rne_emit::{Precision, Prefix};
 use rne_model::{FrameId, Robot};
 
-use crate::commands::emit_c::{ForGpu, Header, Request, c_code, for_gpu, header_beside};
-use crate::commands::golden;
+use crate::commands::emit::c::{ForGpu, Header, Request, c_code, for_gpu, header_beside};
+use crate::commands::eval::golden;
 use crate::files::chosen_arm::{Rotors, not_of_frames};
 use crate::files::file_name::{self, Format};
 use crate::files::output_file::{self, Existing, is_standard_output};

@@ -1,5 +1,8 @@
 //! `rne eval`: numbers from the runtime, which loops over the links and knows nothing of generated code.
 
+pub(super) mod compare;
+pub(super) mod golden;
+
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -11,8 +14,7 @@ use rne_diagnose::worksheet::{Quantity, Worksheet};
 use rne_model::Robot;
 use serde_json::{Value, json};
 
-use crate::commands::compare::{self, Manner};
-use crate::commands::golden;
+use crate::commands::eval::compare::Manner;
 use crate::files::chosen_arm::{AtFrame, ChosenArm, Setting};
 use crate::files::input_file::is_standard_input;
 use crate::files::plan_file;

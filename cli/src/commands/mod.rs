@@ -1,50 +1,32 @@
 //! The grammar of the command line: a module for each command, with its `Arguments` and the `run` that answers them.
 //!
-//! `tour` is what `rne` does without a command. `compare`, `closed_form`, `golden` and `residuals` are parts of
-//! commands, and `prediction_errors` is what `identify` and `watch` share.
+//! `tour` is what `rne` does without a command. Some modules are parts of commands: `closed_form` of `show`,
+//! `residuals` of `log`; `identify` and `watch` share `prediction_errors`.
 
 mod certify;
-mod certify_check;
-mod certify_code;
-mod certify_subject;
-mod certify_tools;
-mod certify_trace;
 mod check;
-mod closed_form;
-mod compare;
 mod completions;
 mod convert;
-mod diagnose;
 mod emit;
-mod emit_c;
 mod eval;
 mod example;
-mod excite;
-mod explain;
 mod export;
 mod firmware;
 mod fmu;
-mod golden;
-mod identify;
 mod import;
 mod list;
-mod log;
+mod logs;
 mod man;
-mod mark;
 mod new;
 mod ops;
-mod plot;
-mod prediction_errors;
-mod report;
-mod residuals;
 mod search;
-mod show;
+mod teaching;
 mod toolchain;
-mod tour;
-mod watch;
-mod worksheet;
 
 use clap::{Parser, Subcommand};
+
+use logs::{excite, identify, log, watch};
+use teaching::{diagnose, explain, mark, plot, report, show, tour, worksheet};
 
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{HELP_STYLES, TITLE, TYPED};

@@ -1,10 +1,10 @@
 //! From the text of a robot file to a validated robot, or to a report of everything that is wrong with it.
 
-use crate::decode::Context;
-use crate::diagnostic::{Problems, Report};
-use crate::identifier::{JointIdentifier, identifiers};
-use crate::schema::Takes;
-use crate::{Robot, document, schema, source, urdf};
+use crate::text::decode::Context;
+use crate::text::diagnostic::{Problems, Report};
+use crate::text::identifier::{JointIdentifier, identifiers};
+use crate::text::schema::Takes;
+use crate::{Robot, text::document, text::schema, text::source, text::urdf};
 
 /// A valid robot file: the robot, and what is remarkable about it.
 #[derive(Clone, Debug, PartialEq)]

@@ -37,6 +37,14 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "std"), no_std)]
 
+#[cfg(feature = "std")]
+mod lints;
+#[cfg(feature = "std")]
+mod parts;
+#[cfg(feature = "std")]
+mod text;
+#[cfg(feature = "std")]
+pub use text::document;
 mod angle;
 mod table;
 
@@ -46,139 +54,59 @@ pub use table::{
 };
 
 #[cfg(feature = "std")]
-mod body;
-#[cfg(feature = "std")]
 mod check;
-#[cfg(feature = "std")]
-mod closed_loop;
-#[cfg(feature = "std")]
-mod closure;
 mod contact;
-#[cfg(feature = "std")]
-mod contacts;
-#[cfg(feature = "std")]
-mod coupling;
-#[cfg(feature = "std")]
-mod data_file;
-#[cfg(feature = "std")]
-mod decode;
-#[cfg(feature = "std")]
-mod dependents;
-#[cfg(feature = "std")]
-mod diagnostic;
-#[cfg(feature = "std")]
-pub mod document;
-#[cfg(feature = "std")]
-mod double;
-#[cfg(feature = "std")]
-mod drive;
-#[cfg(feature = "std")]
-mod expression;
-#[cfg(feature = "std")]
-mod floating_base;
-#[cfg(feature = "std")]
-mod formula;
-#[cfg(feature = "std")]
-mod frame;
-#[cfg(feature = "std")]
-mod friction;
-#[cfg(feature = "std")]
-mod golden;
-#[cfg(feature = "std")]
-mod identifier;
-#[cfg(feature = "std")]
-mod inertia;
-#[cfg(feature = "std")]
-mod keys;
-#[cfg(feature = "std")]
-mod link;
-#[cfg(feature = "std")]
-mod lint;
 #[cfg(feature = "std")]
 mod loops;
 #[cfg(feature = "std")]
-mod matrix;
-#[cfg(feature = "std")]
-mod matter;
-#[cfg(feature = "std")]
-mod mirror;
-#[cfg(feature = "std")]
-mod mobility;
-#[cfg(feature = "std")]
-mod parallelogram;
-#[cfg(feature = "std")]
-mod pose;
-#[cfg(feature = "std")]
-mod quantity;
-#[cfg(feature = "std")]
-mod render;
-#[cfg(feature = "std")]
-mod resistance;
-#[cfg(feature = "std")]
 mod robot;
-#[cfg(feature = "std")]
-mod run_time;
-#[cfg(feature = "std")]
-mod schema;
-#[cfg(feature = "std")]
-mod source;
-#[cfg(feature = "std")]
-mod spelling;
-#[cfg(feature = "std")]
-mod tips;
-#[cfg(feature = "std")]
-mod tree;
-#[cfg(feature = "std")]
-mod unit;
-#[cfg(feature = "std")]
-mod urdf;
-#[cfg(feature = "std")]
-mod varying;
 
 #[cfg(feature = "std")]
-pub use body::{Bodies, Body, UnknownBody};
-#[cfg(feature = "std")]
 pub use check::{Checked, Reader};
-#[cfg(feature = "std")]
-pub use closed_loop::{ClosedLoop, ClosedLoops, Cut, Pivot};
 pub use contact::{Contact, ContactKind};
 #[cfg(feature = "std")]
-pub use coupling::Coupling;
+pub use loops::closed_loop::{ClosedLoop, ClosedLoops, Cut, Pivot};
 #[cfg(feature = "std")]
-pub use data_file::{MAX_BYTES, golden_of, misnamed_golden_of, open_file, plan_of, read_file, read_limited, robot_of};
+pub use loops::dependents::{Actuation, NoDependents, choose_dependents};
 #[cfg(feature = "std")]
-pub use dependents::{Actuation, NoDependents, choose_dependents};
+pub use parts::body::{Bodies, Body, UnknownBody};
 #[cfg(feature = "std")]
-pub use diagnostic::{Diagnostic, Remedy, Report, Severity};
+pub use parts::coupling::Coupling;
 #[cfg(feature = "std")]
-pub use double::{Double, decimal_digits};
+pub use parts::double::{Double, decimal_digits};
 #[cfg(feature = "std")]
-pub use drive::{Drive, Rotor};
+pub use parts::drive::{Drive, Rotor};
 #[cfg(feature = "std")]
-pub use expression::number;
+pub use parts::floating_base::FloatingBase;
 #[cfg(feature = "std")]
-pub use floating_base::FloatingBase;
+pub use parts::formula::Formula;
 #[cfg(feature = "std")]
-pub use formula::Formula;
+pub use parts::frame::{Frame, FrameId, UnknownFrame};
 #[cfg(feature = "std")]
-pub use frame::{Frame, FrameId, UnknownFrame};
+pub use parts::friction::{Friction, FrictionTransition, TransitionSign};
 #[cfg(feature = "std")]
-pub use friction::{Friction, FrictionTransition, TransitionSign};
+pub use parts::golden::{GoldenFile, GoldenState};
 #[cfg(feature = "std")]
-pub use golden::{GoldenFile, GoldenState};
+pub use parts::inertia::NegativeMoment;
 #[cfg(feature = "std")]
-pub use identifier::JointIdentifier;
-#[cfg(feature = "std")]
-pub use inertia::NegativeMoment;
-#[cfg(feature = "std")]
-pub use keys::{Key, Mapping, mappings};
+pub use parts::run_time::{Entry, InertiaElement, RunTime};
 #[cfg(feature = "std")]
 pub use robot::{InertiaReference, Joint, Limits, Robot};
 #[cfg(feature = "std")]
-pub use run_time::{Entry, InertiaElement, RunTime};
+pub use text::data_file::{
+    MAX_BYTES, golden_of, misnamed_golden_of, open_file, plan_of, read_file, read_limited, robot_of,
+};
 #[cfg(feature = "std")]
-pub use source::{exact_digits, half_of_last_digit, is_control, one_line, six_digits};
+pub use text::diagnostic::{Diagnostic, Remedy, Report, Severity};
 #[cfg(feature = "std")]
-pub use spelling::{did_you_mean, nearest_name, no_shipped_robot};
+pub use text::expression::number;
 #[cfg(feature = "std")]
-pub use urdf::is_urdf;
+pub use text::identifier::JointIdentifier;
+#[cfg(feature = "std")]
+pub use text::keys::{Key, Mapping, mappings};
+#[cfg(feature = "std")]
+pub use text::source::{exact_digits, half_of_last_digit, is_control, one_line, six_digits};
+#[cfg(feature = "std")]
+pub use text::spelling::{did_you_mean, nearest_name, no_shipped_robot};
+#[cfg(feature = "std")]
+pub use text::urdf::is_urdf;

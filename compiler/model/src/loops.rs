@@ -1,19 +1,26 @@
 //! The list `loops` of a robot file: parallelograms, which become couplings, and other closed loops.
 
+pub(crate) mod closed_loop;
+pub(crate) mod closure;
+pub(crate) mod dependents;
+pub(crate) mod matrix;
+pub(crate) mod mobility;
+pub(crate) mod parallelogram;
+
 use std::rc::Rc;
 
-use crate::closure::moving;
-use crate::coupling::named;
-use crate::decode::{Context, choice, read_mapping, text};
-use crate::diagnostic::Diagnostic;
-use crate::document::{Content, Node};
-use crate::frame::joint_names;
-use crate::mobility::{self, Count, Fault};
-use crate::pose::way;
-use crate::schema::{end_of_loop, text_of_one_line};
-use crate::source::{quoted, six_digits};
-use crate::tree::items;
-use crate::{ClosedLoop, ClosedLoops, Convention, Cut, Entry, FixedFrame, Joint, lint, parallelogram};
+use crate::loops::closure::moving;
+use crate::loops::mobility::{Count, Fault};
+use crate::parts::coupling::named;
+use crate::parts::frame::joint_names;
+use crate::parts::pose::way;
+use crate::parts::tree::items;
+use crate::text::decode::{Context, choice, read_mapping, text};
+use crate::text::diagnostic::Diagnostic;
+use crate::text::document::{Content, Node};
+use crate::text::schema::{end_of_loop, text_of_one_line};
+use crate::text::source::{quoted, six_digits};
+use crate::{ClosedLoop, ClosedLoops, Convention, Cut, Entry, FixedFrame, Joint, lints::lint};
 
 /// A loop of a file.
 struct Written {
@@ -46,7 +53,7 @@ pub(crate) fn loops(
             return cx.refuse(Diagnostic::error(item.head(), message).label("varies at run time"));
         }
         if it.is_parallelogram {
-            parallelogram(cx, item, it, convention, joints)?;
+            parallelogram_of(cx, item, it, convention, joints)?;
         }
     }
     let closed = written.into_iter().zip(items).enumerate().filter(|(_, (it, _))| !it.is_parallelogram);
@@ -133,7 +140,13 @@ fn dependent(cx: &Context, node: &Node, names: &[String]) -> Option<Vec<usize>> 
 }
 
 /// Gives the dependent joints of a parallelogram their couplings.
-fn parallelogram(cx: &Context, item: &Node, it: &Written, convention: Convention, joints: &mut [Joint]) -> Option<()> {
+fn parallelogram_of(
+    cx: &Context,
+    item: &Node,
+    it: &Written,
+    convention: Convention,
+    joints: &mut [Joint],
+) -> Option<()> {
     if it.cut != Cut::Revolute {
         let message = format!("a parallelogram has no {} joint; it must be `cut: revolute`", it.cut.name());
         return cx.refuse(at(item, "cut", message).label("must be `revolute`"));

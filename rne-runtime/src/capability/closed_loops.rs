@@ -3,7 +3,7 @@
 #[cfg(doc)]
 use super::{FloatingBase, TipWrenches};
 #[cfg(all(feature = "arm", feature = "std"))]
-use crate::at_tip::AtTip;
+use crate::seven_steps::at_tip::AtTip;
 
 capability! {
 /// A robot with closed loops: an ankle that two rods drive, a four-bar linkage, a delta robot.

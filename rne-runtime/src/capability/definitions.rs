@@ -21,13 +21,13 @@ macro_rules! capability {
         $(#[$doc])*
         #[must_use]
         #[allow(clippy::too_many_arguments)] // a state and what acts on it
-        fn $name<T: $crate::Scalar>(&self, $($arg: $crate::shapes::known!($kind)),*) -> $result;
+        fn $name<T: $crate::Scalar>(&self, $($arg: $crate::values::shapes::known!($kind)),*) -> $result;
     };
     (@method $(#[$doc:meta])* $name:ident($($arg:ident: $kind:ident),*) -> $result:ty, $this:ident $default:block) => {
         $(#[$doc])*
         #[must_use]
         #[allow(clippy::too_many_arguments)] // a state and what acts on it
-        fn $name<T: $crate::Scalar>(&self, $($arg: $crate::shapes::known!($kind)),*) -> $result {
+        fn $name<T: $crate::Scalar>(&self, $($arg: $crate::values::shapes::known!($kind)),*) -> $result {
             let $this = self;
             $default
         }
@@ -40,8 +40,8 @@ macro_rules! capability {
         impl<$(const $size: usize,)* S: $crate::Constant> $trait for $robot_type {
             $(fn $name<T: $crate::Scalar>(
                 &self,
-                $($arg: $crate::shapes::known!($kind)),*
-            ) -> $crate::shapes::known!($shape $(<$($of),*>)?) {
+                $($arg: $crate::values::shapes::known!($kind)),*
+            ) -> $crate::values::shapes::known!($shape $(<$($of),*>)?) {
                 let $robot = self.definition();
                 From::from($body)
             })*
@@ -61,8 +61,8 @@ macro_rules! capability {
             #[allow(clippy::type_complexity)] // as wide as the result is
             pub fn $name<T: $crate::Scalar>(
                 &self,
-                $($arg: $crate::shapes::counted!($kind)),*
-            ) -> Result<$crate::shapes::counted!($shape $(<$($of),*>)?), $crate::WrongLength> {
+                $($arg: $crate::values::shapes::counted!($kind)),*
+            ) -> Result<$crate::values::shapes::counted!($shape $(<$($of),*>)?), $crate::WrongLength> {
                 $(capability! { @checked self, $arg, $kind })*
                 let $robot = self.$definition();
                 Ok(From::from($body))
@@ -76,7 +76,7 @@ macro_rules! capability {
         $(#[$about])*
         pub trait $trait<$(const $size: usize),*> { $(
             capability! { @method
-                $(#[$doc])* $name($($arg: $kind),*) -> $crate::shapes::known!($shape $(<$($of),*>)?)
+                $(#[$doc])* $name($($arg: $kind),*) -> $crate::values::shapes::known!($shape $(<$($of),*>)?)
                     $(, $this $default)?
             }
         )* $($more)* }

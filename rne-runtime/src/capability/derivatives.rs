@@ -1,7 +1,7 @@
 //! How torques, accelerations and the Jacobian change with the state.
 
 #[cfg(feature = "arm")]
-use crate::at_tip::AtTip;
+use crate::seven_steps::at_tip::AtTip;
 
 capability! {
 /// How the torques change with the state.

@@ -1,8 +1,8 @@
 //! Places and directions.
 
+use crate::control::jacobian_derivatives::{derivatives_of_rows, rate_of_rows};
 #[cfg(feature = "arm")]
-use crate::coordinates::Coordinates as _;
-use crate::jacobian_derivatives::{derivatives_of_rows, rate_of_rows};
+use crate::definition::coordinates::Coordinates as _;
 use crate::{Pose, Scalar, Wrench};
 
 capability! {

@@ -1,8 +1,8 @@
 //! Mass, motion and energy.
 
-use crate::ldlt::{factor, inverse_of, solve};
+use crate::number::ldlt::{factor, inverse_of, solve};
 #[cfg(feature = "arm")]
-use crate::{BaseMotion, at_tip::AtTip, coordinates::Coordinates as _};
+use crate::{BaseMotion, definition::coordinates::Coordinates as _, seven_steps::at_tip::AtTip};
 
 capability! {
 /// The mass matrix M(q) of τ = M(q) q̈ + C(q, q̇) q̇ + g(q).

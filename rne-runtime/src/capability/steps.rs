@@ -2,10 +2,10 @@
 
 #[cfg(feature = "arm")]
 use crate::{
-    at_tip::AtTip,
-    floating_euler_step::next_of_base,
+    definition::floating_euler_step::next_of_base,
+    seven_steps::at_tip::AtTip,
     steps::{POSITION, RATE, moved, moved_by},
-    wrench::AllStill as _,
+    values::wrench::AllStill as _,
 };
 
 capability! {

@@ -1,11 +1,11 @@
 //! Torques of a motion, and what carries them.
 
-use crate::ldlt::inverse_of;
-use crate::optimisation::{rows_by, still};
-use crate::smooth_sign::SmoothSign;
+use crate::control::optimisation::{rows_by, still};
+use crate::number::ldlt::inverse_of;
+use crate::number::smooth_sign::SmoothSign;
 use crate::{AccelerationDerivatives, Dual, TorqueDerivatives, Wrench};
 #[cfg(feature = "arm")]
-use crate::{at_tip::AtTip, coordinates::Coordinates as _, wrench::AllStill as _};
+use crate::{definition::coordinates::Coordinates as _, seven_steps::at_tip::AtTip, values::wrench::AllStill as _};
 
 capability! {
 /// Torques from motion: recursive Newton-Euler inverse dynamics, τ(q, q̇, q̈).

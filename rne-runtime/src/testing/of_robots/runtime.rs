@@ -7,7 +7,7 @@ use super::RobotFile;
 use super::comparison::{Allowed, are_finite, compare, largest};
 use super::random::Random;
 use super::state::states;
-use crate::numbers::Numbers;
+use crate::values::numbers::Numbers;
 use crate::{DynArm, Inputs};
 
 /// How much arguments change, of themselves, to see how much a function does.

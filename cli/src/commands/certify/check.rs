@@ -1,0 +1,90 @@
+//! `rne certify --check`: a certificate in a file, compared with that of now.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use rne_certify::certificate::Certificate;
+use rne_certify::sha256;
+
+use crate::files::output_file::{self, Existing};
+use crate::outcome::{Failure, Outcome};
+use crate::palette::{GOOD, TITLE, TYPED};
+
+/// Compares a file with the certificate of now, line by line, and then the code beside it with its SHA-256.
+pub(in crate::commands) fn check(file: &Path, text: &str, certificate: &Certificate) -> Result<Outcome, Failure> {
+    let shown = file.display();
+    let found = match output_file::existing(file) {
+        Existing::Text(found) if found.trim().is_empty() => {
+            return Err(Failure::input(format_args!(
+                "{shown} is empty; {TYPED}-o{TYPED:#} writes a certificate there"
+            )));
+        }
+        Existing::Text(found) => found,
+        Existing::Nothing => return Err(Failure::input(format_args!("there is no file {shown}"))),
+        _ => return Err(Failure::input(format_args!("{shown} is no certificate of rne"))),
+    };
+    if found == text {
+        let code = code(file, certificate)?;
+        return Ok(Outcome::remark(format!("{GOOD}up to date:{GOOD:#} {shown}\n{code}")));
+    }
+    // other figures before other hashes
+    let (mut differences, mut hashes): (Vec<String>, Vec<String>) = Default::default();
+    let mut section = "the head";
+    let (old, new): (Vec<&str>, Vec<&str>) = (found.lines().collect(), text.lines().collect());
+    for index in 0..old.len().max(new.len()) {
+        let [a, b] = [&old, &new].map(|lines| lines.get(index).copied().unwrap_or("the end of the file"));
+        section = a.strip_prefix("## ").unwrap_or(section);
+        if a != b {
+            let is_hash = |line: &str| line.split('`').any(|word| word.len() == 64);
+            let list = if is_hash(a) || is_hash(b) { &mut hashes } else { &mut differences };
+            list.push(format!("line {} ({section}):\n  file: {a}\n  now:  {b}", index + 1));
+        }
+    }
+    differences.append(&mut hashes);
+    let count = differences.len();
+    differences.truncate(5);
+    let made_by = match [&found[..], text].map(command_of) {
+        [Some(old), Some(new)] if old != new => {
+            format!("the certificate {shown} was made by: {old}\nthe command of now is: {new}\n")
+        }
+        _ => String::new(),
+    };
+    Err(Failure::input(format_args!(
+        "{made_by}{shown} is not what rne would write now; {count} lines differ:\n{}",
+        differences.join("\n")
+    )))
+}
+
+/// Compares the files of the code beside a file with the hashes of the certificate; says what was compared.
+fn code(beside: &Path, certificate: &Certificate) -> Result<String, Failure> {
+    let mut remark = String::new();
+    let is_code = |name: &str| [".c", ".h", ".rs"].iter().any(|end| name.ends_with(end));
+    for (name, expected) in certificate.hashes.iter().filter(|(name, _)| is_code(name)) {
+        let path = beside.with_file_name(name);
+        let shown = path.display();
+        let Ok(bytes) = fs::read(&path) else {
+            let _ = writeln!(remark, "{TITLE}note{TITLE:#}: {shown} cannot be read, so it is not compared");
+            continue;
+        };
+        let hash = sha256(&bytes);
+        if hash != *expected {
+            return Err(Failure::input(format_args!(
+                "{shown} is not the code of the certificate: its SHA-256 is {hash} instead of {expected}. This \
+                 command writes the code; with {TYPED}--check{TYPED:#} in the place of {TYPED}-o{TYPED:#}, it says \
+                 what differs:\n  {}",
+                certificate.emit
+            )));
+        }
+        let _ = writeln!(remark, "{GOOD}up to date:{GOOD:#} {shown}");
+    }
+    Ok(remark)
+}
+
+/// The command of a certificate, as its page or its JSON says it.
+fn command_of(text: &str) -> Option<&str> {
+    text.lines().find_map(|line| {
+        let of_json = line.strip_prefix("  \"command\": \"").and_then(|line| line.strip_suffix("\","));
+        of_json.or_else(|| line.starts_with("rne certify ").then_some(line))
+    })
+}

@@ -1,0 +1,72 @@
+//! The tools that `rne certify` uses if they are installed: QEMU and cppcheck.
+
+use std::fmt::Write as _;
+
+use clap::ValueEnum;
+
+use crate::commands::certify::Language;
+use crate::commands::toolchain;
+use crate::outcome::Failure;
+use crate::palette::{TITLE, TYPED};
+
+/// A tool that the certificate uses if it is installed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::commands) enum Tool {
+    Qemu,
+    Cppcheck,
+}
+
+impl Tool {
+    const fn program(self) -> &'static str {
+        match self {
+            Self::Qemu => "qemu-system-arm",
+            Self::Cppcheck => "cppcheck",
+        }
+    }
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Qemu => "qemu",
+            Self::Cppcheck => "cppcheck",
+        }
+    }
+
+    /// The sentence for a certificate without the tool.
+    fn is_missing(self) -> String {
+        let what = match self {
+            Self::Qemu => "does not run the code",
+            Self::Cppcheck => "says nothing about rules of MISRA C",
+        };
+        let program = self.program();
+        format!(
+            "{program} is not installed, so the certificate {what}; on Debian and Ubuntu, {TYPED}apt-get install \
+             {program}{TYPED:#} installs it"
+        )
+    }
+}
+
+/// The versions of QEMU and cppcheck, and a note for each that is not installed; an error for one that is required.
+pub(in crate::commands) fn versions(
+    lang: Language,
+    required: &[Tool],
+) -> Result<([Option<String>; 2], String), Failure> {
+    let mut notes = String::new();
+    let mut version = |tool: Tool| {
+        // the rules are for C
+        if tool == Tool::Cppcheck && lang != Language::C {
+            return Ok(None);
+        }
+        let version = toolchain::version_of(tool.program());
+        if version.is_none() {
+            let missing = tool.is_missing();
+            if required.contains(&tool) {
+                let option = format!("--require {}", tool.name());
+                return Err(Failure::input(format_args!("{missing} ({TYPED}{option}{TYPED:#} asks for it)")));
+            }
+            let _ = writeln!(notes, "{TITLE}note{TITLE:#}: {missing}");
+        }
+        Ok(version)
+    };
+    let versions = [version(Tool::Qemu)?, version(Tool::Cppcheck)?];
+    Ok((versions, notes))
+}

@@ -1,0 +1,531 @@
+//! The equations of closed loops as numbers: positions of the joints at which the loops are closed, and the Jacobian
+//! of the equations there.
+
+use std::f64::consts::{PI, TAU};
+use std::ops::Range;
+
+use crate::loops::matrix::Matrix;
+use crate::parts::pose::{Pose, axis_on_link, cross, difference, dot, link_behind_axis, own_joints};
+use crate::{ClosedLoop, Convention, Cut, Joint, JointKind};
+
+/// A loop is closed where its equations are off by less, lengths as parts of the loops' size.
+const CLOSED: f64 = 1e-12;
+/// How far from its limits a position may lie by rounding, rad or m.
+const ROUNDING: f64 = 1e-9;
+/// Starts of Newton's method, and those after which a loop that never closed is given up.
+const STARTS: usize = 150;
+const STARTS_WITHOUT_SUCCESS: usize = 40;
+/// Products and sums that the search for closures may cost.
+const MOST_WORK: usize = 200_000_000;
+/// Products and sums that the search for singular configurations may cost.
+const MOST_WORK_OF_DESCENT: usize = 20_000_000;
+
+/// The joints of a loop.
+struct Ways {
+    cut: Cut,
+    /// The places on their links.
+    places: [Pose; 2],
+    /// The joints that move one place and not the other, base first.
+    joints: [Vec<usize>; 2],
+    /// The axes of the loop, from there to the last link that carries both places, without a translation.
+    start: Pose,
+}
+
+/// The equations of all closed loops of a robot, by the joints that follow no other and move a loop.
+pub(crate) struct Equations<'a> {
+    joints: &'a [Joint],
+    convention: Convention,
+    ways: Vec<Ways>,
+    /// The joints that follow no other, and of which some loop depends.
+    pub(crate) variables: Vec<usize>,
+    /// The lengths along the loops together, m: what small lengths are relative to.
+    pub(crate) size: f64,
+}
+
+/// A place of a loop, and its joints at some positions.
+struct State {
+    /// Both places, in the axes of the loop.
+    places: [Pose; 2],
+    /// The joints, the place that each moves, and the frame at its axis.
+    axes: Vec<(usize, usize, Pose)>,
+}
+
+impl<'a> Equations<'a> {
+    pub(crate) fn new(joints: &'a [Joint], convention: Convention, loops: &[ClosedLoop]) -> Self {
+        let ways: Vec<Ways> = loops.iter().map(|closed| Ways::new(joints, convention, closed)).collect();
+        let variables = sorted(loops.iter().flat_map(|closed| moving(joints, closed)).collect());
+        let size = ways.iter().map(|ways| ways.size(joints)).fold(0.0, f64::max);
+        Self { joints, convention, ways, variables, size: if size > 0.0 { size } else { 1.0 } }
+    }
+
+    /// The equations of a loop.
+    pub(crate) fn rows_of(&self, index: usize) -> Range<usize> {
+        let first = self.ways[..index].iter().map(|ways| ways.cut.equations()).sum();
+        first..first + self.ways[index].cut.equations()
+    }
+
+    /// All equations, each with the factor that makes it free of units.
+    pub(crate) fn rows(&self) -> Vec<(usize, f64)> {
+        let of_loop = |index: usize| {
+            let rows = self.rows_of(index);
+            rows.clone().map(move |row| (row, if row < rows.start + 3 { 1.0 / self.size } else { 1.0 }))
+        };
+        (0..self.ways.len()).flat_map(of_loop).collect()
+    }
+
+    /// All variables, by their columns, each with the factor that makes it free of units.
+    pub(crate) fn columns(&self) -> Vec<(usize, f64)> {
+        self.variables.iter().map(|&joint| self.unit(joint)).enumerate().collect()
+    }
+
+    fn unit(&self, joint: usize) -> f64 {
+        match self.joints[joint].row.kind {
+            JointKind::Revolute => 1.0,
+            JointKind::Prismatic => self.size,
+        }
+    }
+
+    /// The derivatives of the equations (rows, as [`Cut`] orders them) by the variables (columns) at positions of all
+    /// joints, m or 1 per rad or m: of p₂ - p₁ in the axes of the loop, and of a product a·b of an axis of the first
+    /// place with one of the second, (b × a)·(ω₂ - ω₁).
+    pub(crate) fn jacobian(&self, positions: &[f64]) -> Matrix {
+        let rows = self.ways.iter().map(|ways| ways.cut.equations()).sum();
+        let mut jacobian = Matrix::zero(rows, self.variables.len());
+        for (index, ways) in self.ways.iter().enumerate() {
+            let (start, state) = (self.rows_of(index).start, self.state(ways, positions));
+            let turns = ways.cut.perpendicular().iter().map(|&[a, b]| {
+                let [a, b] = [state.places[0].axis(a), state.places[1].axis(b)];
+                cross(b, a)
+            });
+            let turns: Vec<[f64; 3]> = turns.collect();
+            for (joint, place, axis) in &state.axes {
+                let (velocity, rotation) = self.motion(*joint, *place, axis, &state.places[*place]);
+                let along = turns.iter().map(|turn| dot(*turn, rotation));
+                self.enter(&mut jacobian, start, *joint, |_| 1.0, velocity.into_iter().chain(along));
+            }
+        }
+        jacobian
+    }
+
+    /// The velocity of p₂ - p₁ and ω₂ - ω₁ where a joint moves one place at the speed 1.
+    fn motion(&self, joint: usize, place: usize, axis: &Pose, moved: &Pose) -> ([f64; 3], [f64; 3]) {
+        let z = axis.axis(2).map(|z| if place == 0 { -z } else { z });
+        match self.joints[joint].row.kind {
+            JointKind::Revolute => (cross(z, difference(moved.translation, axis.translation)), z),
+            JointKind::Prismatic => (z, [0.0; 3]),
+        }
+    }
+
+    /// Adds the column of a joint to those of the variables that it follows.
+    fn enter(
+        &self,
+        matrix: &mut Matrix,
+        start: usize,
+        joint: usize,
+        unit: impl Fn(usize) -> f64,
+        column: impl Iterator<Item = f64>,
+    ) {
+        let own = [(joint, 1.0)];
+        let of = self.joints[joint].coupling.as_ref().map_or(&own[..], |coupling| &coupling.follows);
+        for (row, value) in column.enumerate() {
+            for (variable, ratio) in of {
+                if let Ok(at) = self.variables.binary_search(variable) {
+                    matrix.add(start + row, at, ratio * unit(*variable) * value);
+                }
+            }
+        }
+    }
+
+    /// Numbers that are zero where the loops are closed, and their derivatives: the distances of the places, and the
+    /// differences of axes that must be the same, all free of units. Products of axes are zero at opposite axes, too.
+    fn open(&self, positions: &[f64]) -> (Vec<f64>, Matrix) {
+        let equations: usize = self.ways.iter().map(|ways| 3 + ways.cut.differences()).sum();
+        let mut derivatives = Matrix::zero(equations, self.variables.len());
+        let mut residual = Vec::with_capacity(equations);
+        for ways in &self.ways {
+            let (start, state) = (residual.len(), self.state(ways, positions));
+            let [one, other] = &state.places;
+            residual.extend(difference(other.translation, one.translation).map(|length| length / self.size));
+            let equal = ways.cut.equal();
+            residual.extend(equal.iter().flat_map(|&axis| difference(other.axis(axis), one.axis(axis))));
+            if ways.cut == Cut::Universal {
+                residual.push(dot(one.axis(0), other.axis(1)));
+            }
+            for (joint, place, axis) in &state.axes {
+                let (velocity, rotation) = self.motion(*joint, *place, axis, &state.places[*place]);
+                let turned = equal.iter().flat_map(|&axis| cross(rotation, state.places[*place].axis(axis)));
+                let product = (ways.cut == Cut::Universal).then(|| dot(cross(other.axis(1), one.axis(0)), rotation));
+                let column = velocity.into_iter().map(|v| v / self.size).chain(turned).chain(product);
+                // a follower moves as far as its leader does
+                self.enter(&mut derivatives, start, *joint, |leader| self.unit(leader), column);
+            }
+        }
+        (residual, derivatives)
+    }
+
+    fn state(&self, ways: &Ways, positions: &[f64]) -> State {
+        let mut axes = Vec::new();
+        let places = [0, 1].map(|place| {
+            let mut link = ways.start;
+            for &joint in &ways.joints[place] {
+                let axis = link.then(&axis_on_link(self.joints, self.convention, joint));
+                link = axis.then(&link_behind_axis(self.joints, self.convention, joint, positions[joint]));
+                axes.push((joint, place, axis));
+            }
+            link.then(&ways.places[place])
+        });
+        State { places, axes }
+    }
+
+    /// How far apart the places of a loop are, m, and the axes that must be the same or perpendicular, rad.
+    pub(crate) fn apart(&self, index: usize, positions: &[f64]) -> [f64; 2] {
+        let ways = &self.ways[index];
+        let [one, other] = self.state(ways, positions).places;
+        let length = |v: [f64; 3]| libm::hypot(libm::hypot(v[0], v[1]), v[2]);
+        let angle = |axis: &usize| {
+            let [a, b] = [one.axis(*axis), other.axis(*axis)];
+            libm::atan2(length(cross(a, b)), dot(a, b))
+        };
+        let turned = match ways.cut {
+            Cut::Universal => libm::asin(dot(one.axis(0), other.axis(1)).clamp(-1.0, 1.0)).abs(),
+            cut => cut.equal().iter().map(angle).fold(0.0, f64::max),
+        };
+        [length(difference(other.translation, one.translation)), turned]
+    }
+
+    /// The loop whose places are farthest apart, in parts of the loops' size or in rad, and how far, m and rad.
+    pub(crate) fn farthest(&self, positions: &[f64]) -> (usize, [f64; 2]) {
+        let off = |index: &usize| {
+            let [length, angle] = self.apart(*index, positions);
+            (length / self.size).max(angle)
+        };
+        let index = (0..self.ways.len()).max_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0);
+        (index, self.apart(index, positions))
+    }
+
+    /// Gives the joints that follow others their positions.
+    fn complete(&self, positions: &mut [f64]) {
+        for (joint, of) in self.joints.iter().enumerate() {
+            if let Some(coupling) = &of.coupling {
+                let sum: f64 = coupling.follows.iter().map(|(leader, ratio)| ratio * positions[*leader]).sum();
+                positions[joint] = sum + coupling.offset;
+            }
+        }
+    }
+
+    /// Products and sums of one step of Newton's method.
+    fn work(&self) -> usize {
+        let n = self.variables.len();
+        let of_loop = |ways: &Ways| (3 + ways.cut.differences(), ways.joints.iter().map(Vec::len).sum::<usize>());
+        let (rows, joints) = self.ways.iter().map(of_loop).fold((0, 0), |sum, it| (sum.0 + it.0, sum.1 + it.1));
+        (rows + n) * n * n + 200 * joints
+    }
+
+    /// Closes the loops from positions near by, by the method of Levenberg and Marquardt over all variables: what the
+    /// equations are off there, free of units, and the positions. `within` keeps variables within their limits.
+    fn closed(&self, mut positions: Vec<f64>, within: bool, work: &mut usize) -> (f64, Vec<f64>) {
+        const STEPS: usize = 80;
+        // redundant equations leave the normal equations singular
+        const LEAST_DAMPING: f64 = 1e-13;
+        let size = |residual: &[f64]| residual.iter().map(|it| it.abs()).fold(0.0, worse);
+        let square = |residual: &[f64]| residual.iter().map(|it| it * it).sum::<f64>();
+        self.complete(&mut positions);
+        let (mut residual, mut derivatives) = self.open(&positions);
+        let mut damping = 1e-3;
+        for _ in 0..STEPS {
+            *work = work.saturating_add(self.work());
+            if size(&residual) < 1e-16 || damping > 1e8 || !square(&residual).is_finite() {
+                break;
+            }
+            let Some(step) = derivatives.damped_step(&residual, damping) else {
+                damping *= 10.0;
+                continue;
+            };
+            // long steps leave the branch of the mechanism
+            let longest = step.iter().map(|it| it.abs()).fold(1.0, worse);
+            let mut next = positions.clone();
+            for (&joint, step) in self.variables.iter().zip(&step) {
+                next[joint] += self.unit(joint) * step / longest;
+                if let (true, Some((lower, upper))) = (within, self.joints[joint].limits.position) {
+                    next[joint] = next[joint].clamp(lower, upper);
+                }
+            }
+            self.complete(&mut next);
+            let (next_residual, next_derivatives) = self.open(&next);
+            let (before, after) = (square(&residual), square(&next_residual));
+            if after < before {
+                (positions, residual, derivatives) = (next, next_residual, next_derivatives);
+                damping = (damping * 0.1).min(after).max(LEAST_DAMPING);
+            } else if size(&residual) < 0.01 * CLOSED {
+                break;
+            } else {
+                damping *= 10.0;
+            }
+        }
+        (size(&residual), positions)
+    }
+
+    /// Whether all joints are within their limits.
+    pub(crate) fn is_within(&self, positions: &[f64]) -> bool {
+        let is_within = |(joint, position): (&Joint, &f64)| {
+            joint.limits.position.is_none_or(|(lower, upper)| (lower - ROUNDING..=upper + ROUNDING).contains(position))
+        };
+        self.joints.iter().zip(positions).all(is_within)
+    }
+
+    /// Positions to begin with: 0 first, then others that look random, within the limits.
+    fn start(&self, random: Option<&mut Random>) -> Vec<f64> {
+        let mut random = random;
+        let position = |joint: &Joint| {
+            let (lower, upper) = joint.limits.position.unwrap_or(match joint.row.kind {
+                JointKind::Revolute => (-PI, PI),
+                JointKind::Prismatic => (-1.0, 1.0),
+            });
+            match &mut random {
+                None => 0.0_f64.clamp(lower, upper),
+                Some(random) => lower + random.next() * (upper - lower),
+            }
+        };
+        self.joints.iter().map(position).collect()
+    }
+
+    /// Up to `wanted` configurations that close all loops, within the limits as far as such are found: first from where
+    /// all positions are 0, then from others, the same in every run. Beside them the one that came nearest.
+    pub(crate) fn closures(&self, wanted: usize) -> (Vec<Vec<f64>>, Vec<f64>) {
+        let (mut within, mut outside) = (Vec::new(), Vec::new());
+        let (mut nearest, mut least) = (vec![0.0; self.joints.len()], f64::INFINITY);
+        let (mut random, mut work) = (Random(1), 0);
+        for start in 0..STARTS {
+            let is_hopeless = start == STARTS_WITHOUT_SUCCESS && within.is_empty() && outside.is_empty();
+            if within.len() == wanted || is_hopeless || work > MOST_WORK {
+                break;
+            }
+            let positions = self.start((start > 0).then_some(&mut random));
+            let (mut off, mut found) = self.closed(positions.clone(), true, &mut work);
+            if off >= CLOSED || off.is_nan() {
+                (off, found) = self.closed(positions, false, &mut work);
+            }
+            if off < least || start == 0 {
+                (least, nearest) = (off, found.clone());
+            }
+            if off < CLOSED {
+                self.turn_back(&mut found);
+                if self.is_within(&found) { within.push(found) } else { outside.push(found) }
+            }
+        }
+        let missing = wanted - within.len();
+        within.extend(outside.into_iter().take(missing));
+        (within, nearest)
+    }
+
+    /// Takes whole turns off the joints that may turn without a limit and that no joint follows.
+    fn turn_back(&self, positions: &mut [f64]) {
+        let is_followed = |joint: usize| {
+            let of = self.joints.iter().filter_map(|it| it.coupling.as_ref());
+            of.flat_map(|coupling| &coupling.follows).any(|(leader, _)| *leader == joint)
+        };
+        for &joint in &self.variables {
+            let of = &self.joints[joint];
+            if of.row.kind == JointKind::Revolute && of.limits.position.is_none() && !is_followed(joint) {
+                positions[joint] -= TAU * libm::round(positions[joint] / TAU);
+            }
+        }
+    }
+
+    /// The least that a number can be at closures within the limits, and where: by steps downhill from known ones. It
+    /// is an upper bound of the least one.
+    pub(crate) fn least(&self, closures: &[Vec<f64>], number: impl Fn(&[f64]) -> f64) -> Option<(f64, Vec<f64>)> {
+        const STARTS: usize = 5;
+        const STEPS: usize = 40;
+        let known = closures.iter().filter(|positions| self.is_within(positions));
+        let mut known: Vec<(f64, Vec<f64>)> = known.map(|it| (number(it), it.clone())).collect();
+        known.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (mut random, mut work) = (Random(2), 0);
+        for (least, positions) in known.iter_mut().take(STARTS) {
+            let mut reach = 0.5;
+            for _ in 0..STEPS {
+                if work > MOST_WORK_OF_DESCENT {
+                    break;
+                }
+                let mut start = positions.clone();
+                for &joint in &self.variables {
+                    start[joint] += self.unit(joint) * reach * (2.0 * random.next() - 1.0);
+                    if let Some((lower, upper)) = self.joints[joint].limits.position {
+                        start[joint] = start[joint].clamp(lower, upper);
+                    }
+                }
+                let (off, mut found) = self.closed(start, true, &mut work);
+                self.turn_back(&mut found);
+                let value = if off < CLOSED && self.is_within(&found) { number(&found) } else { f64::INFINITY };
+                if value < *least {
+                    (*least, *positions) = (value, found);
+                } else {
+                    reach *= 0.8;
+                }
+            }
+        }
+        known.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+}
+
+/// The joints that follow no other and that move the places of a loop against each other, in the order of the joints.
+pub(crate) fn moving(joints: &[Joint], closed: &ClosedLoop) -> Vec<usize> {
+    let of_joint = |joint: usize| match &joints[joint].coupling {
+        Some(coupling) => coupling.follows.iter().map(|(leader, _)| *leader).collect(),
+        None => vec![joint],
+    };
+    sorted(own_joints(joints, &closed.between).into_iter().flatten().flat_map(of_joint).collect())
+}
+
+/// In their order, each once.
+pub(crate) fn sorted(mut joints: Vec<usize>) -> Vec<usize> {
+    joints.sort_unstable();
+    joints.dedup();
+    joints
+}
+
+impl Ways {
+    fn new(joints: &[Joint], convention: Convention, closed: &ClosedLoop) -> Self {
+        let ways = own_joints(joints, &closed.between);
+        let first = ways.iter().flatten().next();
+        let start = first.map_or(Pose::IDENTITY, |&joint| axis_on_link(joints, convention, joint).turned_back());
+        Self { cut: closed.cut, places: closed.between.map(|end| Pose::of(&end.placement)), joints: ways, start }
+    }
+
+    /// The lengths along the loop together, m.
+    fn size(&self, joints: &[Joint]) -> f64 {
+        let sum = |lengths: [f64; 3]| lengths.iter().map(|it| it.abs()).sum::<f64>();
+        let of_joint = |&joint: &usize| {
+            let Joint { row, branch, .. } = &joints[joint];
+            row.dh.a.abs() + row.dh.d.abs() + branch.map_or(0.0, |branch| sum(branch.placement.xyz))
+        };
+        let of_joints: f64 = self.joints.iter().flatten().map(of_joint).sum();
+        of_joints + self.places.iter().map(|place| sum(place.translation)).sum::<f64>()
+    }
+}
+
+impl Cut {
+    /// The axes that are the same at both places.
+    const fn equal(self) -> &'static [usize] {
+        match self {
+            Self::Revolute => &[2],
+            Self::Spherical | Self::Universal => &[],
+            Self::Weld => &[0, 1, 2],
+        }
+    }
+
+    /// The numbers that say how far the axes are from that.
+    const fn differences(self) -> usize {
+        match self {
+            Self::Universal => 1,
+            cut => 3 * cut.equal().len(),
+        }
+    }
+}
+
+/// The larger of two numbers; not-a-number if one of them is.
+fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
+/// Numbers from 0 to 1 that look random: G. Steele, D. Lea, C. Flood, "Fast Splittable Pseudorandom Number Generators",
+/// 2014.
+struct Random(u64);
+
+impl Random {
+    #[allow(clippy::cast_precision_loss)] // 53 bits
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Angle, FixedFrame, Reader, Robot, Transform};
+
+    /// Branches with slides, standard or modified rows, a follower, and a loop between the ends of both.
+    fn robot(convention: &str, cut: Cut) -> Robot {
+        let text = format!(
+            "{{format: 2, name: x, source: own, convention: {convention}, gravity: [0, 0, 0], tool: {{on: c}}, joints: [
+            {{name: root, type: revolute, dh: {{theta: 0.2, d: 0.3, a: 0.1, alpha: 0.4}}}},
+            {{name: a, type: revolute, dh: {{theta: 0.3, d: 0.1, a: 0.2, alpha: 1}}}},
+            {{name: b, type: prismatic, dh: {{theta: 0.5, d: 0.2, a: 0.1, alpha: -0.7}}}},
+            {{name: c, type: revolute, dh: {{theta: 0, d: 0.1, a: 0.3, alpha: 0.2}}}},
+            {{name: d, parent: root, at: {{xyz: [0.1, 0.2, 0.3], rpy: [1, 2, 3]}}, type: revolute,
+             dh: {{theta: 1, d: 0, a: 0.2, alpha: 0.1}}}},
+            {{name: e, type: revolute, dh: {{theta: 0, d: 0.1, a: 0.1, alpha: 0.5}}}},
+            {{name: f, type: prismatic, dh: {{theta: 0, d: 0, a: 0, alpha: 0.3}}}}],
+            couplings: [{{joint: e, follows: {{a: 0.5, d: -2}}, offset: 0.1}}]}}"
+        );
+        let read = Reader::new("x").trees().couplings().read(&text);
+        let mut robot = read.unwrap_or_else(|report| panic!("{report}")).robot;
+        let place = |on: usize, xyz: [f64; 3], rpy: [f64; 3]| FixedFrame {
+            on: Some(on),
+            placement: Transform { xyz, rpy: rpy.map(Angle::new) },
+        };
+        let between = [place(3, [0.1, 0.0, 0.2], [0.1, 0.2, 0.3]), place(6, [0.0; 3], [1.0, 0.0, 2.0])];
+        let name = "loop1".to_owned();
+        robot.closed.loops = vec![ClosedLoop { name, cut, between, dependent: Vec::new() }];
+        robot
+    }
+
+    /// The equations as they are defined.
+    fn defined(equations: &Equations<'_>, cut: Cut, positions: &[f64]) -> Vec<f64> {
+        let [one, other] = equations.state(&equations.ways[0], positions).places;
+        let products = cut.perpendicular().iter().map(|&[a, b]| dot(one.axis(a), other.axis(b)));
+        difference(other.translation, one.translation).into_iter().chain(products).collect()
+    }
+
+    /// Both Jacobians against differences of what they derive, at positions where the loop is open.
+    #[test]
+    fn jacobians_are_the_derivatives_of_the_equations() {
+        const STEP: f64 = 1e-6;
+        for (convention, cut) in ["standard", "modified"].into_iter().flat_map(|it| Cut::ALL.map(|cut| (it, cut))) {
+            let robot = robot(convention, cut);
+            let equations = Equations::new(&robot.joints, robot.convention, &robot.closed.loops);
+            assert_eq!(equations.variables, [1, 2, 3, 4, 6], "the root moves both places");
+            let mut positions = vec![0.3, -0.4, 0.2, 0.7, 0.1, 0.0, 0.3];
+            equations.complete(&mut positions);
+            let (found, (_, of_open)) = (equations.jacobian(&positions), equations.open(&positions));
+            for (column, &joint) in equations.variables.iter().enumerate() {
+                let [before, after] = [-STEP, STEP].map(|step| {
+                    let mut moved = positions.clone();
+                    moved[joint] += step;
+                    equations.complete(&mut moved);
+                    (defined(&equations, cut, &moved), equations.open(&moved).0)
+                });
+                let slope = |row: usize, of: [&[f64]; 2]| (of[1][row] - of[0][row]) / (2.0 * STEP);
+                for row in 0..cut.equations() {
+                    let off = found.get(row, column) - slope(row, [&before.0, &after.0]);
+                    assert!(off.abs() < 1e-9, "{convention} {cut:?} {row} {joint}: {off}");
+                }
+                for row in 0..before.1.len() {
+                    let off = of_open.get(row, column) - equations.unit(joint) * slope(row, [&before.1, &after.1]);
+                    assert!(off.abs() < 1e-9, "{convention} {cut:?} {row} {joint}: {off}");
+                }
+            }
+        }
+    }
+
+    /// The axes of the loop are those of the first joint of the first place's own, as its link carries it: for a
+    /// modified row behind Rx(alpha) Tx(a), whatever the joint's position is.
+    #[test]
+    fn positions_are_in_the_axes_of_the_loop() {
+        let robot = robot("modified", Cut::Spherical);
+        let equations = Equations::new(&robot.joints, robot.convention, &robot.closed.loops);
+        let positions = [0.3, -0.4, 0.2, 0.7, 0.1, 0.0, 0.3];
+        let state = equations.state(&equations.ways[0], &positions);
+        let (joint, place, axis) = &state.axes[0];
+        assert_eq!((*joint, *place), (1, 0));
+        for i in 0..3 {
+            let unit = [0, 1, 2].map(|j| if i == j { 1.0 } else { 0.0 });
+            let off = difference(axis.axis(i), unit);
+            assert!(off.iter().all(|it: &f64| it.abs() < 1e-15), "{axis:?}");
+        }
+    }
+}

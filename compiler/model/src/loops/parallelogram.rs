@@ -1,0 +1,196 @@
+//! Parallelograms: closed loops of four parallel axes whose opposite sides have equal lengths. Opposite sides stay
+//! parallel, so the dependent joints follow the others linearly, and the loop becomes couplings.
+//!
+//! The loop is a quadrangle of axes: V0 at the link from which both ways to the cut joint begin, V1 at the second joint
+//! of the first way, V2 at the cut joint, V3 at the second joint of the other way. Where that way has one joint, V3 is
+//! its axis and the side V3 V0 belongs to the link that carries it. Where both ways have two joints, their first axes
+//! are one line, as in palletisers: the loop has two freedoms then. The angle of a side in the plane is the sum of the
+//! positions of the joints that turn it, counted about one direction, and its angle where all positions are 0.
+
+use crate::parts::pose::{Pose, axis_at_zero, cross, difference, dot, link_at_zero, own_joints};
+use crate::text::source::{quoted, six_digits};
+use crate::{Convention, Coupling, FixedFrame, Joint, JointKind};
+
+/// Lengths that differ by less than this part of the longer one, and directions by less than this, are equal: tables
+/// have six digits.
+const TOLERANCE: f64 = 1e-6;
+
+/// The couplings of the dependent joints, or why the loop is no parallelogram.
+pub(crate) fn couplings(
+    between: &[FixedFrame; 2],
+    dependent: [usize; 2],
+    convention: Convention,
+    joints: &[Joint],
+) -> Result<[(usize, Coupling); 2], String> {
+    let ways = own_joints(joints, between);
+    let name = |joint: usize| quoted(&joints[joint].name);
+    let (mut first, mut other) = (&ways[0][..], &ways[1][..]);
+    let mut ends = *between;
+    if other.len() > first.len() {
+        (first, other, ends) = (other, first, [ends[1], ends[0]]);
+    }
+    let (&[a, b], (c, d)) = (
+        match first {
+            [a, b] => &[*a, *b],
+            _ => return Err(wrong_count(first.len(), other.len())),
+        },
+        match other {
+            [d] => (None, *d),
+            [c, d] => (Some(*c), *d),
+            _ => return Err(wrong_count(first.len(), other.len())),
+        },
+    );
+    let all: Vec<usize> = first.iter().chain(other).copied().collect();
+    if let Some(&slides) = all.iter().find(|&&joint| joints[joint].row.kind == JointKind::Prismatic) {
+        return Err(format!(
+            "the joint {} of the loop is prismatic; a parallelogram has revolute joints",
+            name(slides)
+        ));
+    }
+    let axis = |joint: usize| axis_at_zero(joints, convention, joint);
+    let z = axis(a).axis(2);
+    let mut signs = Vec::new();
+    for &joint in &all {
+        let cosine = dot(axis(joint).axis(2), z);
+        if 1.0 - cosine.abs() > TOLERANCE * TOLERANCE {
+            return Err(format!("the axes of the joints {} and {} are not parallel", name(a), name(joint)));
+        }
+        signs.push((joint, cosine.signum()));
+    }
+    let cut = ends.map(|end| link_at_zero(joints, convention, end.on).then(&Pose::of(&end.placement)));
+    if cut.iter().any(|cut| 1.0 - dot(cut.axis(2), z).abs() > TOLERANCE * TOLERANCE) {
+        return Err(format!(
+            "the axis of the cut joint, z of `between`, is not parallel to that of the joint {}",
+            name(a)
+        ));
+    }
+    // sides from axis to axis, each on its link, where all positions are 0: V0 V1, V1 V2; V3 V2, V0 V3
+    let side = |from: [f64; 3], to: [f64; 3]| difference(to, from);
+    let [first_end, other_end] = cut.map(|cut| cut.translation);
+    let sides = [
+        side(axis(a).translation, axis(b).translation),
+        side(axis(b).translation, first_end),
+        side(axis(d).translation, other_end),
+        side(axis(a).translation, axis(d).translation),
+    ];
+    if let Some(c) = c {
+        let apart = in_plane(side(axis(a).translation, axis(c).translation), z);
+        if length(apart) > TOLERANCE * length(sides[0]) {
+            return Err(format!(
+                "the axes of the joints {} and {} must be one line, because both ways to the cut joint have two joints",
+                name(a),
+                name(c)
+            ));
+        }
+    }
+    let lengths = sides.map(|side| length(in_plane(side, z)));
+    for (one, opposite) in [(0, 2), (1, 3)] {
+        let [one, opposite] = [lengths[one], lengths[opposite]];
+        if (one - opposite).abs() > TOLERANCE * one.max(opposite) || one == 0.0 {
+            return Err(format!(
+                "opposite sides of the loop are {} m and {} m long; they must be equal and not 0",
+                six_digits(one),
+                six_digits(opposite)
+            ));
+        }
+    }
+    // along the axes the ways must end at one height
+    let heights = [[sides[0], sides[1]], [sides[3], sides[2]]].map(|way| dot(way[0], z) + dot(way[1], z));
+    let apart = (heights[0] - heights[1]).abs();
+    if apart > TOLERANCE * lengths[0].max(lengths[1]) {
+        return Err(format!(
+            "the two places of `between` are {} m apart along the axis of the cut joint",
+            six_digits(apart)
+        ));
+    }
+    let sign = |joint: usize| signs.iter().find(|(other, _)| *other == joint).map_or(0.0, |(_, sign)| *sign);
+    // the angle of V1 V2 less that of V0 V3, and of V3 V2 less that of V0 V1: factors of the joints, and a constant
+    let angle = |side: usize, than: usize| turn(sides[than], sides[side], z);
+    let mut terms = [vec![(a, sign(a)), (b, sign(b))], vec![(d, sign(d)), (a, -sign(a))]];
+    if let Some(c) = c {
+        terms[0].push((c, -sign(c)));
+        terms[1].push((c, sign(c)));
+    }
+    solved(dependent, &terms, [angle(1, 3), angle(2, 0)])
+        .map(|solutions| solutions.map(|(joint, coupling)| (joint, without_followers(coupling, joints))))
+        .ok_or_else(|| {
+            let listed = all.iter().map(|&joint| name(joint)).collect::<Vec<_>>().join(", ");
+            format!("the joints of the loop are {listed}; `dependent` must name two of them that the others determine")
+        })
+}
+
+fn wrong_count(first: usize, other: usize) -> String {
+    format!(
+        "the ways to the cut joint have {first} and {other} joints of their own; a parallelogram has 2 and 1, or 2 and \
+         2"
+    )
+}
+
+/// The two dependent joints from Σ coefficient · q + constant = 0, twice.
+fn solved(
+    dependent: [usize; 2],
+    terms: &[Vec<(usize, f64)>; 2],
+    constants: [f64; 2],
+) -> Option<[(usize, Coupling); 2]> {
+    let coefficient = |row: usize, joint: usize| -> f64 {
+        terms[row].iter().filter(|(other, _)| *other == joint).map(|(_, factor)| factor).sum()
+    };
+    let [[p, q], [r, s]] = [0, 1].map(|row| dependent.map(|joint| coefficient(row, joint)));
+    let determinant = p * s - q * r;
+    if determinant == 0.0 {
+        return None;
+    }
+    let inverse = [[s / determinant, -q / determinant], [-r / determinant, p / determinant]];
+    let mut others: Vec<usize> = terms.iter().flatten().map(|(joint, _)| *joint).collect();
+    others.sort_unstable();
+    others.dedup();
+    others.retain(|joint| !dependent.contains(joint));
+    Some([0, 1].map(|row| {
+        let [one, other] = inverse[row];
+        let ratio = |&joint: &usize| (joint, -(one * coefficient(0, joint) + other * coefficient(1, joint)));
+        let follows = others.iter().map(ratio).filter(|(_, ratio)| *ratio != 0.0).collect();
+        let offset = -(one * constants[0] + other * constants[1]);
+        (dependent[row], Coupling { follows, offset: offset + 0.0 })
+    }))
+}
+
+/// The coupling by joints that follow no other.
+fn without_followers(coupling: Coupling, joints: &[Joint]) -> Coupling {
+    let mut found = Coupling { follows: Vec::new(), offset: coupling.offset };
+    let mut add = |joint: usize, ratio: f64| match found.follows.iter_mut().find(|(known, _)| *known == joint) {
+        Some((_, sum)) => *sum += ratio,
+        None => found.follows.push((joint, ratio)),
+    };
+    let mut offset = coupling.offset;
+    for (joint, ratio) in coupling.follows {
+        match &joints[joint].coupling {
+            None => add(joint, ratio),
+            Some(of) => {
+                offset += ratio * of.offset;
+                of.follows.iter().for_each(|(joint, inner)| add(*joint, ratio * inner));
+            }
+        }
+    }
+    found.offset = offset;
+    found.follows.retain(|(_, ratio)| *ratio != 0.0);
+    found.follows.sort_by_key(|(joint, _)| *joint);
+    found
+}
+
+fn length(v: [f64; 3]) -> f64 {
+    dot(v, v).sqrt()
+}
+
+/// The part of a vector across z.
+fn in_plane(v: [f64; 3], z: [f64; 3]) -> [f64; 3] {
+    let along = dot(v, z);
+    [0, 1, 2].map(|i| v[i] - along * z[i])
+}
+
+/// The angle about z from one vector to another, rad: a multiple of π/2 is exact.
+fn turn(from: [f64; 3], to: [f64; 3], z: [f64; 3]) -> f64 {
+    let [from, to] = [from, to].map(|v| in_plane(v, z));
+    let angle = dot(cross(from, to), z).atan2(dot(from, to));
+    let right = crate::angle::nearest_right_angle(angle);
+    if (angle - right).abs() < 1e-12 { right + 0.0 } else { angle }
+}

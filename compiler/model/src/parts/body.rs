@@ -1,0 +1,287 @@
+//! Bodies: matter that is fixed to links, such as a camera. Reading makes each a part of its link.
+
+use std::fmt;
+
+use crate::parts::frame::{carrier, joint_names};
+use crate::parts::tree::items;
+use crate::parts::varying::leave_out;
+use crate::text::decode::{Context, read_mapping, text};
+use crate::text::diagnostic::Diagnostic;
+use crate::text::document::Node;
+use crate::text::schema::fixed_transform;
+use crate::text::source::quoted;
+use crate::text::spelling::nearest_name;
+use crate::{
+    Entry, FixedFrame, FloatingBase, Inertia, InertiaReference, Joint, Link, Robot, Transform, parts::inertia,
+    parts::matter,
+};
+
+/// Bodies of a file.
+const MAX_BODIES: usize = 256;
+
+/// A body that is fixed to a link: an entry of the list `bodies` of a robot file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// Its name, `[A-Za-z][A-Za-z0-9_]*`; no other body has it.
+    pub name: String,
+    /// The link that carries it, and the place of its frame there. A body on a base that is fixed to the world has no
+    /// effect.
+    pub fixed: FixedFrame,
+    /// Mass, centre of mass and inertia about the centre of mass, in its own frame.
+    pub matter: Link,
+}
+
+/// The bodies of a robot, and the links that carry them without them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bodies {
+    /// The bodies that are parts of links, in the order of the file.
+    pub list: Vec<Body>,
+    /// Each link that a body was added to, counted from 0: the link without bodies, and its inertia as written.
+    bare: Vec<(usize, Link, (Inertia, InertiaReference))>,
+    /// The floating base without bodies.
+    bare_base: Option<Link>,
+}
+
+/// A name that no body of a robot has.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownBody {
+    /// The name that was asked for.
+    pub name: String,
+    /// The name of the robot.
+    pub robot: String,
+    /// The names of its bodies.
+    pub bodies: Vec<String>,
+}
+
+impl fmt::Display for UnknownBody {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} has no body {}: ", self.robot, quoted(&self.name))?;
+        let known: Vec<&str> = self.bodies.iter().map(String::as_str).collect();
+        match (known.as_slice(), nearest_name(&self.name, &known)) {
+            ([], _) => f.write_str("its file has no list `bodies`"),
+            (known, meant) => {
+                let listed: Vec<_> = known.iter().map(|name| quoted(name)).collect();
+                write!(f, "its bodies are {}", listed.join(", "))?;
+                meant.map_or(Ok(()), |meant| write!(f, "; did you mean {}?", quoted(meant)))
+            }
+        }
+    }
+}
+
+impl std::error::Error for UnknownBody {}
+
+impl Robot {
+    /// The robot without the bodies that have these names: their links are as if the file did not have them.
+    ///
+    /// # Errors
+    /// When no body of the robot has one of the names.
+    pub fn without_bodies(&self, names: &[&str]) -> Result<Self, UnknownBody> {
+        if let Some(unknown) = names.iter().find(|name| self.bodies.list.iter().all(|body| body.name != **name)) {
+            return Err(UnknownBody {
+                name: (*unknown).to_owned(),
+                robot: self.name.clone(),
+                bodies: self.bodies.list.iter().map(|body| body.name.clone()).collect(),
+            });
+        }
+        let mut robot = self.clone();
+        for (joint, link, written) in std::mem::take(&mut robot.bodies.bare) {
+            if let Some(joint) = robot.joints.get_mut(joint) {
+                (joint.row.link, joint.written_inertia) = (link, written);
+            }
+        }
+        if let (Some(base), Some(link)) = (&mut robot.floating_base, robot.bodies.bare_base.take()) {
+            base.link = link;
+        }
+        robot.bodies.list.retain(|body| !names.contains(&body.name.as_str()));
+        robot.bodies.add_to(&mut robot.joints, robot.floating_base.as_mut());
+        Ok(robot)
+    }
+}
+
+impl Bodies {
+    /// Makes each body a part of its link.
+    pub(crate) fn add_to(&mut self, joints: &mut [Joint], mut base: Option<&mut FloatingBase>) {
+        for body in &self.list {
+            let matter = seen_from_link(&body.matter, &body.fixed.placement);
+            let Some(on) = body.fixed.on else {
+                if let Some(base) = base.as_mut() {
+                    self.bare_base.get_or_insert(base.link);
+                    base.link = together(&base.link, &matter);
+                }
+                continue;
+            };
+            let Some(joint) = joints.get_mut(on) else { continue };
+            if self.bare.iter().all(|(known, ..)| *known != on) {
+                self.bare.push((on, joint.row.link, joint.written_inertia));
+            }
+            joint.row.link = together(&joint.row.link, &matter);
+            joint.written_inertia = (joint.row.link.inertia, InertiaReference::Com);
+        }
+    }
+}
+
+/// A body in the axes of the link frame: R c + p and R I Rᵀ, with R = Rz(yaw) Ry(pitch) Rx(roll).
+fn seen_from_link(matter: &Link, placement: &Transform) -> Link {
+    let [roll, pitch, yaw] = placement.rpy.map(|angle| (angle.sin, angle.cos));
+    let about = |x: usize, (s, c): (f64, f64)| {
+        let (y, z) = ((x + 1) % 3, (x + 2) % 3);
+        let mut rows = [[0.0; 3]; 3];
+        (rows[x][x], rows[y][y], rows[z][z]) = (1.0, c, c);
+        (rows[y][z], rows[z][y]) = (-s, s);
+        rows
+    };
+    let rotation = product(&product(&about(2, yaw), &about(1, pitch)), &about(0, roll));
+    let transposed = [0, 1, 2].map(|row| [0, 1, 2].map(|column: usize| rotation[column][row]));
+    let tensor = product(&product(&rotation, &matter.inertia.rows()), &transposed);
+    let com = [0, 1, 2].map(|row| {
+        let turned: f64 = rotation[row].iter().zip(matter.com).map(|(element, x)| element * x).sum();
+        turned + placement.xyz[row]
+    });
+    let inertia = Inertia {
+        xx: tensor[0][0],
+        yy: tensor[1][1],
+        zz: tensor[2][2],
+        xy: tensor[0][1],
+        xz: tensor[0][2],
+        yz: tensor[1][2],
+    };
+    Link { mass: matter.mass, com, inertia, first_moment: [0.0; 3] }
+}
+
+fn product(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    [0, 1, 2].map(|row: usize| {
+        // + 0.0 makes of -0 a 0
+        [0, 1, 2].map(|column: usize| (0..3).map(|k| a[row][k] * b[k][column]).sum::<f64>() + 0.0)
+    })
+}
+
+/// Two bodies as one, by the parallel axis theorem: with δ from one centre of mass to the other and the reduced mass
+/// μ = m₁ m₂ / (m₁ + m₂), the inertia about the common centre of mass is I₁ + I₂ + μ (|δ|² 1 - δ δᵀ).
+fn together(one: &Link, other: &Link) -> Link {
+    let mass = one.mass + other.mass;
+    let delta = [0, 1, 2].map(|axis: usize| other.com[axis] - one.com[axis]);
+    let (com, reduced) = if one.mass == 0.0 {
+        (if other.mass == 0.0 { one.com } else { other.com }, 0.0)
+    } else {
+        let part = other.mass / mass;
+        ([0, 1, 2].map(|axis: usize| one.com[axis] + part * delta[axis]), one.mass * part)
+    };
+    let [x, y, z] = delta;
+    let (a, b) = (one.inertia, other.inertia);
+    let inertia = Inertia {
+        xx: a.xx + b.xx + reduced * (y * y + z * z),
+        yy: a.yy + b.yy + reduced * (x * x + z * z),
+        zz: a.zz + b.zz + reduced * (x * x + y * y),
+        xy: a.xy + b.xy - reduced * (x * y),
+        xz: a.xz + b.xz - reduced * (x * z),
+        yz: a.yz + b.yz - reduced * (y * z),
+    };
+    Link { mass, com, inertia, first_moment: [0.0; 3] }
+}
+
+/// Reads the list `bodies` of a file whose root is `root`. [`Bodies::add_to`] makes them parts of their links.
+pub(crate) fn bodies(cx: &Context, root: &Node, format: u32, joints: &[Joint]) -> Option<Bodies> {
+    let help = "begin each body with a dash, such as `- {name: camera, on: joint6, mass: 0.3}`";
+    let items = items(cx, root, ("bodies", format), "bodies", help)?;
+    if let Some(excess) = items.get(MAX_BODIES) {
+        let message = format!("{} bodies; at most {MAX_BODIES} bodies are allowed", items.len());
+        return cx.refuse(Diagnostic::error(excess.head(), message).label(format!("body {}", MAX_BODIES + 1)));
+    }
+    let names = joint_names(root);
+    let read: Vec<Option<Body>> = items.iter().map(|item| body(cx, item, &names)).collect();
+    let mut valid = true;
+    for (index, (item, body)) in items.iter().zip(&read).enumerate() {
+        let Some(body) = body else { continue };
+        let place = |key: &str| item.get(key).map_or(item.head(), |value| value.span.clone());
+        let mistake = if read[..index].iter().flatten().any(|other| other.name == body.name) {
+            let message = format!("{} is already the name of another body; names must differ", quoted(&body.name));
+            Some(Diagnostic::error(place("name"), message).label("name taken"))
+        } else {
+            body.fixed.on.and_then(|on| unfit(cx, joints.get(on)?, on, &place("on")))
+        };
+        if let Some(mistake) = mistake {
+            valid = false;
+            cx.report(mistake);
+        } else if body.fixed.on.is_none() && root.get("floating_base").is_none() {
+            let message =
+                format!("the body {} has no effect: it is on `base`, which does not move", quoted(&body.name));
+            cx.report(Diagnostic::note(place("on"), message).label("on the base"));
+        }
+    }
+    let list = read.into_iter().collect::<Option<Vec<_>>>()?;
+    if valid && let Some((index, on)) = overflow(&list, joints) {
+        let message = format!(
+            "the link of {} with its bodies is too heavy: its mass or its inertia is more than a 64-bit number holds",
+            quoted(&joints[on].name)
+        );
+        let place = items[index].get("mass").unwrap_or(&items[index]).span.clone();
+        let help = "masses are in kg, lengths in m and inertias in kg m²; check the numbers of the bodies of this link";
+        return cx.refuse(Diagnostic::error(place, message).label("too large with this body").help(help));
+    }
+    valid.then_some(Bodies { list, ..Bodies::default() })
+}
+
+/// The first body, counted from 0, with which its link is not finite any more, and the joint of that link.
+fn overflow(list: &[Body], joints: &[Joint]) -> Option<(usize, usize)> {
+    let mut links: Vec<Link> = joints.iter().map(|joint| joint.row.link).collect();
+    list.iter().enumerate().find_map(|(index, body)| {
+        let on = body.fixed.on?;
+        let link = links.get_mut(on)?;
+        *link = together(link, &seen_from_link(&body.matter, &body.fixed.placement));
+        let numbers = [link.mass].into_iter().chain(link.com);
+        let is_finite = numbers.chain(link.com.map(|c| link.mass * c)).all(f64::is_finite);
+        (!is_finite || inertia::principal_moments(&link.inertia).is_none()).then_some((index, on))
+    })
+}
+
+/// Why a link cannot carry a body.
+fn unfit(cx: &Context, joint: &Joint, index: usize, place: &std::ops::Range<usize>) -> Option<Diagnostic> {
+    if joint.row.link.has_first_moment() {
+        let message =
+            format!("the link of {} has a first moment without mass, so it can have no body", quoted(&joint.name));
+        let help = "such a link is a set of base parameters; change its numbers instead";
+        return Some(Diagnostic::error(place.clone(), message).label("not a body").help(help));
+    }
+    let run_time = cx.run_time.borrow();
+    let (_, formula) = run_time.entries.iter().find(|(entry, _)| match entry {
+        Entry::Mass(of) | Entry::Com(of, _) | Entry::Inertia(of, _) => *of == index,
+        _ => false,
+    })?;
+    let parameter = (0..run_time.names.len()).find(|&parameter| formula.depends_on(parameter));
+    let name = cx.parameter_name(parameter);
+    let message = format!(
+        "the link of {} depends on the run-time parameter {}, so it can have no body",
+        quoted(&joint.name),
+        quoted(&name)
+    );
+    Some(Diagnostic::error(place.clone(), message).label("this link varies at run time").help(leave_out(&name)))
+}
+
+fn body(cx: &Context, node: &Node, joints: &[String]) -> Option<Body> {
+    read_mapping!(cx, node, "a body", {
+        name: required "name" body_name,
+        on: required "on" |cx, node| carrier(cx, node, joints, "on"),
+        at: or(Transform::IDENTITY) "at" fixed_transform,
+        mass: required "mass" matter::mass,
+        com: or([0.0; 3]) "com" matter::com,
+        written: or(matter::NO_INERTIA) "inertia" matter::tensor,
+        about: or(matter::ABOUT_COM) "inertia_about" matter::reference,
+    });
+    let matter = matter::link(cx, node, (mass, com), (written, about), true)?;
+    Some(Body { name, fixed: FixedFrame { on, placement: at }, matter })
+}
+
+fn body_name(cx: &Context, node: &Node) -> Option<String> {
+    let name = text(cx, node)?;
+    let is_identifier = name.starts_with(|c: char| c.is_ascii_alphabetic())
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    if is_identifier {
+        return Some(name);
+    }
+    let message = format!(
+        "the body name {} is not an identifier; it must be a letter from a to z or A to Z, then letters, digits and \
+         `_`",
+        quoted(&name)
+    );
+    cx.refuse(Diagnostic::error(node.span.clone(), message).label("choose another name"))
+}

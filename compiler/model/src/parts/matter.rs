@@ -1,0 +1,113 @@
+//! Mass, centre of mass and inertia that no run-time parameter changes, of a body and of a floating base; and whether
+//! those of any link are those of a body.
+
+use std::ops::Range;
+
+use crate::parts::varying::fixed;
+use crate::text::decode::{Context, choice, list, not_negative, read_mapping};
+use crate::text::diagnostic::Diagnostic;
+use crate::text::document::Node;
+use crate::text::source::six_digits;
+use crate::{Inertia, InertiaReference, Link, lints::lint, parts::inertia};
+
+/// The inertia of a file that gives none.
+pub(crate) const NO_INERTIA: Inertia = Inertia { xx: 0.0, yy: 0.0, zz: 0.0, xy: 0.0, xz: 0.0, yz: 0.0 };
+/// The point that an inertia refers to where the file does not say.
+pub(crate) const ABOUT_COM: InertiaReference = InertiaReference::Com;
+
+pub(crate) use crate::parts::link::inertia_reference as reference;
+
+pub(crate) fn mass(cx: &Context, node: &Node) -> Option<f64> {
+    let mass = not_negative("mass", fixed("the mass"))(cx, node)?;
+    lint::mass(cx, node, mass);
+    Some(mass)
+}
+
+pub(crate) fn com(cx: &Context, node: &Node) -> Option<[f64; 3]> {
+    list(cx, node, "[x, y, z] (m)", |cx, node, _| {
+        let value = fixed("the centre of mass")(cx, node)?;
+        lint::com(cx, node, value);
+        Some(value)
+    })
+}
+
+pub(crate) fn tensor(cx: &Context, node: &Node) -> Option<Inertia> {
+    let element = |cx: &Context<'_>, node: &Node| fixed("the inertia")(cx, node);
+    read_mapping!(cx, node, "an inertia", {
+        xx: or(0.0) "xx" element,
+        yy: or(0.0) "yy" element,
+        zz: or(0.0) "zz" element,
+        xy: or(0.0) "xy" element,
+        xz: or(0.0) "xz" element,
+        yz: or(0.0) "yz" element,
+    });
+    Some(Inertia { xx, yy, zz, xy, xz, yz })
+}
+
+/// Whether the numbers are those of a body, as the file says.
+pub(crate) fn physical(cx: &Context, node: &Node) -> Option<bool> {
+    choice(cx, node, "answer", &[("true", true), ("false", false)])
+}
+
+/// The place of an inertia in the file.
+pub(crate) fn place_of_inertia(node: &Node) -> Range<usize> {
+    ["inertia", "inertia_about"].iter().find_map(|key| node.get(key)).unwrap_or(node).head()
+}
+
+/// The body of `node` with its inertia about the centre of mass, if its numbers are those of a body.
+pub(crate) fn link(
+    cx: &Context,
+    node: &Node,
+    (mass, com): (f64, [f64; 3]),
+    (written, about): (Inertia, InertiaReference),
+    physical: bool,
+) -> Option<Link> {
+    let inertia = match about {
+        InertiaReference::Com => written,
+        InertiaReference::Origin => inertia::about_com(written, &mass, com),
+    };
+    let link = Link { mass, com, inertia, first_moment: [0.0; 3] };
+    checked(cx, place_of_inertia(node), link, (written, about), physical)
+}
+
+/// A link, if its numbers are those of a body, or `physical` says that they need not be.
+pub(crate) fn checked(
+    cx: &Context,
+    place: Range<usize>,
+    link: Link,
+    (written, about): (Inertia, InertiaReference),
+    physical: bool,
+) -> Option<Link> {
+    let Some(moments) = inertia::principal_moments(&link.inertia) else {
+        let message = "the inertia about the centre of mass is not finite; mass, com and inertia are too large";
+        return cx.refuse(Diagnostic::error(place, message));
+    };
+    let is_body = link.is_physical(&written);
+    if link.has_first_moment() {
+        // that it is no body is said already
+        return Some(link);
+    }
+    if !is_body && !physical {
+        lint::unphysical(cx, place, moments);
+        return Some(link);
+    }
+    if !is_body {
+        let message = format!(
+            "the inertia is not positive semidefinite: its smallest eigenvalue about the centre of mass is {} kg m²; \
+             it must be zero or positive",
+            six_digits(moments[0])
+        );
+        return cx.refuse(Diagnostic::error(place, message).label("not the inertia of a body").help(match about {
+            InertiaReference::Com => {
+                "check the signs and the order of the products of inertia; a tensor about the origin of the link frame \
+                 needs `inertia_about: origin`"
+            }
+            InertiaReference::Origin => {
+                "check mass and com; if the tensor already refers to the centre of mass, write `inertia_about: com`"
+            }
+        }));
+    }
+    lint::triangle_inequality(cx, place.clone(), link.impossible_moments(&written), physical);
+    lint::radius_of_gyration(cx, place, link.mass, moments);
+    Some(link)
+}

@@ -1,0 +1,50 @@
+//! The keys of the format as data, for those who document or complete them.
+
+use crate::text::decode::Context;
+use crate::text::diagnostic::Problems;
+use crate::{text::document, text::schema, text::source};
+
+/// A mapping of the format, such as a link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Mapping {
+    /// Its name in messages.
+    pub name: &'static str,
+    /// The keys that it may have, in the order in which they are read.
+    pub keys: &'static [Key],
+}
+
+/// A key of a mapping.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Key {
+    /// As it is written.
+    pub name: &'static str,
+    /// Whether there is no default.
+    pub is_required: bool,
+}
+
+/// The mappings of the format that stand in a robot file, each once, with all keys that the format has for them. A file
+/// with a mapping of each kind gives the whole format; mistakes in it are not reported.
+///
+/// ```
+/// let mappings = rne_model::mappings("joints: [{dh: {}}]");
+/// let names: Vec<&str> = mappings.iter().map(|mapping| mapping.name).collect();
+/// assert_eq!(names, ["a robot file", "a joint", "`dh`"]);
+/// let required = mappings[2].keys.iter().filter(|key| key.is_required).map(|key| key.name);
+/// assert_eq!(required.collect::<Vec<_>>(), ["theta", "d", "a", "alpha"]);
+/// ```
+#[must_use]
+pub fn mappings(text: &str) -> Vec<Mapping> {
+    let problems = Problems::new();
+    let mut mappings = Vec::new();
+    if source::size_is_fine(text.len(), document::ROBOT_FILE.name, &problems)
+        && let Some(root) = document::parse(text, document::ROBOT_FILE, &problems)
+    {
+        let cx = Context::new(text, &problems, &[]);
+        let _ = schema::robot(&cx, &root, schema::Takes { trees: true, couplings: true, loops: true });
+        mappings = cx.mappings.take();
+    }
+    let _ = problems.finish("", text);
+    mappings
+}

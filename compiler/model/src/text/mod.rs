@@ -1,0 +1,15 @@
+//! From the bytes of a file to a tree of keys and numbers that know their places, and messages about them.
+
+pub(crate) mod data_file;
+pub(crate) mod decode;
+pub(crate) mod diagnostic;
+pub mod document;
+pub(crate) mod expression;
+pub(crate) mod identifier;
+pub(crate) mod keys;
+pub(crate) mod render;
+pub(crate) mod schema;
+pub(crate) mod source;
+pub(crate) mod spelling;
+pub(crate) mod unit;
+pub(crate) mod urdf;

@@ -1,0 +1,127 @@
+//! Weights of rows, by their distance from the fit before.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::fit::structure::Structure;
+
+/// The bound of Huber's function, in standard deviations.
+const HUBER: f64 = 2.5;
+
+/// The deviation of the friction of a joint at rest, as a part of its Coulomb friction: a joint that stands or turns
+/// back is held by any torque between both directions.
+const NEAR_REST: f64 = 0.25;
+
+/// The number of rows after the filter that count as one where errors before the filter are white: a Gaussian kernel
+/// of width σ leaves the correlation exp(-t²/4σ²), whose integral is 2√π σ, and there is a row for every σ.
+pub(crate) const CORRELATED: f64 = 3.544_907_701_811_032;
+
+/// The weights of rows, which follow from the residuals of the fit before.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Weighting {
+    /// Unknowns of each joint's columns.
+    pub(crate) solutions: Vec<DVector<f64>>,
+    /// Columns of each joint that they belong to.
+    pub(crate) used: Vec<Vec<usize>>,
+    /// Deviation of each joint's noise, N m or N.
+    pub(crate) noise: Vec<f64>,
+    /// Place of Coulomb friction among the unknowns of a joint, from behind; without friction none.
+    pub(crate) coulomb: Option<usize>,
+    /// s
+    pub(crate) delay: f64,
+    /// A row that is off by more standard deviations does not count.
+    pub(crate) outlier_bound: f64,
+    /// A row that is off by more standard deviations counts less: Huber's function.
+    pub(crate) huber: f64,
+    /// For each joint the column of its Coulomb friction and the deviation of this friction near rest, N m or N.
+    pub(crate) near_rest: Vec<Option<(usize, f64)>>,
+}
+
+/// Rows of a joint that do not count.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Rejected {
+    /// Number of rows.
+    pub rows: u64,
+    /// s: the first.
+    pub time: f64,
+}
+
+impl Weighting {
+    /// The weighting by a solution of all unknowns, with the transition and the noise of each joint; `delay` is the
+    /// time by which the torques lag, s.
+    pub(crate) fn new(
+        structure: &Structure,
+        solution: &DVector<f64>,
+        transitions: &[usize],
+        noise: Vec<f64>,
+        delay: f64,
+    ) -> Self {
+        let of_joint = |joint: usize| {
+            let mut values: Vec<f64> = structure.unknowns(joint).iter().map(|&at| solution[at]).collect();
+            if structure.options().delay
+                && let Some(last) = values.last_mut()
+            {
+                // the torques are taken later then
+                *last = 0.0;
+            }
+            DVector::from_vec(values)
+        };
+        Self {
+            solutions: (0..structure.dof()).map(of_joint).collect(),
+            used: transitions.iter().enumerate().map(|(joint, of)| structure.used(joint, *of)).collect(),
+            noise,
+            // viscous friction, Coulomb's, the offset, and the delay
+            coulomb: structure.options().friction.then(|| 2 + usize::from(structure.options().delay)),
+            delay,
+            outlier_bound: f64::INFINITY,
+            huber: HUBER,
+            near_rest: vec![None; transitions.len()],
+        }
+    }
+
+    /// The weighting with less weight for rows near rest, where Coulomb friction has no definite value.
+    #[must_use]
+    pub fn with_doubt_near_rest(mut self) -> Self {
+        let friction = |(used, solution): (&Vec<usize>, &DVector<f64>)| {
+            let coulomb = self.coulomb?;
+            let at = solution.len().checked_sub(coulomb)?;
+            Some((*used.get(at)?, NEAR_REST * solution[at].abs()))
+        };
+        self.near_rest = self.used.iter().zip(&self.solutions).map(friction).collect();
+        self
+    }
+
+    /// The weighting without Huber's function: a row counts in full, however far off it is.
+    #[must_use]
+    pub fn with_all_rows(self) -> Self {
+        Self { huber: f64::INFINITY, outlier_bound: f64::INFINITY, ..self }
+    }
+
+    /// Huber's weights of a joint's rows; none of what is too far off to be of the same motion.
+    pub(super) fn of(&self, joint: usize, rows: &DMatrix<f64>) -> Vec<f64> {
+        let (used, solution) = (&self.used[joint], &self.solutions[joint]);
+        let noise = self.noise[joint];
+        let near_rest = self.near_rest.get(joint).copied().flatten();
+        rows.row_iter()
+            .map(|row| {
+                let mut residual = used.last().map_or(0.0, |&target| row[target]);
+                for (&column, value) in used.iter().zip(solution.iter()) {
+                    residual -= row[column] * value;
+                }
+                let off = residual.abs() / noise;
+                let doubt = near_rest.map_or(0.0, |(column, deviation)| {
+                    deviation * deviation * (1.0 - row[column] * row[column]).max(0.0)
+                });
+                let weight = 1.0 / (1.0 + doubt / (CORRELATED * noise * noise));
+                // what is no number counts as it is
+                if off > self.outlier_bound {
+                    0.0
+                } else if off > self.huber {
+                    weight * self.huber / off
+                } else {
+                    weight
+                }
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,385 @@
+//! A motion that excites an arm: of the Fourier series within the limits that were tried, the one whose regressor has
+//! the least condition number, unless it leaves more parameters unexcited than others do.
+//!
+//! It is looked for in rounds: random starts, then a (1+1) evolution strategy from the best of them (I. Rechenberg,
+//! Evolutionsstrategie, 1973). A change of all joints or of one is kept where it is no worse, and changes become larger
+//! where more than one of five is. Limits are no penalty: a series that leaves its box is made smaller about its
+//! centre, and its centre is moved, until it is inside. Effort limits are none of a box: what is beyond them is worse
+//! than all that is not.
+
+use rne_machine::EvaluationError;
+use rne_model::{Robot, one_line};
+
+use crate::fit::identification::UNKNOWN;
+use crate::motions::design::{Design, Quality};
+use crate::motions::effort::Effort;
+use crate::motions::excitation_error::ExcitationError;
+use crate::motions::fourier::{Fourier, Grid, MotionBounds, Series, beyond, largest, range};
+use crate::motions::motion_limits::MotionLimits;
+use crate::motions::random::Random;
+
+/// Number of times that a search begins anew, with at least `ROUND` evaluations each.
+const ROUNDS: u64 = 5;
+const ROUND: u64 = 500;
+/// One of this many evaluations is a random start.
+const STARTS: u64 = 10;
+/// Deviation of the first change, of coefficients of order one.
+const FIRST: f64 = 0.3;
+/// The change after a success and, four of which undo it, after a failure.
+const GROWTH: f64 = 1.5;
+const DECAY: f64 = 0.903_602_003_6;
+/// Smallest change of a coefficient.
+const SMALLEST: f64 = 1e-4;
+
+/// Options of the search for a motion.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ExcitationOptions {
+    /// The period of the motion, s.
+    pub period: f64,
+    /// Harmonics of each joint's series, 2 or more.
+    pub harmonics: usize,
+    /// Number of motions that are tried.
+    pub evaluations: u64,
+    /// The seed of the random numbers.
+    pub seed: u64,
+    /// Whether friction is among the unknowns.
+    pub friction: bool,
+    /// Whether the inertia of rotors is among the unknowns.
+    pub rotors: bool,
+}
+
+impl Default for ExcitationOptions {
+    fn default() -> Self {
+        Self { period: 20.0, harmonics: 5, evaluations: 5000, seed: 1, friction: true, rotors: false }
+    }
+}
+
+/// Progress of a search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ExcitationProgress {
+    /// Motions that were tried.
+    pub evaluations: u64,
+    /// The condition number of the best of them; infinite before one is within the effort limits.
+    pub condition: f64,
+    /// Number of base parameters that it would excite.
+    pub excited: usize,
+}
+
+/// A motion that excites an arm, and what is known of it.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Excitation {
+    /// The motion, a period of it.
+    pub motion: Fourier,
+    /// The condition number of the first motion that was tried and has one, that is, within the effort limits: the
+    /// first random start, or, where that was beyond them, whichever came first. The search computes it of products of
+    /// the columns, exact to half the digits.
+    pub first_condition: f64,
+    /// Condition number of the motion: largest over smallest singular value of the columns, each of length one, of base
+    /// parameters and friction. Rows of a joint are divided by its effort limit where every joint has one.
+    pub condition: f64,
+    /// Number of instants of a period that have rows, evenly from its start on.
+    pub instants: usize,
+    /// The use that each joint makes of its limits.
+    pub joints: Vec<JointUse>,
+    /// Every base parameter, base to tip, then rotors.
+    pub bases: Vec<BaseExcitation>,
+    /// Motions that were tried.
+    pub evaluations: u64,
+}
+
+/// The use that a joint makes of its limits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct JointUse {
+    /// The limits.
+    pub limits: MotionLimits,
+    /// Position in which the motion starts and ends, rad or m.
+    pub start: f64,
+    /// Bounds of the whole motion.
+    pub bounds: MotionBounds,
+    /// N m or N: the largest torque that the file predicts, where it is limited.
+    pub effort: Option<f64>,
+}
+
+/// Precision with which a log of the motion would determine a base parameter.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct BaseExcitation {
+    /// `Jzz2`
+    pub name: String,
+    /// `Jzz2 + 0.3745 m3`
+    pub combination: String,
+    /// `kg m²`
+    pub unit: &'static str,
+    /// Its deviation by one period, were each row of each joint a measurement with noise of its own: of 1 % of the
+    /// effort limits, or, where not every joint has one, of 5 % of the torque that plausible links take, root mean
+    /// square.
+    pub deviation: f64,
+    /// Its magnitude for plausible links.
+    pub plausible: f64,
+}
+
+impl BaseExcitation {
+    /// Whether a log of the motion would tell it: the rule is that of an identification.
+    #[must_use]
+    pub fn is_excited(&self) -> bool {
+        self.deviation < UNKNOWN * self.plausible
+    }
+}
+
+/// Rank of a motion: first by how far it is beyond effort limits.
+///
+/// Columns of length one tell nothing of how large they are: of a motion that hardly moves they may be as good. So the
+/// condition number is multiplied by what the motion falls short of exciting everything, the geometric mean over the
+/// base parameters of how many times too uncertain they are, one where they are excited.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+struct Score {
+    beyond: f64,
+    merit: f64,
+}
+
+/// A point of the search: of each joint its centre, as a part of its half range from the middle, then a and b, as parts
+/// of the [unit](Problem::units).
+type Point = Vec<f64>;
+
+struct Problem<'a> {
+    options: &'a ExcitationOptions,
+    limits: &'a [MotionLimits],
+    design: Design,
+    effort: Option<Effort>,
+    grid: Grid,
+    /// rad/s or m/s, of each joint: a coefficient that is one.
+    units: Vec<f64>,
+}
+
+/// A motion that was tried.
+#[derive(Clone)]
+struct Tried {
+    point: Point,
+    motion: Fourier,
+    score: Score,
+    /// Absent if the motion is beyond the effort limits.
+    quality: Option<Quality>,
+}
+
+/// Looks for a motion that excites an arm. `watch` is told after each motion that was tried, and ends the search by
+/// `false`; the best motion so far is the result then. Same arguments give the same motion, however fast the machine.
+///
+/// # Errors
+/// When the options make no motion, when there are not as many limits as joints, when no motion was found within the
+/// effort limits, or none that tells all base parameters from each other, or when the equations cannot be computed.
+pub fn excite(
+    robot: &Robot,
+    limits: &[MotionLimits],
+    options: &ExcitationOptions,
+    watch: &mut dyn FnMut(&ExcitationProgress) -> bool,
+) -> Result<Excitation, ExcitationError> {
+    let problem = Problem::new(robot, limits, options)?;
+    let mut random = Random::new(options.seed);
+    let round = (options.evaluations / ROUNDS).max(ROUND);
+    let starts = (round / STARTS).max(1);
+    let mut best = problem.tried(problem.start(&mut random))?;
+    let mut current = best.clone();
+    let mut first = best.condition();
+    let mut step = FIRST;
+    let mut evaluations = 1;
+    loop {
+        let progress = ExcitationProgress { evaluations, condition: best.condition(), excited: problem.excited(&best) };
+        if !watch(&progress) || evaluations >= options.evaluations {
+            break;
+        }
+        let in_round = evaluations % round;
+        let is_start = in_round < starts;
+        let point =
+            if is_start { problem.start(&mut random) } else { problem.changed(&current.point, step, &mut random) };
+        let tried = problem.tried(point)?;
+        evaluations += 1;
+        if first.is_infinite() {
+            first = tried.condition();
+        }
+        if tried.score < best.score {
+            best = tried.clone();
+        }
+        let is_better = in_round == 0 || tried.score <= current.score;
+        if is_better {
+            current = tried;
+        }
+        step = if is_start { FIRST } else { (step * if is_better { GROWTH } else { DECAY }).clamp(SMALLEST, FIRST) };
+    }
+    problem.result(robot, &best, first, evaluations)
+}
+
+impl Tried {
+    fn condition(&self) -> f64 {
+        self.quality.as_ref().map_or(f64::INFINITY, |quality| quality.condition)
+    }
+}
+
+impl<'a> Problem<'a> {
+    fn new(robot: &Robot, limits: &'a [MotionLimits], options: &'a ExcitationOptions) -> Result<Self, ExcitationError> {
+        if !(options.period.is_finite() && options.period > 0.0) {
+            return Err(ExcitationError::Period);
+        }
+        if options.harmonics < 2 {
+            return Err(ExcitationError::Harmonics);
+        }
+        if limits.len() != robot.dof() {
+            return Err(ExcitationError::Length { what: "limits", found: limits.len(), joints: robot.dof() });
+        }
+        let frequency = std::f64::consts::TAU / options.period;
+        let unit = |limits: &MotionLimits| {
+            let half = 0.5 * (limits.position.1 - limits.position.0);
+            limits.velocity.min(limits.acceleration / frequency).min(half * frequency)
+        };
+        Ok(Self {
+            options,
+            limits,
+            design: Design::new(robot, limits, options.harmonics, options.friction, options.rotors),
+            effort: Effort::of(robot, limits, options.harmonics),
+            grid: Grid::dense(options.harmonics),
+            units: limits.iter().map(unit).collect(),
+        })
+    }
+
+    fn coordinates(&self) -> usize {
+        1 + 2 * self.options.harmonics
+    }
+
+    /// Large, so that every joint meets one of its limits.
+    fn start(&self, random: &mut Random) -> Point {
+        let own = self.coordinates();
+        let coordinate = |at: usize| if at.is_multiple_of(own) { random.number() } else { random.bell() };
+        (0..own * self.limits.len()).map(coordinate).collect()
+    }
+
+    /// All joints or one of them moved otherwise.
+    fn changed(&self, point: &Point, step: f64, random: &mut Random) -> Point {
+        let own = self.coordinates();
+        let joint = random.below(2 * self.limits.len());
+        let mut changed = point.clone();
+        for (at, coordinate) in changed.iter_mut().enumerate() {
+            if joint >= self.limits.len() || at / own == joint {
+                *coordinate += step * random.bell();
+            }
+        }
+        changed
+    }
+
+    /// The motion of a point, within all limits but those of effort; the point becomes that of the motion.
+    fn motion(&self, point: &mut Point) -> Fourier {
+        let own = self.coordinates();
+        let series = point.chunks_mut(own).zip(self.limits).zip(&self.units).map(|((point, limits), unit)| {
+            let (centre, coefficients) = point.split_at_mut(1);
+            let (a, b) = coefficients.split_at_mut(self.options.harmonics);
+            let times = |list: &[f64]| list.iter().map(|x| x * unit).collect::<Vec<f64>>();
+            let series = Series::at_rest(0.0, times(a), times(b));
+            let states = series.on(&self.grid, self.options.period);
+            let (lowest, highest) = range(&states);
+            let (lower, upper) = limits.position;
+            let (middle, half) = (f64::midpoint(lower, upper), 0.5 * (upper - lower));
+            // no more, so that the extremes between the points of the grid are inside
+            let room = half / beyond();
+            let most = |limit: f64, used: f64| if used > limit { limit / used } else { 1.0 };
+            let factor = most(room, 0.5 * (highest - lowest))
+                .min(most(limits.velocity / beyond(), largest(&states, 1)))
+                .min(most(limits.acceleration / beyond(), largest(&states, 2)));
+            let mut series = series.scaled(factor);
+            let (least, greatest) = (middle - room - factor * lowest, middle + room - factor * highest);
+            // the middle of both where rounding leaves less than nothing between them
+            series.centre = (middle + half * centre[0]).min(greatest).max(least.min(greatest));
+            centre[0] = (series.centre - middle) / half;
+            for (list, of_series) in [(a, &series.a), (b, &series.b)] {
+                list.iter_mut().zip(of_series).for_each(|(x, value)| *x = value / unit);
+            }
+            series
+        });
+        Fourier::new(self.options.period, series.collect())
+    }
+
+    fn tried(&self, mut point: Point) -> Result<Tried, EvaluationError> {
+        let motion = self.motion(&mut point);
+        let beyond = match &self.effort {
+            Some(effort) => {
+                let uses = effort.largest(&motion)?;
+                let parts = uses.iter().zip(self.limits).map(|(most, limits)| most / limits.effort.unwrap_or(f64::MAX));
+                (parts.fold(0.0, f64::max) - 1.0).max(0.0)
+            }
+            None => 0.0,
+        };
+        // nobody asks how well conditioned a motion is that cannot be
+        let quality = if beyond > 0.0 { None } else { Some(self.design.quality(&motion)?) };
+        let merit = quality.as_ref().map_or(f64::INFINITY, |quality| quality.condition * self.shortfall(quality));
+        Ok(Tried { point, motion, score: Score { beyond, merit }, quality })
+    }
+
+    /// The deviation of each base parameter over the one below which it counts as excited.
+    fn uncertainties(&self, quality: &Quality) -> impl Iterator<Item = f64> {
+        quality
+            .deviations
+            .iter()
+            .zip(self.design.scales().iter())
+            .map(|(deviation, scale)| deviation / (UNKNOWN * scale))
+    }
+
+    fn shortfall(&self, quality: &Quality) -> f64 {
+        #[allow(clippy::cast_precision_loss)] // some dozens
+        let count = quality.deviations.len().max(1) as f64;
+        (self.uncertainties(quality).map(|times| times.max(1.0).ln()).sum::<f64>() / count).exp()
+    }
+
+    fn excited(&self, tried: &Tried) -> usize {
+        tried.quality.as_ref().map_or(0, |quality| self.uncertainties(quality).filter(|times| *times < 1.0).count())
+    }
+
+    fn result(
+        &self,
+        robot: &Robot,
+        best: &Tried,
+        first_condition: f64,
+        evaluations: u64,
+    ) -> Result<Excitation, ExcitationError> {
+        let motion = &best.motion;
+        let efforts = self.effort.as_ref().map(|effort| effort.largest(motion)).transpose()?;
+        let start = motion.after(0.0)[0].clone();
+        let uses = motion.bounds().into_iter().zip(self.limits).enumerate().map(|(at, (bounds, limits))| JointUse {
+            limits: *limits,
+            start: start[at],
+            bounds,
+            effort: limits.effort.and(efforts.as_ref()).map(|efforts| efforts[at]),
+        });
+        let joints: Vec<JointUse> = uses.collect();
+        let over = |(joint, used): (&rne_model::Joint, &JointUse)| {
+            let (needed, limit) = (used.effort?, used.limits.effort?);
+            (needed > limit).then(|| (needed / limit, one_line(&joint.name), needed, limit))
+        };
+        let worst = robot.independent_joints().zip(&joints).filter_map(over).max_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((_, joint, needed, limit)) = worst {
+            return Err(ExcitationError::Effort { joint, needed, limit });
+        }
+        let Quality { condition, deviations } = self.design.quality(motion)?;
+        if !condition.is_finite() {
+            return Err(ExcitationError::Indistinct);
+        }
+        let bases = &self.design.structure().parameters().bases;
+        let bases = bases.iter().zip(deviations).zip(self.design.scales().iter());
+        let bases = bases.map(|((base, deviation), plausible)| BaseExcitation {
+            name: base.name(),
+            combination: base.combination(),
+            unit: self.design.structure().unit(base.kept),
+            deviation,
+            plausible: *plausible,
+        });
+        Ok(Excitation {
+            motion: motion.clone(),
+            first_condition,
+            condition: self.design.condition(motion)?,
+            instants: self.design.instants(),
+            joints,
+            bases: bases.collect(),
+            evaluations,
+        })
+    }
+}

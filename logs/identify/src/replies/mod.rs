@@ -1,0 +1,8 @@
+//! What people and programs are told about a log and about its parameters.
+
+pub(crate) mod log_reply;
+pub(crate) mod payload_reply;
+pub(crate) mod prediction;
+pub(crate) mod reply;
+pub(crate) mod verdict;
+pub(crate) mod written;

@@ -1,0 +1,8 @@
+//! What controllers and optimisers make of the functions.
+
+pub(crate) mod computed_torque;
+pub(crate) mod floating_derivatives;
+pub(crate) mod jacobian_derivatives;
+pub(crate) mod observer;
+pub(crate) mod operational_space;
+pub(crate) mod optimisation;

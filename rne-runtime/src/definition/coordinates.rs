@@ -1,0 +1,103 @@
+//! From the coordinates of a robot to all its joints, and from the numbers of all joints back to those of the
+//! coordinates. Where no joint follows another, each joint is a coordinate.
+
+use core::marker::PhantomData;
+
+use crate::definition::per_joint::{Known, PerJoint, Square};
+use crate::{Constant, Scalar};
+
+/// The matrix G of the couplings: the joints have G q, G q̇ and G q̈, the torques of the coordinates are Gᵀ τ.
+pub(crate) trait Coordinates<J: PerJoint, S: Constant>: Copy {
+    /// Numbers of all joints: those of the coordinates, where each joint is one.
+    type OfJoints<'v, T: Scalar>: AsRef<[T]>;
+
+    /// Collections with one element for each coordinate.
+    fn each(self) -> J;
+
+    /// Whether each joint is a coordinate.
+    fn are_joints(self) -> bool;
+
+    /// The values of all joints, from one for each coordinate.
+    fn of_joints<T: Scalar>(self, values: &[T]) -> Self::OfJoints<'_, T>;
+
+    /// Sines and cosines of all joints, from those of the coordinates and the positions `q` of all joints.
+    fn turns<'v, T: Scalar>(self, turns: [&'v [T]; 2], q: &[T]) -> [Self::OfJoints<'v, T>; 2];
+
+    /// The torques of the actuators of all joints, from one for each coordinate: a follower has no actuator.
+    fn applied<T: Scalar>(self, torques: &[T]) -> Self::OfJoints<'_, T>;
+
+    /// The elements of the coordinates, from one element for each joint.
+    fn only<X: Clone>(self, of_joints: J::Of<X>) -> J::Of<X>;
+
+    /// Gᵀ x, of numbers or rows x of all joints: `plus` adds the second, times the ratio, to the first.
+    fn gathered<X: Clone>(self, of_joints: J::Of<X>, plus: impl Fn(X, &X, &S) -> X) -> J::Of<X>;
+
+    /// Gᵀ τ
+    fn torques<T: Scalar>(self, of_joints: J::Of<T>) -> J::Of<T> {
+        self.gathered(of_joints, |sum, &torque, ratio| sum + torque * ratio.to())
+    }
+
+    /// Gᵀ A G, by rows.
+    fn matrix<T: Scalar>(self, of_joints: Square<J, T>) -> Square<J, T> {
+        if self.are_joints() {
+            return of_joints;
+        }
+        let mut rows = of_joints;
+        rows.as_mut().iter_mut().for_each(|row| *row = self.torques(row.clone()));
+        self.gathered(rows, |mut sum, row, ratio| {
+            sum.as_mut().iter_mut().zip(row.as_ref()).for_each(|(a, &b)| *a += b * ratio.to());
+            sum
+        })
+    }
+
+    /// Gᵀ M G of a symmetric matrix, symmetric to the last bit.
+    fn symmetric<T: Scalar>(self, of_joints: Square<J, T>) -> Square<J, T> {
+        let mut matrix = self.matrix(of_joints);
+        for index in 1..matrix.as_ref().len() {
+            let (above, rest) = matrix.as_mut().split_at_mut(index);
+            rest[0].as_mut().iter_mut().zip(above).for_each(|(element, row)| *element = row.as_ref()[index]);
+        }
+        matrix
+    }
+
+    /// A G, by rows.
+    fn rows<T: Scalar, const ROWS: usize>(self, of_joints: [J::Of<T>; ROWS]) -> [J::Of<T>; ROWS] {
+        of_joints.map(|row| self.torques(row))
+    }
+}
+
+/// Each joint is a coordinate.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Joints<S>(pub(crate) PhantomData<S>);
+
+impl<const DOF: usize, S: Constant> Coordinates<Known<DOF>, S> for Joints<S> {
+    type OfJoints<'v, T: Scalar> = &'v [T];
+
+    fn each(self) -> Known<DOF> {
+        Known
+    }
+
+    fn are_joints(self) -> bool {
+        true
+    }
+
+    fn of_joints<T: Scalar>(self, values: &[T]) -> &[T] {
+        values
+    }
+
+    fn turns<'v, T: Scalar>(self, turns: [&'v [T]; 2], _: &[T]) -> [&'v [T]; 2] {
+        turns
+    }
+
+    fn applied<T: Scalar>(self, torques: &[T]) -> &[T] {
+        torques
+    }
+
+    fn only<X: Clone>(self, of_joints: [X; DOF]) -> [X; DOF] {
+        of_joints
+    }
+
+    fn gathered<X: Clone>(self, of_joints: [X; DOF], _: impl Fn(X, &X, &S) -> X) -> [X; DOF] {
+        of_joints
+    }
+}

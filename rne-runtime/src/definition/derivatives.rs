@@ -1,0 +1,137 @@
+//! Derivatives of the torques, and of the wrench on a floating base, by dual numbers through the seven steps:
+//! exact up to rounding, one direction at a time.
+
+use crate::definition::Definition;
+use crate::definition::coordinates::Coordinates as _;
+use crate::definition::floating_base::BASE;
+use crate::definition::per_joint::{PerJoint, Square};
+use crate::seven_steps::at_tip::AtTip;
+use crate::seven_steps::link_state::JointMotions;
+use crate::seven_steps::mechanism::Mechanism;
+use crate::{BaseMotion, Constant, Dual, Scalar, Wrench};
+
+impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
+    /// ∂τ/∂q and ∂τ/∂q̇ under a load that does not change.
+    pub(crate) fn torque_derivatives<T: Scalar>(
+        self,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+        load: AtTip<'_, Dual<T>>,
+    ) -> [Square<J, T>; 2] {
+        let constant = |x: &[T]| self.per_joint.of(|i| Dual::constant(x[i]));
+        // x, with joint j on its way
+        let along = |x: &[T], j: usize| {
+            let unit = self.unit::<T>(j);
+            self.per_joint.of(|i| Dual { value: x[i], derivative: unit.as_ref()[i] })
+        };
+        let base = self.fixed_base();
+        let torques = |q: &J::Of<Dual<T>>, qd: &J::Of<Dual<T>>| {
+            let qdd = constant(qdd);
+            self.torques(JointMotions::new(q.as_ref(), qd.as_ref(), qdd.as_ref()), &base, load)
+        };
+        let (still_q, still_qd) = (constant(q), constant(qd));
+        // Columns first.
+        let dq = self.per_joint.of(|j| torques(&along(q, j), &still_qd));
+        let dqd = self.per_joint.of(|j| torques(&still_q, &along(qd, j)));
+        let rows = |columns: Square<J, Dual<T>>| {
+            self.per_joint.of(|i| self.per_joint.of(|j| columns.as_ref()[j].as_ref()[i].derivative))
+        };
+        [dq, dqd].map(rows)
+    }
+}
+
+/// Six rows of the base, and those of the joints.
+type Column<J, T> = ([T; BASE], <J as PerJoint>::Of<T>);
+
+/// Columns by the position and by the rate of each joint, and by the angular velocity of the base.
+struct OfFloatingBase<J: PerJoint, T: Clone> {
+    joints: [J::Of<Column<J, T>>; 2],
+    omega: [Column<J, T>; 3],
+}
+
+impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
+    /// The derivatives of a robot with a floating base, with constant wrenches at its tips.
+    fn floating_derivatives<T: Scalar>(
+        self,
+        JointMotions { q, qd, qdd, .. }: JointMotions<'_, T>,
+        base: &BaseMotion<T>,
+        wrenches: &[Wrench<Dual<T>>],
+    ) -> OfFloatingBase<J, T> {
+        let along = |x: &[T], direction: Option<usize>| {
+            let derivative = |i| if direction == Some(i) { T::one() } else { T::zero() };
+            self.per_joint.of(|i| Dual { value: x[i], derivative: derivative(i) })
+        };
+        let constant = |x: [T; 3]| x.map(Dual::constant);
+        let still = BaseMotion {
+            omega: constant(base.omega),
+            omega_dot: constant(base.omega_dot),
+            velocity: constant(base.velocity),
+            acceleration: constant(base.acceleration),
+            gravity: constant(base.gravity),
+        };
+        let column = |by_q, by_qd, base: &BaseMotion<Dual<T>>| {
+            let (q, qd, qdd) = (along(q, by_q), along(qd, by_qd), along(qdd, None));
+            let joints = JointMotions::new(q.as_ref(), qd.as_ref(), qdd.as_ref());
+            let (wrench, tau) = self.of_floating_base(joints, base, AtTip::Wrenches(wrenches));
+            let of_base = core::array::from_fn(|row| {
+                (if row < 3 { wrench.force[row] } else { wrench.moment[row - 3] }).derivative
+            });
+            (of_base, self.per_joint.of(|joint| tau.as_ref()[joint].derivative))
+        };
+        let omega = [0, 1, 2].map(|axis| {
+            let mut turning = still;
+            turning.omega[axis].derivative = T::one();
+            column(None, None, &turning)
+        });
+        let by_q = self.per_joint.of(|joint| column(Some(joint), None, &still));
+        let by_qd = self.per_joint.of(|joint| column(None, Some(joint), &still));
+        OfFloatingBase { joints: [by_q, by_qd], omega }
+    }
+}
+
+impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
+    /// ∂τ/∂q and ∂τ/∂q̇.
+    pub(crate) fn torque_derivatives<T: Scalar>(
+        self,
+        [q, qd, qdd]: [&[T]; 3],
+        load: AtTip<'_, Dual<T>>,
+    ) -> (Square<J, T>, Square<J, T>) {
+        let [q, qd, qdd] = [q, qd, qdd].map(|values| self.of_joints(values));
+        let found = self.mechanism.torque_derivatives(q.as_ref(), qd.as_ref(), qdd.as_ref(), load);
+        let [dq, dqd] = found.map(|matrix| self.coordinates.matrix(matrix));
+        (dq, dqd)
+    }
+
+    /// Rows of the base and of the coordinates, by the positions, by the rates, and by the angular velocity of the
+    /// base.
+    #[allow(clippy::type_complexity)] // three matrices
+    pub(crate) fn floating_derivatives<T: Scalar>(
+        self,
+        [q, qd, qdd]: [&[T]; 3],
+        base: &BaseMotion<T>,
+        wrenches: &[Wrench<Dual<T>>],
+    ) -> (V::Of<J::Of<T>>, V::Of<J::Of<T>>, V::Of<[T; 3]>) {
+        let [q, qd, qdd] = [q, qd, qdd].map(|values| self.of_joints(values));
+        let joints = JointMotions::new(q.as_ref(), qd.as_ref(), qdd.as_ref());
+        let OfFloatingBase { joints, omega } = self.mechanism.floating_derivatives(joints, base, wrenches);
+        let [dq, dqd] = joints.map(|columns| {
+            let all = self.mechanism.per_joint;
+            let of_base: [J::Of<T>; BASE] = core::array::from_fn(|row| all.of(|j| columns.as_ref()[j].0[row]));
+            let of_joints = all.of(|row| all.of(|j| columns.as_ref()[j].1.as_ref()[row]));
+            let (of_base, of_joints) = (self.coordinates.rows(of_base), self.coordinates.matrix(of_joints));
+            self.velocities.of(|row| match row.checked_sub(BASE) {
+                Some(joint) => of_joints.as_ref()[joint].clone(),
+                None => of_base[row].clone(),
+            })
+        });
+        let omega = omega.map(|(of_base, of_joints)| (of_base, self.coordinates.torques(of_joints)));
+        let domega = self.velocities.of(|row| {
+            omega.each_ref().map(|(of_base, of_joints)| match row.checked_sub(BASE) {
+                Some(joint) => of_joints.as_ref()[joint],
+                None => of_base[row],
+            })
+        });
+        (dq, dqd, domega)
+    }
+}

@@ -1,0 +1,226 @@
+//! Measures docs/performance.md again: the blocks that name a machine and a date.
+
+use std::fs;
+
+use anyhow::{Result, ensure};
+use clap::{Args, ValueEnum};
+use xshell::{Cmd, Shell, cmd};
+
+use crate::Verdict;
+use crate::measures::instructions::{self, Instructions};
+use crate::{
+    machine, measures::batch_profile, measures::growth, measures::plain_build, measures::single_calls, packages::python,
+};
+
+/// Writes the measured blocks of docs/performance.md, between `<!-- begin: measured NAME, … -->` and `<!-- end -->`
+///
+/// All blocks take about ten minutes on an idle machine. The blocks of operations do not depend on the machine:
+/// RNE_WRITE_DOCUMENTS=1 cargo test --test documents. CARGO_TARGET_DIR is obeyed.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  cargo xtask performance                    all blocks
+  cargo xtask performance batch sin_cos      these
+  cargo xtask performance --print growth     print a block instead")]
+pub(crate) struct Performance {
+    /// The blocks; all, unless some are named
+    #[arg(value_name = "NAME")]
+    names: Vec<Block>,
+    /// Print the blocks instead of writing them
+    #[arg(long)]
+    print: bool,
+}
+
+const PAGE: &str = "docs/performance.md";
+
+/// A block of the page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum Block {
+    /// Nanoseconds of a call (divan)
+    SingleCalls,
+    /// Instructions of a call (callgrind)
+    Instructions,
+    /// Errors and times of sine and cosine
+    SinCos,
+    /// Nanoseconds of a state of a batch
+    Batch,
+    /// Instructions in a batch's loops
+    BatchProfile,
+    /// Measures of generated code by the number of joints
+    Growth,
+    /// Nanoseconds of an arm at run time
+    RunTime,
+    /// Torques from Python beside Pinocchio and the Robotics Toolbox, which are fetched
+    FromPython,
+    /// Microseconds of every function of one state from Python, beside Pinocchio, which is fetched
+    PythonCalls,
+    /// A plain build beside one for x86-64-v3
+    PlainBuild,
+}
+
+impl Performance {
+    pub(crate) fn run(&self) -> Result<Verdict> {
+        let names = if self.names.is_empty() { Block::value_variants() } else { &self.names };
+        for block in names {
+            let text = block.measure()?;
+            if self.print {
+                print!("{text}");
+            } else {
+                machine::write(PAGE, &replaced(&machine::read(PAGE)?, block.name(), &text)?)?;
+                println!("{}: written", block.name());
+            }
+        }
+        Ok(Verdict::Holds)
+    }
+}
+
+impl Block {
+    fn name(self) -> &'static str {
+        match self {
+            Self::SingleCalls => "single_calls",
+            Self::Instructions => "instructions",
+            Self::SinCos => "sin_cos",
+            Self::Batch => "batch",
+            Self::BatchProfile => "batch_profile",
+            Self::Growth => "growth",
+            Self::RunTime => "run_time",
+            Self::FromPython => "from_python",
+            Self::PythonCalls => "python_calls",
+            Self::PlainBuild => "plain_build",
+        }
+    }
+
+    /// The text of the block.
+    fn measure(self) -> Result<String> {
+        let shell = machine::shell()?;
+        Ok(match self {
+            Self::SingleCalls => {
+                let head = here(&shell)?;
+                let bench =
+                    cmd!(shell, "cargo bench --quiet --manifest-path benches/Cargo.toml --locked --bench wall_time");
+                head + &single_calls::table(&bench.quiet().read()?)
+            }
+            Self::Instructions => {
+                format!("{}.\n\n{}", instructions::compiler()?, Instructions::default().count()?.markdown())
+            }
+            Self::SinCos => {
+                let package = ["--quiet", "--release", "-p", "rne-runtime"];
+                let accuracy = cmd!(shell, "cargo run {package...} --features batch --example sin_cos_accuracy");
+                let speed = cmd!(shell, "cargo run {package...} --example sin_cos_speed");
+                format!("{}{}\n{}", here(&shell)?, listing(accuracy)?, listing(speed)?)
+            }
+            Self::Batch => here(&shell)? + &listing(cmd!(shell, "cargo run --quiet --release --example batch_speed"))?,
+            Self::BatchProfile => {
+                let rustc = cmd!(shell, "rustc --version").quiet().read()?;
+                format!("{rustc}, x86_64 with AVX-512.\n\n{}", batch_profile::table(None)?)
+            }
+            Self::RunTime => {
+                let options = ["--quiet", "--release", "--no-default-features", "--features", "run_time", "--locked"];
+                let bench = cmd!(shell, "cargo run --manifest-path benches/Cargo.toml {options...} --bin run_time");
+                here(&shell)? + &listing(bench)?
+            }
+            Self::FromPython | Self::PythonCalls => {
+                let head = here(&shell)?;
+                let script = if self == Self::FromPython { "from_python.py" } else { "one_state.py" };
+                format!("{head}```text\n{}\n```\n", python::beside_peers(script)?)
+            }
+            Self::PlainBuild => here(&shell)? + &plain_build::table()?,
+            Self::Growth => without_load(&here(&shell)?) + &without_empty_lines(&growth::measured(&[])?),
+        })
+    }
+}
+
+/// Where and when, as a paragraph.
+fn here(shell: &Shell) -> Result<String> {
+    let processors = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = processors.lines().find(|line| line.starts_with("model name")).and_then(|line| line.split_once(": "));
+    let processor = name.map_or(std::env::consts::ARCH, |(_, name)| name);
+    let cores = std::thread::available_parallelism()?;
+    let load = fs::read_to_string("/proc/loadavg").unwrap_or_default();
+    let load = load.split(' ').next().filter(|load| !load.is_empty()).unwrap_or("unknown");
+    let date = cmd!(shell, "date --utc +%F").quiet().read()?;
+    let rustc = cmd!(shell, "rustc --version").quiet().read()?;
+    let commit = cmd!(shell, "git log -1 --format=%h").quiet().ignore_stderr().read();
+    let is_clean = cmd!(shell, "git diff --quiet HEAD -- . :!docs").quiet().ignore_stderr().run().is_ok();
+    let commit = match commit {
+        Err(_) => "no commit".to_owned(),
+        Ok(commit) if is_clean => commit,
+        Ok(commit) => commit + " with changes",
+    };
+    let machine = format!("{processor}, {cores} cores, load average {load} before the measurement");
+    Ok(format!("{date}, {machine}; {rustc}; rne at {commit}.\n\n"))
+}
+
+/// Processor time does not depend on the load.
+fn without_load(text: &str) -> String {
+    match (text.find(", load average "), text.find(" measurement;")) {
+        (Some(start), Some(end)) => text[..start].to_owned() + &text[end + " measurement".len()..],
+        _ => text.to_owned(),
+    }
+}
+
+/// One empty line between paragraphs, none at the end.
+fn without_empty_lines(text: &str) -> String {
+    let mut lines: Vec<&str> = text.trim_end().lines().collect();
+    lines.dedup_by(|line, before| line.is_empty() && before.is_empty());
+    lines.join("\n") + "\n"
+}
+
+/// The output of a command, as a block of text.
+fn listing(command: Cmd<'_>) -> Result<String> {
+    Ok(format!("```text\n{}\n```\n", command.quiet().read()?))
+}
+
+/// A page with another text in one of its blocks.
+pub(crate) fn replaced(page: &str, name: &str, text: &str) -> Result<String> {
+    let start = format!("<!-- begin: measured {name},");
+    ensure!(page.lines().any(|line| line.starts_with(&start)), "the page has no block `{name}`");
+    let mut is_inside = false;
+    let mut replaced = String::new();
+    for line in page.lines() {
+        is_inside &= line != "<!-- end -->";
+        if !is_inside {
+            replaced.push_str(line);
+            replaced.push('\n');
+        }
+        if line.starts_with(&start) {
+            replaced.push_str(text);
+            is_inside = true;
+        }
+    }
+    Ok(replaced)
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::ValueEnum;
+
+    use super::{Block, PAGE, replaced, without_empty_lines, without_load};
+    use crate::machine;
+
+    #[test]
+    fn a_block_is_replaced_and_the_rest_stays() {
+        let (begin, end) = ("<!-- begin: measured batch, written by: me -->", "<!-- end -->");
+        let page = &format!("a\n{begin}\nold\n{end}\nb\n<!-- begin: x -->\n{end}\n");
+        let expected = page.replace("old", "new");
+        assert_eq!(replaced(page, "batch", "new\n").expect("it is there"), expected);
+        assert!(replaced(page, "growth", "").is_err());
+    }
+
+    #[test]
+    fn the_pages_have_every_block() {
+        for block in Block::value_variants() {
+            let page = machine::read(PAGE).expect("the page");
+            let value = block.to_possible_value().expect("no block is hidden");
+            assert_eq!(block.name(), value.get_name());
+            assert!(replaced(&page, block.name(), "").is_ok());
+        }
+    }
+
+    #[test]
+    fn words_that_do_not_belong_are_left_out() {
+        assert_eq!(without_load("2 cores, load average 1.61 before the measurement; rustc"), "2 cores; rustc");
+        assert_eq!(without_empty_lines("a\n\n\n\nb\n\n\n"), "a\n\nb\n");
+    }
+}
