@@ -27,6 +27,7 @@ pub(crate) fn explained(error: &clap::Error, words: &[String]) -> Option<(String
     let text = with_blanks(command, words).or_else(|| without_value(command, words));
     let text =
         text.or_else(|| of_libraries(error)).or_else(|| of_other_name(error)).or_else(|| unknown_function(error));
+    let text = text.or_else(|| of_synonym(command, error));
     let text = text.or_else(|| {
         let is_stray = error.kind() == ErrorKind::UnknownArgument;
         is_stray.then(|| refused(command, words).or_else(|| of_others(&grammar, command, error))).flatten()
@@ -164,6 +165,7 @@ fn unknown_function(error: &clap::Error) -> Option<String> {
     let listed = format!("{TYPED}rne explain functions{TYPED:#} lists all functions");
     let proposed = |names: &[&str]| names.iter().map(|name| format!("{TYPED}{name}{TYPED:#}")).collect::<Vec<_>>();
     Some(match proposed(&near[..near.len().min(MOST)]).as_slice() {
+        [] if value == "all" => format!("this command takes functions by their names, F,F,…; {listed}"),
         [] => {
             let usual = ["inverse_dynamics", "mass_matrix", "forward_dynamics", "jacobian"];
             let usual: Vec<&str> = usual.into_iter().filter(|name| is_known(name)).collect();
@@ -174,6 +176,24 @@ fn unknown_function(error: &clap::Error) -> Option<String> {
             format!("there is no function `{value}`; did you mean {} or {last}? {listed}", some.join(", "))
         }
     })
+}
+
+/// Words for an option that the parser does not know, for it compares letters.
+const SYNONYMS: [(&str, &[&str]); 6] = [
+    ("q", &["pos", "position", "positions", "angles"]),
+    ("qd", &["dq", "vel", "velocity", "velocities"]),
+    ("qdd", &["ddq", "acc", "acceleration", "accelerations"]),
+    ("tau", &["torque", "torques", "effort"]),
+    ("cpu", &["core", "processor", "target"]),
+    ("lang", &["language"]),
+];
+
+/// An option under another word of the field: `--velocity 1,1`.
+fn of_synonym(command: &Command, error: &clap::Error) -> Option<String> {
+    let Some(ContextValue::String(typed)) = error.get(ContextKind::InvalidArg) else { return None };
+    let (meant, _) = SYNONYMS.into_iter().find(|(_, words)| words.contains(&typed.trim_start_matches('-')))?;
+    let arg = command.get_arguments().find(|arg| arg.get_long() == Some(meant))?;
+    Some(format!("there is no option {TYPED}{typed}{TYPED:#}; did you mean {}?", described(arg)))
 }
 
 /// Finds the commands that have an option which this command does not have: `eval --seed 1`. The parser would propose
@@ -225,10 +245,16 @@ fn needed_by_another(command: &Command, error: &clap::Error, words: &[String]) -
         let line = std::iter::once(command.get_name().to_owned()).chain(rest);
         command.clone().try_get_matches_from(line).err().as_ref().and_then(missing).as_ref() != Some(&names)
     };
+    // an option that is fine without the missing ones does not need them
+    let misses = |start: usize, count: usize| {
+        let line = std::iter::once(command.get_name()).chain(words[start..start + count].iter().map(String::as_str));
+        let found = command.clone().try_get_matches_from(line).err().as_ref().and_then(missing);
+        found.is_some_and(|found| names.iter().any(|name| found.contains(name)))
+    };
     let needing = words.iter().enumerate().find_map(|(index, word)| {
         let (arg, value) = option(command, word)?;
         let count = 1 + usize::from(takes_value(arg) && value.is_none() && index + 1 < words.len());
-        is_needless(index, count).then(|| format!("--{}", arg.get_long().unwrap_or_default()))
+        (is_needless(index, count) && misses(index, count)).then(|| format!("--{}", arg.get_long().unwrap_or_default()))
     })?;
     // what else the command cannot do without
     let is_required = command.get_arguments().any(|arg| arg.is_required_set() && Some(&needing[2..]) == arg.get_long());

@@ -89,7 +89,7 @@ fn constants(code: &str) -> BTreeSet<u64> {
 fn the_constants_are_those_of_the_runtime() {
     let read = |file: &str| read(&format!("{ROOT}/{file}"));
     let (reduction, polynomial) =
-        (read("rne-runtime/src/sin_cos/reduction.rs"), read("rne-runtime/src/sin_cos/polynomial.rs"));
+        (read("rne-runtime/src/number/sin_cos/reduction.rs"), read("rne-runtime/src/number/sin_cos/polynomial.rs"));
     let (double, single) = reduction.split_once("fn single").expect("two functions");
     let (double_sums, single_sums) = polynomial.split_once("const P_F32").expect("two pairs of polynomials");
     let single_sums = single_sums.split_once("/// Sine").expect("the end of the constants").0;

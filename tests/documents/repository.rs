@@ -80,7 +80,7 @@ fn unsafe_stands_in_few_modules() {
         "doors/playground/src/border.rs",
         "doors/python/src/gpu.rs",
         "doors/python/src/xla/border.rs",
-        "rne-runtime/src/registers/mod.rs",
+        "rne-runtime/src/lanes/registers/mod.rs",
     ];
     assert_eq!(found, expected);
 }

@@ -24,7 +24,7 @@ use rne_codegen::{Argument, Form, Function, Order, Program};
 use rne_emit::{CCode, Precision, Prefix};
 use rne_model::Robot;
 
-use crate::commands::certify::check::check;
+use crate::commands::certify::check::{check, code_beside};
 use crate::commands::certify::code::{Code, build, emulate};
 use crate::commands::certify::subject::Subject;
 use crate::commands::certify::tools::Tool;
@@ -52,9 +52,10 @@ Examples:
 
 The command compiles the code of `rne emit --lang c`, reads its instructions by
 objdump, runs it in QEMU, compares the results with those of this computer, and
-bounds their error. It fails if the code branches, uses doubles or calls others.
-Needed: arm-none-eabi-gcc with objdump; used if installed: qemu-system-arm,
-cppcheck. See docs/assurance.md. For a file of `rne emit`, repeat its options.")]
+bounds their error. It fails if the code branches, uses doubles, or calls other
+functions than its sine. Needed: arm-none-eabi-gcc with objdump; used if
+installed: qemu-system-arm, cppcheck. See docs/assurance.md. To certify a file
+that `rne emit` wrote, give the same options here: --function, --prefix, ….")]
 #[allow(clippy::struct_excessive_bools)] // options of a command
 pub(crate) struct Arguments {
     /// Robot file, or a name from `rne list`
@@ -82,10 +83,10 @@ pub(crate) struct Arguments {
     #[arg(long)]
     pub(super) observer: bool,
     /// Gain of the observer's low-pass, Hz
-    #[arg(long, value_name = "HZ", default_value_t = 20.0, requires = "observer")]
+    #[arg(long, value_name = "HZ", default_value_t = 20.0, requires = "observer", allow_negative_numbers = true)]
     pub(super) gain: f64,
     /// Period of the observer's updates, s
-    #[arg(long, value_name = "S", default_value_t = 0.001, requires = "observer")]
+    #[arg(long, value_name = "S", default_value_t = 0.001, requires = "observer", allow_negative_numbers = true)]
     pub(super) period: f64,
     /// Form: reduced or seven_steps
     #[arg(long, value_name = "F", value_parser = choice::form(), default_value = Form::Reduced.name(),
@@ -98,7 +99,7 @@ pub(crate) struct Arguments {
     /// Prefix of names in C [default: the robot's name]
     #[arg(long, value_name = "P")]
     pub(super) prefix: Option<Prefix>,
-    /// File of the code, of `rne emit -o` [default: as FILE]
+    /// Name of the code's file; not read [default: as FILE]
     #[arg(long, value_name = "SOURCE")]
     pub(super) source: Option<PathBuf>,
     /// Certify friction and its derivatives, too
@@ -107,20 +108,21 @@ pub(crate) struct Arguments {
     /// Certify limit_torques, too
     #[arg(long)]
     limits: bool,
-    /// The code has the indices of `rne emit --names`
+    /// Certify code with the indices of `rne emit --names`
     #[arg(long)]
     names: bool,
-    /// The code also has the tests of `rne emit --tests`
+    /// Certify code with the tests of `rne emit --tests`
     #[arg(long)]
     tests: bool,
-    /// The comments of the code are ASCII
+    /// Certify code with ASCII comments
     #[arg(long)]
     ascii: bool,
     /// Fail without these tools: qemu, cppcheck, or both
     #[arg(long, value_enum, value_name = "TOOLS", value_delimiter = ',', hide_possible_values = true)]
     pub(super) require: Vec<Tool>,
     /// Number of random states, at least 1
-    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = states)]
+    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = states,
+        allow_negative_numbers = true)]
     pub(super) states: usize,
     /// Seed of the random states
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -265,6 +267,9 @@ fn written(arguments: &Arguments, certificate: &Certificate) -> Result<Outcome, 
         certificate.page()
     };
     if let Some(file) = &arguments.check {
+        if matches!(output_file::existing(file), Existing::Text(found) if !is_ours(&found)) {
+            return Err(Failure::input(format_args!("{} is no certificate of rne", file.display())));
+        }
         return check(file, &text, certificate);
     }
     let Some(out) = arguments.output.as_deref().filter(|out| !is_standard_output(out)) else {
@@ -281,7 +286,12 @@ fn written(arguments: &Arguments, certificate: &Certificate) -> Result<Outcome, 
         Existing::Folder => Err(Failure::usage(format_args!("{} is a folder; name a file", out.display()))),
         Existing::Special => Err(Failure::usage(format_args!("{} is not a regular file", out.display()))),
         Existing::Unreadable(error) => Err(output_file::unreadable(out, &error)),
-        _ => output_file::write_all(&[(out, text)]).map(Outcome::remark),
+        _ => {
+            let remark = output_file::write_all(&[(out, text)])?;
+            let other = code_beside(out, certificate).err().map(|failure| failure.sentence());
+            let note = other.map_or_else(String::new, |other| format!("{TITLE}note{TITLE:#}: {other}\n"));
+            Ok(Outcome::remark(remark + &note))
+        }
     }
 }
 

@@ -9,6 +9,7 @@ use rne_model::{Checked, Robot, golden_of, misnamed_golden_of, plan_of, robot_of
 
 use crate::files::plan_file;
 use crate::files::plan_file::Compiler;
+use crate::files::reading;
 use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::{Failure, Outcome, rendered};
 use crate::palette::{GOOD, QUIET, WARNING};
@@ -55,7 +56,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut text = String::new();
     let mut bad = 0;
     let widest = arguments.files.iter().map(|path| width(&path.display().to_string())).max().unwrap_or(0);
-    for path in &arguments.files {
+    let bar = reading::bar("checked", false);
+    for (index, path) in arguments.files.iter().enumerate() {
+        #[expect(clippy::cast_precision_loss, reason = "files are few")]
+        reading::show(&bar, index as f64 / arguments.files.len() as f64);
         let checked = match robot_of(path) {
             Some(robot_file) => plan(&robot_file),
             None => robot(path, arguments),

@@ -11,6 +11,7 @@ use rne::DynArm;
 use rne_codegen::CheckFor as _;
 use rne_codegen::{Argument, Function, Layout, Record, Step};
 use rne_diagnose::worksheet::{Quantity, Worksheet};
+use rne_machine::CompiledArm;
 use rne_model::Robot;
 use serde_json::{Value, json};
 
@@ -49,19 +50,20 @@ pub(crate) struct Arguments {
     arm: ChosenArm,
     #[command(flatten)]
     at: AtFrame,
-    /// Function to compute; see `rne explain functions`
+    /// Function to compute [default: inverse_dynamics]
     #[arg(long, value_name = "F", value_parser = choice::function(), hide_possible_values = true)]
     function: Option<Function>,
     #[command(flatten)]
     given: Given,
     /// Print a golden file of torques at N random states
     #[arg(long, value_name = "N", value_parser = golden::states, allow_negative_numbers = true, conflicts_with_all = [
-        "function", "Given", "payload", "trace", "json", "csv", "compare", "frame",
+        "function", "Given", "payload", "payload_on", "trace", "axes", "joint", "step", "json", "csv", "compare", "digits",
+        "hint", "frame", "out", "force",
     ])]
     golden: Option<u16>,
     /// Compute it at each state of a table; - is stdin
     #[arg(long, value_name = "TABLE", conflicts_with_all = [
-        "Given", "payload", "golden", "trace", "axes", "joint", "step", "json", "csv", "compare", "digits",
+        "Given", "payload", "payload_on", "hint", "golden", "trace", "axes", "joint", "step", "json", "csv", "compare", "digits",
     ])]
     states: Option<PathBuf>,
     /// Output file of --states: CSV, or NAME.npy
@@ -183,7 +185,12 @@ fn computed(arguments: &Arguments, robot: Robot) -> Result<Outcome, Failure> {
         let file = arguments.arm.file();
         return states::Job {
             robot_file: file,
-            arm: &plan_file::compiled_arm(file, &robot)?,
+            // the plan of a file is for its own numbers
+            arm: &if arguments.arm.set.is_empty() && arguments.arm.without.is_empty() {
+                plan_file::compiled_arm(file, &robot)?
+            } else {
+                CompiledArm::from_robot(&robot)
+            },
             function,
             states,
             out: arguments.out.as_deref(),
@@ -278,7 +285,8 @@ impl Arguments {
     /// Whether the function can be computed and traced for a robot.
     fn check(&self, function: Function, robot: &Robot) -> Result<(), Failure> {
         if self.trace && !function.returns_torques() {
-            let with: Vec<&str> = Function::ALL.iter().filter(|f| f.returns_torques()).map(|f| f.name()).collect();
+            let is_traced = |f: &&Function| f.returns_torques() && f.check_for(robot).is_ok();
+            let with: Vec<&str> = Function::ALL.iter().filter(is_traced).map(|f| f.name()).collect();
             return Err(Failure::usage(format_args!(
                 "--trace prints the steps that compute torques, but {function} does not compute torques; use one of \
                  these functions: {}",
@@ -431,6 +439,33 @@ mod tests {
             }
         }
         assert!(used > 50 && refused > 500, "{used} used, {refused} refused");
+    }
+
+    /// What gives states of its own takes no option of one state: none is accepted and not used.
+    #[test]
+    fn many_states_use_or_refuse_every_option() {
+        use clap::CommandFactory as _;
+        let of_robot = ["rotors", "set", "without", "ascii"];
+        let of_table = ["function", "frame", "output", "force"];
+        for (states, used) in [("--golden=1", &[][..]), ("--states=x.csv", &of_table)] {
+            for arg in Command::command().get_arguments() {
+                let Some(long) = arg.get_long().filter(|long| !states.starts_with(&format!("--{long}="))) else {
+                    continue;
+                };
+                let value = match long {
+                    "tip-wrench" => "a=1,2,3,4,5,6",
+                    "axes" => "link",
+                    "function" => "mass_matrix",
+                    "set" => "a=1",
+                    _ => "1",
+                };
+                let takes_value = arg.get_action().takes_values();
+                let word = if takes_value { format!("--{long}={value}") } else { format!("--{long}") };
+                let is_refused = Command::try_parse_from(["eval", "x.yaml", states, &word]).is_err();
+                let is_used = of_robot.contains(&long) || used.contains(&long);
+                assert_eq!(is_refused, !is_used, "{states} {word}");
+            }
+        }
     }
 
     /// Functions that say that masses change them are changed by a payload, and the others are those of the links

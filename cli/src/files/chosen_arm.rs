@@ -174,7 +174,7 @@ pub(crate) struct ChosenArm {
     pub(crate) set: Vec<Setting>,
     /// Leave out a body of `bodies`; may be repeated
     #[arg(long, value_name = "BODY")]
-    without: Vec<String>,
+    pub(crate) without: Vec<String>,
     #[command(flatten)]
     pub(crate) carried: Carried,
 }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use indicatif::ProgressBar;
+use rne_codegen::CheckFor as _;
 use rne_codegen::plan::{PlanSet, Trick};
 use rne_codegen::{self as codegen, CompileError, Form, Function, Program, Remedy, Target};
 use rne_machine::CompiledArm;
@@ -236,7 +237,9 @@ impl<'a> Compiler<'a> {
     /// An error of the compiler, at its place in the plan file where that is the cause.
     pub(crate) fn failure(&self, function: Function, form: Form, error: &CompileError) -> Failure {
         match (form, self.read.get(), self.planned.get()) {
-            (Form::Reduced, Some(read), Some(compiler)) if !matches!(error, CompileError::TooLarge { .. }) => {
+            (Form::Reduced, Some(read), Some(compiler))
+                if !matches!(error, CompileError::TooLarge { .. }) && function.check_kind(self.robot).is_ok() =>
+            {
                 let described = (function, compiler.plans());
                 located(&read.name, &read.text, described, error)
             }

@@ -13,7 +13,7 @@ pub(super) const PAYLOAD: &str =
 pub(crate) fn payload(List(values): &List) -> Result<Payload<f64>, Failure> {
     if values.len() != 4 && values.len() != 10 {
         let found = values.len();
-        return Err(Failure::usage(format_args!("--payload needs 10 numbers, not {found}: {PAYLOAD}")));
+        return Err(Failure::usage(format_args!("--payload needs 10 or 4 numbers, not {found}: {PAYLOAD}")));
     }
     let mut all = [0.0; 10];
     all.iter_mut().zip(values).for_each(|(number, value)| *number = *value);

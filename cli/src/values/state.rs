@@ -367,7 +367,7 @@ pub(super) fn not_taken(function: Function, name: &str, kind: Argument) -> Failu
     // --payload chooses the others
     // no robot has functions of closed loops and others
     let is_named = |other: &Function| {
-        other.takes(kind)
+        other.arguments().iter().any(|argument| option(*argument).split(' ').any(|option| option == name))
             && other.capability() != Capability::PayloadDynamics
             && other.is_of_closed_loops() == function.is_of_closed_loops()
     };

@@ -74,14 +74,14 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask capi", ".ci/run", "cargo xtask capi"),
     ("cargo xtask fmu", "xtask/src/verify.rs", "\"xtask\", \"fmu\", \"--install\""),
     // with the flags of pkg-config, below the prefix that it was given
-    ("export PKG_CONFIG_PATH=", "xtask/src/capi.rs", ".env(\"PKG_CONFIG_PATH\", library.join(\"pkgconfig\"))"),
-    ("pip install ./doors/python", "xtask/src/python.rs", "pip install --quiet"),
-    ("pip install jax", "xtask/src/python.rs", "const JAX"),
-    ("pip install casadi", "xtask/src/python.rs", "const CASADI"),
+    ("export PKG_CONFIG_PATH=", "xtask/src/packages/capi.rs", ".env(\"PKG_CONFIG_PATH\", library.join(\"pkgconfig\"))"),
+    ("pip install ./doors/python", "xtask/src/packages/python.rs", "pip install --quiet"),
+    ("pip install jax", "xtask/src/packages/python.rs", "const JAX"),
+    ("pip install casadi", "xtask/src/packages/python.rs", "const CASADI"),
     ("cargo run --release --manifest-path examples/mpc/Cargo.toml", "examples/mpc/tests/reach.rs", "run(method)"),
     ("python examples/mpc/casadi_mpc.py", "doors/python/tests/test_casadi.py", "import casadi_mpc"),
     ("cc -std=c99 -O2 -ffp-contract=off -fPIC", "doors/python/tests/test_casadi.py", "shlex.split(command)"),
-    ("cc doors/c/examples/torque.c", "xtask/src/capi.rs", "(\"doors/c/examples/torque.c\", \"cc\""),
+    ("cc doors/c/examples/torque.c", "xtask/src/packages/capi.rs", "(\"doors/c/examples/torque.c\", \"cc\""),
     ("cargo xtask page", ".ci/run", "step cargo xtask page --install\n"),
     ("cargo xtask playground", "xtask/src/verify.rs", "\"xtask\", \"playground\", \"--install\""),
     ("cargo xtask features", "xtask/src/verify.rs", "\"xtask\", \"features\""),
@@ -100,7 +100,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask performance", "xtask/src/main.rs", "Performance(performance::Performance)"),
     // it fetches Pinocchio
     ("cargo xtask urdf", "xtask/src/main.rs", "Urdf(urdf::Urdf)"),
-    // its document is checked in xtask/src/sbom.rs
+    // its document is checked in xtask/src/packages/sbom.rs
     ("cargo xtask sbom", "xtask/src/main.rs", "Sbom(sbom::Sbom)"),
     // it fetches Cyclone DDS, and measures for a minute
     ("cargo xtask ros2", "xtask/src/main.rs", "Ros2(ros2::Ros2)"),

@@ -21,11 +21,15 @@ pub(in crate::commands) fn check(file: &Path, text: &str, certificate: &Certific
             )));
         }
         Existing::Text(found) => found,
-        Existing::Nothing => return Err(Failure::input(format_args!("there is no file {shown}"))),
+        Existing::Nothing => {
+            return Err(Failure::input(format_args!(
+                "there is no file {shown}; {TYPED}-o {shown}{TYPED:#} in the place of {TYPED}--check{TYPED:#} writes it"
+            )));
+        }
         _ => return Err(Failure::input(format_args!("{shown} is no certificate of rne"))),
     };
     if found == text {
-        let code = code(file, certificate)?;
+        let code = code_beside(file, certificate)?;
         return Ok(Outcome::remark(format!("{GOOD}up to date:{GOOD:#} {shown}\n{code}")));
     }
     // other figures before other hashes
@@ -57,7 +61,7 @@ pub(in crate::commands) fn check(file: &Path, text: &str, certificate: &Certific
 }
 
 /// Compares the files of the code beside a file with the hashes of the certificate; says what was compared.
-fn code(beside: &Path, certificate: &Certificate) -> Result<String, Failure> {
+pub(super) fn code_beside(beside: &Path, certificate: &Certificate) -> Result<String, Failure> {
     let mut remark = String::new();
     let is_code = |name: &str| [".c", ".h", ".rs"].iter().any(|end| name.ends_with(end));
     for (name, expected) in certificate.hashes.iter().filter(|(name, _)| is_code(name)) {

@@ -44,8 +44,8 @@ impl Subject<'_> {
     pub(in crate::commands) fn refused(&self, fault: &NoFigures) -> Failure {
         match self {
             Self::Program(program) if program.function == Function::ActuatorTorques => Failure::input(format_args!(
-                "{fault}\nThe robot file has dry friction: its code branches over the sign of each velocity. \
-                 {TYPED}--friction{TYPED:#} certifies the smooth law of friction"
+                "the robot file has dry friction, and its code branches over the sign of each velocity; \
+                 {TYPED}--friction{TYPED:#} certifies the smooth law of friction. {fault}"
             )),
             _ => Failure::input(fault),
         }
