@@ -446,7 +446,7 @@ mod tests {
     fn many_states_use_or_refuse_every_option() {
         use clap::CommandFactory as _;
         let of_robot = ["rotors", "set", "without", "ascii"];
-        let of_table = ["function", "frame", "output", "force"];
+        let of_table = ["function", "frame", "output"];
         for (states, used) in [("--golden=1", &[][..]), ("--states=x.csv", &of_table)] {
             for arg in Command::command().get_arguments() {
                 let Some(long) = arg.get_long().filter(|long| !states.starts_with(&format!("--{long}="))) else {
