@@ -14,10 +14,10 @@
 //! ```
 //!
 //! Link i is the one that joint i moves, link p the one that carries joint i: its `parent`, or the base. In a chain p
-//! is i-1, and the lecture's r_{i-1} is the r_i of here, for it depends on where joint i is mounted: [`crate::seven_steps::mount`].
-//! What a kind of joint adds stands in [`crate::seven_steps::joint`]. The vectors of link i stand in the axes of form P: fixed to
-//! link i, z along joint i. The lecture writes the same vectors in axes fixed to link i-1: Rz(θ_i) leads there and
-//! leaves z elements, so τ, as they are.
+//! is i-1, and the lecture's r_{i-1} is the r_i of here, for it depends on where joint i is mounted:
+//! [`crate::seven_steps::mount`]. What a kind of joint adds stands in [`crate::seven_steps::joint`]. The vectors of
+//! link i stand in the axes of form P: fixed to link i, z along joint i. The lecture writes the same vectors in axes
+//! fixed to link i-1: Rz(θ_i) leads there and leaves z elements, so τ, as they are.
 //!
 //! A link without mass may have a first moment h, about the point that its centre of mass would be: a set of base
 //! parameters has such links. Their terms stand apart, for no body has them.

@@ -57,13 +57,14 @@ pub(crate) struct Arguments {
     given: Given,
     /// Print a golden file of torques at N random states
     #[arg(long, value_name = "N", value_parser = golden::states, allow_negative_numbers = true, conflicts_with_all = [
-        "function", "Given", "payload", "payload_on", "trace", "axes", "joint", "step", "json", "csv", "compare", "digits",
-        "hint", "frame", "out", "force",
+        "function", "Given", "payload", "payload_on", "trace", "axes", "joint", "step", "json", "csv", "compare",
+        "digits", "hint", "frame", "out", "force",
     ])]
     golden: Option<u16>,
     /// Compute it at each state of a table; - is stdin
     #[arg(long, value_name = "TABLE", conflicts_with_all = [
-        "Given", "payload", "payload_on", "hint", "golden", "trace", "axes", "joint", "step", "json", "csv", "compare", "digits",
+        "Given", "payload", "payload_on", "hint", "golden", "trace", "axes", "joint", "step", "json", "csv", "compare",
+        "digits",
     ])]
     states: Option<PathBuf>,
     /// Output file of --states: CSV, or NAME.npy
@@ -441,7 +442,7 @@ mod tests {
         assert!(used > 50 && refused > 500, "{used} used, {refused} refused");
     }
 
-    /// What gives states of its own takes no option of one state: none is accepted and not used.
+    /// `--golden` and `--states` refuse each option of one state: none is accepted and not used.
     #[test]
     fn many_states_use_or_refuse_every_option() {
         use clap::CommandFactory as _;

@@ -1,4 +1,4 @@
-//! What controllers and optimisers make of the functions.
+//! Controllers, observers and derivatives for optimisers, made of the functions.
 
 pub(crate) mod computed_torque;
 pub(crate) mod floating_derivatives;

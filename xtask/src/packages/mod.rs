@@ -1,4 +1,4 @@
-//! What users install, and what it costs them.
+//! Packages that users install, and their costs.
 
 pub(crate) mod bare;
 pub(crate) mod capi;

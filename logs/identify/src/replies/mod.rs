@@ -1,4 +1,4 @@
-//! What people and programs are told about a log and about its parameters.
+//! Replies to people and programs about a log and its parameters.
 
 pub(crate) mod log_reply;
 pub(crate) mod payload_reply;

@@ -2,8 +2,8 @@
 //!
 //! A plain build for x86-64 knows no fused multiply-add and registers of two `f64`. Derived code of the reduced form
 //! stands in a [`Call`], and [`run`] compiles it twice: for the compiled target, and for AVX2 with fused multiply-add,
-//! where numbers are `f64` or `f32`. The processor is asked once, as for [batches](crate::lanes::batch); afterwards a call
-//! reads one byte and jumps. What it computes then has the bits of a program that is compiled for x86-64-v3.
+//! where numbers are `f64` or `f32`. The processor is asked once, as for [batches](crate::lanes::batch); afterwards a
+//! call reads one byte and jumps. What it computes then has the bits of a program that is compiled for x86-64-v3.
 //!
 //! There is one copy and no question where the target has these instructions, on other processors, without the feature
 //! `batch`, and for all other scalars.

@@ -16,12 +16,12 @@
 //!   processor would stall on every copy. So operations take it for granted, and nobody has a register without having
 //!   shown that the unit is there:
 //!   - Registers are made by [`Lanes::splat`](crate::number::sin_cos::Lanes::splat), `Register::padded` and
-//!     [`Vector::load`](crate::lanes::batch::vector::Vector::load). These traits are private to this crate, so that no other
-//!     can call them, although it can name the types (as what the public `BatchScalar` computes with).
+//!     [`Vector::load`](crate::lanes::batch::vector::Vector::load). These traits are private to this crate, so that no
+//!     other can call them, although it can name the types (as what the public `BatchScalar` computes with).
 //!   - Within this crate the types of a found unit are a parameter of
-//!     [`Work::run`](crate::lanes::batch::vector::Work::run), which takes the proof as an argument, of the single calls of
-//!     `processor`, which hold it, and of what these call: generated code, which makes constants of the scalar that it
-//!     is given, the loop of the machine, and the kernel of sine and cosine.
+//!     [`Work::run`](crate::lanes::batch::vector::Work::run), which takes the proof as an argument, of the single calls
+//!     of `processor`, which hold it, and of what these call: generated code, which makes constants of the scalar that
+//!     it is given, the loop of the machine, and the kernel of sine and cosine.
 //!   - The registers of the compiled target are those without which the program would not run.
 //!   - A processor that has a unit keeps it.
 #![allow(unsafe_code)]
