@@ -10,7 +10,7 @@
 //! f, n         force and moment that accelerate the link            m, I  mass; inertia about the centre of mass
 //! f_{p,i}      force and moment that the parent link p exerts       R_i   turns components in the axes of link i into
 //! n_{p,i}      on link i                                                  components in the axes of its parent
-//! τ            torque (N m) or force (N) of the actuator            R, P  revolute, prismatic
+//! τ            torque (N m) or force (N) of the actuator
 //! ```
 //!
 //! Link i is the one that joint i moves, link p the one that carries joint i: its `parent`, or the base. In a chain p
@@ -43,16 +43,16 @@ use crate::{BaseMotion, Constant, Scalar};
 
 /// Step 1: angular velocity.
 ///
-/// - R: ω_i = R_iᵀ ω_p + q̇_i e_i
-/// - P: ω_i = R_iᵀ ω_p
+/// - revolute: ω_i = R_iᵀ ω_p + q̇_i e_i
+/// - prismatic: ω_i = R_iᵀ ω_p
 fn angular_velocity<T: Scalar>(joint: &Joint<T>, parent: &LinkMotion<T>, this: &LinkMotion<T>) -> Vector3<T> {
     joint.link.kind.angular_velocity(this.rotation.tr_mul(&parent.omega), joint.qd)
 }
 
 /// Step 2: angular acceleration.
 ///
-/// - R: ω̇_i = R_iᵀ ω̇_p + q̈_i e_i + q̇_i ω_i × e_i
-/// - P: ω̇_i = R_iᵀ ω̇_p
+/// - revolute: ω̇_i = R_iᵀ ω̇_p + q̈_i e_i + q̇_i ω_i × e_i
+/// - prismatic: ω̇_i = R_iᵀ ω̇_p
 fn angular_acceleration<T: Scalar>(joint: &Joint<T>, parent: &LinkMotion<T>, this: &LinkMotion<T>) -> Vector3<T> {
     let rigid = this.rotation.tr_mul(&parent.omega_dot);
     joint.link.kind.angular_acceleration(rigid, &this.omega, joint.qd, joint.qdd)
@@ -60,8 +60,8 @@ fn angular_acceleration<T: Scalar>(joint: &Joint<T>, parent: &LinkMotion<T>, thi
 
 /// Step 3: velocity of the centre of mass. No later step uses it.
 ///
-/// - R: ċ_i = R_iᵀ (ċ_p + ω_p × r_i) + ω_i × d_i
-/// - P: the same + q̇_i e_i
+/// - revolute: ċ_i = R_iᵀ (ċ_p + ω_p × r_i) + ω_i × d_i
+/// - prismatic: the same + q̇_i e_i
 fn velocity<T: Scalar>(
     joint: &Joint<T>,
     parent: &LinkMotion<T>,
@@ -75,8 +75,8 @@ fn velocity<T: Scalar>(
 
 /// Step 4: acceleration of the centre of mass, gravity not included.
 ///
-/// - R: c̈_i = R_iᵀ (c̈_p + ω̇_p × r_i + ω_p × (ω_p × r_i)) + ω̇_i × d_i + ω_i × (ω_i × d_i)
-/// - P: the same + q̈_i e_i + 2 q̇_i ω_i × e_i
+/// - revolute: c̈_i = R_iᵀ (c̈_p + ω̇_p × r_i + ω_p × (ω_p × r_i)) + ω̇_i × d_i + ω_i × (ω_i × d_i)
+/// - prismatic: the same + q̈_i e_i + 2 q̇_i ω_i × e_i
 fn acceleration<T: Scalar>(joint: &Joint<T>, parent: &LinkMotion<T>, this: &LinkMotion<T>) -> Vector3<T> {
     let r = &joint.link.mount.r;
     let joint_origin = (parent.acceleration + parent.omega_dot.cross(r)) + parent.omega.cross(&parent.omega.cross(r));
@@ -141,8 +141,8 @@ fn joint_wrench<T: Scalar>(
 
 /// Step 7: what the actuator delivers is the element along the joint's axis.
 ///
-/// - R: τ_i = e_i · n_{p,i}
-/// - P: τ_i = e_i · f_{p,i}
+/// - revolute: τ_i = e_i · n_{p,i}
+/// - prismatic: τ_i = e_i · f_{p,i}
 fn actuator<T: Scalar>(link: &LinkFrame<T>, joint: &ForceMoment<T>) -> T {
     link.kind.actuator(joint)
 }

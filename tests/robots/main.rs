@@ -4,6 +4,7 @@
 mod dense;
 mod equality;
 mod golden;
+mod lecture;
 mod operations;
 mod reduced;
 mod shipped;
