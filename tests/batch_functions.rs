@@ -38,12 +38,12 @@ robots! {
     ";
 }
 
-/// A tree whose base nothing holds.
+/// A tree with a floating base.
 #[derive(InverseDynamics, FloatingBase, BatchFloatingInverseDynamics)]
 #[robot(path = "../benches/trees/hyq_floating.yaml", form = "reduced", allow_lints)]
 struct Floating;
 
-/// A chain whose base nothing holds, in the seven steps.
+/// A chain with a floating base, in the seven steps.
 #[derive(InverseDynamics, FloatingBase, BatchFloatingInverseDynamics)]
 #[robot(path = "../robots/planar2.yaml", allow_lints)]
 struct Drifting;

@@ -304,7 +304,7 @@ fn default_plans(robot: &Robot) -> PlanSet {
 /// of a base without mass.
 fn without_base(robot: &Robot, capability: Capability) -> Option<String> {
     let refused = capability.functions().find_map(|function| function.check_base(robot).err());
-    let meant = if robot.floating_base.is_none() { "a base that has no mass" } else { "a robot that nothing holds" };
+    let meant = if robot.floating_base.is_none() { "a base that has no mass" } else { "a robot with a floating base" };
     refused.map(|error| format!("{error}; or add `allow_lints` to the attribute, for {meant}"))
 }
 

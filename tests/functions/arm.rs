@@ -59,7 +59,7 @@ impl<'a, T: Scalar> Given<'a, T> {
         Self { q, qd, qdd, tau: &[], wrench, payload, base, base_rotation: base_rotation(), step: T::from_f64(STEP) }
     }
 
-    /// The velocity of a base that nothing holds.
+    /// The velocity of a floating base.
     pub(crate) fn twist(&self) -> BaseTwist<T> {
         BaseTwist { linear: self.base.velocity, angular: self.base.omega }
     }

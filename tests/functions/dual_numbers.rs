@@ -31,7 +31,7 @@ pub(crate) enum Kind {
     Rows,
     /// These matrices for the first half of the numbers of the function, then those for the others.
     HalvesOfRows,
-    /// The matrices of a step where nothing holds the base, on the manifold of its positions.
+    /// The matrices of a step with a floating base, on the manifold of its positions.
     OnManifold,
     /// The torques of the state times each of these matrices.
     Weighted,
@@ -82,7 +82,7 @@ fn numbers<T: Scalar + Numbers<T>>(
             omega_dot: still(base.omega_dot),
             velocity: std::array::from_fn(|axis| scalar(Velocity, axis, base.velocity[axis])),
             acceleration: still(base.acceleration),
-            // the place of a base that nothing holds
+            // the place of a floating base
             gravity: std::array::from_fn(|row| {
                 let moved = (0..3).fold(T::zero(), |sum, axis| sum + rotation[row][axis] * shift[axis]);
                 T::from_f64(base.gravity[row]) + moved
@@ -104,7 +104,7 @@ fn column(arm: &Arm, function: Function, state: &State, by: By, at: usize) -> Ve
     numbers(arm, function, state, dual).iter().map(|number| number.derivative).collect()
 }
 
-/// The changes of the positions and of the velocities after a step where nothing holds the base, in its axes.
+/// The changes of the positions and of the velocities after a step with a floating base, in its axes.
 fn changes(arm: &Arm, state: &State, by: By, at: usize) -> [Vec<f64>; 2] {
     let dual = |kind: By, i: usize, value: f64| Dual { value, derivative: one_if(kind == by && i == at) };
     let next = numbers(arm, Function::FloatingEulerStep, state, dual);

@@ -124,7 +124,7 @@ fn without_step_of_derivatives<'a>(given: &Given<'_, f64>, found: &'a [f64]) -> 
     (Function::ForwardDynamicsDerivatives, accelerations, positions, moved, 1.0)
 }
 
-/// The accelerations of a step where nothing holds the base, and how far the step is from that of these accelerations.
+/// The accelerations of a step with a floating base, and how far the step is from that of these accelerations.
 fn without_step_of_floating_base(arm: &Arm, given: &Given<'_, f64>, found: &[f64]) -> (Vec<f64>, f64) {
     let (base, joints) = found.split_at(18);
     let (positions, rates) = joints.split_at(given.q.len());
@@ -152,7 +152,7 @@ fn without_step_of_floating_base(arm: &Arm, given: &Given<'_, f64>, found: &[f64
     (accelerations.concat(), error.into_iter().fold(0.0, f64::max))
 }
 
-/// How far the derivatives of a step where nothing holds the base are from those expected, of the condition of M.
+/// How far the derivatives of a step with a floating base are from those expected, of the condition of M.
 fn error_of_floating_step(arm: &Arm, given: &Given<'_, f64>, found: &[f64], expected: &[f64]) -> f64 {
     let matrix = arm.runtime.floating_mass_matrix(given.q).expect("one per joint");
     let Some(Conditioning { number, largest: of_matrix }) = conditioning(&matrix) else { return 0.0 };

@@ -59,7 +59,7 @@ pub(crate) fn robot(seed: u64, dof: usize, shape: Shape, follows: bool) -> Robot
     reader.read(&text).unwrap_or_else(|report| panic!("{report}\n{text}")).robot
 }
 
-/// Rotors about any axis on any link, and on a base that nothing holds, are in the reduced form of every function that
+/// Rotors about any axis on any link, and on a floating base, are in the reduced form of every function that
 /// has one: no plan is refused because of them. Where the seven steps themselves cannot be read exactly, none is made.
 #[test]
 fn rotors_of_floating_bases_have_a_reduced_form() {

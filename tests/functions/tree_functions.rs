@@ -87,13 +87,13 @@ fn of_wrench_at(robot: &Robot, frame: &FixedFrame, q: &[f64], wrench: &Wrench<f6
     columns.iter().map(|[v, w]| v.dot(&force) + w.dot(&moment)).collect()
 }
 
-/// The wrench that must act on a base that nothing holds, and the torques, with nothing at the tips.
+/// The wrench that must act on a floating base, and the torques, with nothing at the tips.
 fn of_floating_base(robot: &Robot, motion: &Motion<'_>, payload: Option<&Payload<f64>>) -> Vec<f64> {
     let [force, moment] = oracle::base_wrench(robot, motion, payload);
     [force.as_slice(), moment.as_slice(), &oracle::torques(robot, motion, payload)].concat()
 }
 
-/// The columns of the mass matrix of a robot whose base nothing holds: wrenches and torques of unit accelerations.
+/// The columns of the mass matrix of a robot with a floating base: wrenches and torques of unit accelerations.
 pub(crate) fn floating_mass_matrix(robot: &Robot, q: &[f64], payload: Option<&Payload<f64>>) -> Vec<Vec<f64>> {
     let zeros = vec![0.0; q.len()];
     let column = |column: usize| {

@@ -238,7 +238,7 @@ ON_BASE = "const of = rne.parts(); return { tau: of.total, wrench: of.onBase.tot
 
 
 def floating(driver, rne, robot, page, tips):
-    """A base that nothing holds: torques and what acts on the base are those of `rne eval`, by hands, keys and addresses."""
+    """A floating base: torques and what acts on the base are those of `rne eval`, by hands, keys and addresses."""
     opened(driver, page)
     name, chance = page.stem, random.Random(29)
     inspection = json.loads(subprocess.run([rne, "show", robot, "--json"], check=True, capture_output=True).stdout)

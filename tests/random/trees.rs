@@ -1,5 +1,5 @@
 //! Random trees: links that carry none, one or many joints, rows that begin at placements, links without mass, motors,
-//! named frames, a tip on any link, bases that nothing holds, and contacts at their tips.
+//! named frames, a tip on any link, floating bases, and contacts at their tips.
 
 use std::fmt::Write;
 

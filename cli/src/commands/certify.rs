@@ -53,9 +53,9 @@ Examples:
 The command compiles the code of `rne emit --lang c`, reads its instructions by
 objdump, runs it in QEMU, compares the results with those of this computer, and
 bounds their error. It fails if the code branches, uses doubles, or calls other
-functions than its sine. Needed: arm-none-eabi-gcc with objdump; used if
-installed: qemu-system-arm, cppcheck. See docs/assurance.md. To certify a file
-that `rne emit` wrote, give the same options here: --function, --prefix, ….")]
+functions than its sine. Needed: arm-none-eabi-gcc; used if installed:
+qemu-system-arm, cppcheck. To certify a file of `rne emit`, give the same
+options as there. See docs/assurance.md.")]
 #[allow(clippy::struct_excessive_bools)] // options of a command
 pub(crate) struct Arguments {
     /// Robot file, or a name from `rne list`
@@ -133,7 +133,7 @@ pub(crate) struct Arguments {
     /// Number type of C in FOLDER: float (default), double
     #[arg(long, value_enum, value_name = "TYPE", hide_possible_values = true, requires = "evidence")]
     pub(super) real: Option<Real>,
-    /// Print the certificate as JSON, with a trace of all lines
+    /// Print JSON: certificate and a trace of all lines
     #[arg(long)]
     pub(super) json: bool,
     /// Output file; - is standard output [default: -]

@@ -46,7 +46,7 @@ pub(crate) struct Arguments {
     /// Convert the whole robot after the base, a tree, and not one arm; --tip then says where the tip is
     #[arg(long)]
     whole: bool,
-    /// With --whole: nothing holds the root link, which becomes the floating base [default: as in the file]
+    /// With --whole: the root link becomes the floating base [default: as in the file]
     #[arg(long, requires = "whole")]
     floating: bool,
     /// With --whole: fix a base that floats in the file

@@ -19,7 +19,7 @@ const DIGITS: usize = 6;
 /// Digits after the decimal point in a row of ten parameters.
 const FEW_DIGITS: usize = 4;
 
-/// Velocities of a base that nothing holds.
+/// Velocities of a floating base.
 const OF_BASE: [&str; 6] = ["x", "y", "z", "about x", "about y", "about z"];
 
 /// The numbers of a function as text.
@@ -182,7 +182,7 @@ fn poses(text: &mut String, frames: &[String], numbers: &[f64]) {
     Table { about, rows: &rows, columns: &columns, numbers: &elements, digits: DIGITS }.write(text);
 }
 
-/// A table per torque, a line per link that enters it; force and moment on a base that nothing holds stand first.
+/// A table per torque, a line per link that enters it; force and moment on a floating base come first.
 fn regressor(text: &mut String, function: Function, joints: &[String], numbers: &[f64]) {
     let columns = INERTIAL_PARAMETERS.map(|name| name.replacen("mc", "m c", 1));
     let floats = function.is_of_floating_base();

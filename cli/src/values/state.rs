@@ -214,7 +214,7 @@ impl State {
         }
     }
 
-    /// The velocity of a base that nothing holds.
+    /// The velocity of a floating base.
     pub(crate) const fn twist(&self) -> BaseTwist<f64> {
         BaseTwist { linear: self.base.velocity, angular: self.base.omega }
     }

@@ -196,8 +196,15 @@ fn tests_are_there(document: &str, command: &str) {
     let words: Vec<&str> = command.split(' ').collect();
     let after = |option: &str| words.iter().position(|word| *word == option).and_then(|at| words.get(at + 1));
     let Some(name) = after("--test") else { return };
-    let root = Path::new(ROOT).join(after("-p").unwrap_or(&"."));
-    let manifest = fs::read_to_string(root.join("Cargo.toml")).expect("a manifest");
+    let package = format!("name = \"{}\"", after("-p").unwrap_or(&"rne"));
+    let folders = |above: &Path| fs::read_dir(above).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let shelves = folders(Path::new(ROOT)).filter(|path| path.is_dir() && !path.ends_with("target"));
+    let crates = shelves.flat_map(|shelf| folders(&shelf).chain([shelf.clone()]).collect::<Vec<_>>());
+    let found = crates.chain([Path::new(ROOT).to_owned()]).find_map(|folder| {
+        let manifest = fs::read_to_string(folder.join("Cargo.toml")).ok()?;
+        manifest.lines().any(|line| line == package).then_some((folder, manifest))
+    });
+    let (root, manifest) = found.unwrap_or_else(|| panic!("{document}: `{command}`: there is no package {package}"));
     let files = ["tests/NAME.rs", "tests/NAME/main.rs", "tests/NAME/all.rs"].map(|file| file.replace("NAME", name));
     assert!(
         files.iter().any(|file| root.join(file).exists()) || manifest.contains(&format!("name = \"{name}\"")),

@@ -8,7 +8,7 @@ use crate::call::{ROOT, fails, fine, folder, rne};
 fn arm(name: &str) -> (String, String) {
     let folder = folder(&format!("plans_{name}"));
     let path = |file: &str| folder.join(file).to_str().expect("UTF-8").to_owned();
-    let shipped = format!("{ROOT}/rne-cli/tests/cli/plans/{name}");
+    let shipped = format!("{ROOT}/cli/tests/cli/plans/{name}");
     fs::copy(format!("{shipped}.yaml"), path("arm.yaml")).expect("a robot");
     let _ = fs::remove_file(path("arm.plan.yaml"));
     if fs::exists(format!("{shipped}.plan.yaml")).expect("a folder") {

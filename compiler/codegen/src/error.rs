@@ -379,7 +379,7 @@ impl fmt::Display for CompileError {
                 f,
                 "`{function}` is of robots with contacts, and the robot file has no `contacts`: nothing would hold the \
                  robot. Write beside `floating_base` and `tips` which tips are held, such as `contacts: [{{tip: left, \
-                 kind: point}}]`; for a robot that nothing holds, use `floating_forward_dynamics`"
+                 kind: point}}]`; without contacts, use `floating_forward_dynamics`"
             ),
             Self::OfEveryLink { function, follower } => write!(
                 f,

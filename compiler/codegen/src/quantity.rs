@@ -275,7 +275,7 @@ quantities! {
     Acceleration:               "ddc",       Vector,    4, true,  "c̈", "m/s²",
         "c̈: acceleration of the centre of mass";
     BaseAcceleration:           "ddcb",      Vector,    4, true,  "c̈", "m/s²",
-        "c̈: acceleration of the centre of mass of a base that nothing holds";
+        "c̈: acceleration of the centre of mass of a floating base";
     OriginAcceleration:         "a",         Vector,    4, true,  "a", "m/s²",
         "acceleration of the frame's origin, less gravity";
     OriginAccelerationUnturned: "an",        Vector,    4, true,  "aN", "m/s²", "the same in frame N";

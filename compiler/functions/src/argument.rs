@@ -139,9 +139,9 @@ macro_rules! argument_parts {
             "Force, N, and moment, N m, that the robot exerts at each tip, in axes of the tip: six elements for each \
              tip.";
         omega: BaseVelocity, Base [Omega * 3],
-            "Angular velocity of a base that nothing holds, rad/s, in the axes of frame 0: three elements.";
+            "Angular velocity of a floating base, rad/s, in the axes of frame 0: three elements.";
         twist: BaseTwist, Base [OriginVelocity * 3, Omega * 3],
-            "Velocity of the origin of frame 0, m/s, and angular velocity of a base that nothing holds, rad/s, in the \
+            "Velocity of the origin of frame 0, m/s, and angular velocity of a floating base, rad/s, in the \
              axes of frame 0: six elements.";
         pose: BasePose, Base [FrameRotation * 9, FrameOrigin * 3],
             "Pose of frame 0 in the world: rows of the rotation, then the origin, m: twelve elements.";

@@ -212,12 +212,12 @@ macro_rules! functions {
                  external torque, so an observer needs no accelerations. tau: of the actuators, without friction.";
             InverseDynamicsOnMovingBase [InverseDynamics.moving] =
                 inverse_dynamics_on_moving_base(q: Positions, qd: Rates, qdd: Accelerations, base: Base) -> Vector:
-                "Torques on a base that moves as told, under gravity as told, with a free tip.",
+                "Torques on a base with a given motion, under a given gravity, with a free tip.",
                 "base_omega (rad/s), base_omega_dot (rad/s²): of frame 0. base_acceleration (m/s²): of its origin, \
                  gravity not included. base_gravity (m/s²): points down, and replaces the robot's own. All in the axes \
                  of frame 0.";
             ActuatorTorques [ActuatorTorques] = actuator_torques(qd: Rates, qdd: Accelerations) -> Vector:
-                "What rotors behind gears and friction add to the torques.",
+                "Torques of rotors behind gears and of friction, beside those of the links.",
                 "G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇), to be added to the torques of the links. Friction of Coulomb \
                  is zero at rest; a joint without a motor needs nothing.";
             InverseMassMatrix [InverseMassMatrix] = inverse_mass_matrix(q: Positions) -> Matrix:
@@ -267,20 +267,20 @@ macro_rules! functions {
             InverseDynamicsOfFloatingBase [InverseDynamics.floating.with_wrenches] = inverse_dynamics_of_floating_base(
                 q: Positions, qd: Rates, qdd: Accelerations, base: Base, wrenches: Wrenches
             ) -> FloatingTorques:
-                "Torques, and the wrench that must act on the base, when nothing holds the base and it moves as told.",
+                "Torques of a robot with a floating base, and the wrench that must act on the base, for a given motion.",
                 "base: as in inverse_dynamics_on_moving_base; only its acceleration less its gravity counts, which is \
                  what an inertial measurement unit reads. wrenches: as in inverse_dynamics_with_wrenches. wrench: \
                  force (N) and moment (N m) that must act ON the base beside gravity, about the origin of frame 0, in \
                  its axes; zero in free flight. tau: of the actuators.";
             FloatingMassMatrix [MassMatrix.floating] = floating_mass_matrix(q: Positions) -> FloatingMatrix:
-                "The mass matrix of a robot whose base nothing holds, symmetric: six rows of the base, then the joints.",
+                "The mass matrix of a robot with a floating base, symmetric: six rows of the base, then the joints.",
                 "mass[i][j]: rows are the force (N) on the base, the moment (N m) about the origin of frame 0 and the \
                  torques; columns are the acceleration of this origin less gravity, the angular acceleration of the \
                  base and the accelerations of the joints. The base in axes of frame 0.";
             FloatingBias [BiasTorques.floating.with_wrenches] = floating_bias(
                 q: Positions, qd: Rates, omega: BaseVelocity, wrenches: Wrenches
             ) -> FloatingVector:
-                "Wrench on a base that nothing holds and torques, for zero accelerations: velocity products and tips.",
+                "Wrench on a floating base and torques, for zero accelerations: velocity products and tips.",
                 "omega: angular velocity of the base (rad/s), in axes of frame 0. wrenches: as in \
                  inverse_dynamics_with_wrenches. bias: force (N), moment (N m) about the origin of frame 0, then \
                  torques, where the acceleration of this origin less gravity, the angular acceleration and those of \
@@ -288,13 +288,13 @@ macro_rules! functions {
             FloatingForwardDynamics [ForwardDynamics.floating.with_wrenches] = floating_forward_dynamics(
                 q: Positions, qd: Rates, tau: Torques, omega: BaseVelocity, wrenches: Wrenches
             ) -> FloatingAccelerations:
-                "Accelerations of the base and of the joints for torques `tau`, when nothing holds the base.",
+                "Accelerations of a floating base and of the joints for torques `tau`.",
                 "omega, wrenches: as in floating_bias; beside the wrenches, only gravity acts. base: acceleration of \
                  the origin of frame 0 less gravity (m/s²), which an accelerometer reads, and angular acceleration \
                  (rad/s²), in axes of frame 0. qdd: of the joints. A base without mass makes the mass matrix \
                  singular: the numbers mean nothing or are not finite.";
             CentroidalMomentumMatrix [CentroidalMomentumMatrix.floating] = centroidal_momentum_matrix(q: Positions) -> FloatingRows:
-                "The matrix A of a robot whose base nothing holds: A v is its momentum about its centre of mass.",
+                "The matrix A of a robot with a floating base: A v is its momentum about its centre of mass.",
                 "map[i][j]: rows are the linear momentum (N s) and the angular momentum about the centre of mass \
                  (N m s); columns are the velocity of the origin of frame 0, the angular velocity of the base and the \
                  velocities of the joints. All vectors are in axes of frame 0.";
@@ -306,13 +306,13 @@ macro_rules! functions {
             FloatingRegressor [Regressor.floating] = floating_regressor(
                 q: Positions, qd: Rates, qdd: Accelerations, base: Base
             ) -> FloatingRegressor:
-                "Wrench on a base that nothing holds and torques per inertial parameter of the base and of each link.",
+                "Wrench on a floating base and torques per inertial parameter of the base and of each link.",
                 "base: as in inverse_dynamics_of_floating_base; the tips are free. regressor[i][j][k]: rows are the \
                  force (N) on the base, the moment (N m) about the origin of frame 0 and the torques; j is 0 for the \
                  base and counts the links from 1; k is the parameter, as in regressor. Those of the base refer to \
                  frame 0.";
             FloatingKineticEnergy [KineticEnergy.floating] = floating_kinetic_energy(q: Positions, qd: Rates, twist: BaseTwist) -> Number:
-                "Kinetic energy of a robot whose base nothing holds, J.",
+                "Kinetic energy of a robot with a floating base, J.",
                 "twist: velocity of the origin of frame 0 (m/s), then angular velocity of the base (rad/s), in axes of \
                  frame 0. ½ vᵀ M v of these and of the joints, M as in floating_mass_matrix.";
             FloatingPotentialEnergy [PotentialEnergy.floating] = floating_potential_energy(q: Positions, pose: BasePose) -> Number:
@@ -320,11 +320,11 @@ macro_rules! functions {
                 "pose: of frame 0 in the world, in whose axes the robot file has gravity; rotation and origin (m). -Σ \
                  m g·c, with c from the origin of the world to each centre of mass.";
             CentroidalMomentum [CentroidalMomentum.floating] = centroidal_momentum(q: Positions, qd: Rates, twist: BaseTwist) -> Spatial:
-                "The momentum of a robot whose base nothing holds, and its angular momentum about the centre of mass.",
+                "The momentum of a robot with a floating base, and its angular momentum about the centre of mass.",
                 "twist: as in floating_kinetic_energy. momentum: linear (N s), then angular about the centre of mass \
                  (N m s), in axes of frame 0: centroidal_momentum_matrix times the velocities, in fewer operations.";
             TipJacobians [TipJacobians.floating] = tip_jacobians(q: Positions, base_rotation: BaseRotation) -> TipRows:
-                "The Jacobian of each tip of a robot whose base nothing holds, in world axes: linear rows, then angular.",
+                "The Jacobian of each tip of a robot with a floating base, in world axes: linear rows, then angular.",
                 "base_rotation: its columns are the axes of frame 0 in the world. jacobians[k]: times the velocities, it \
                  is the velocity of the origin of tip k (m/s) above its angular velocity (rad/s), in world axes; \
                  columns are the velocity of the origin of frame 0 and the angular velocity of the base, both in axes \
@@ -334,7 +334,7 @@ macro_rules! functions {
             TipAccelerations [TipAccelerations.floating] = tip_accelerations(
                 q: Positions, qd: Rates, omega: BaseVelocity, base_rotation: BaseRotation
             ) -> TipVectors:
-                "Accelerations of the tips of a robot on a floating base that accelerates nowhere: J̇ v, in world axes.",
+                "J̇ v: accelerations of the tips where base and joints do not accelerate, in world axes, for a floating base.",
                 "omega: angular velocity of the base (rad/s), in axes of frame 0. base_rotation: as in tip_jacobians. \
                  accelerations[k]: classical acceleration of the origin of tip k (m/s²), then its angular acceleration \
                  (rad/s²), where the acceleration of the origin of frame 0, the angular acceleration of the base and \
@@ -399,16 +399,16 @@ macro_rules! functions {
             InverseDynamicsOfFloatingLoops [InverseDynamics.floating.with_wrenches.of_loops] = inverse_dynamics_of_floating_loops(
                 q: Positions, passive: Passive, qd: Rates, qdd: Accelerations, base: Base, wrenches: Wrenches
             ) -> FloatingTorques:
-                "Torques of a robot with closed loops, and the wrench on its base, when nothing holds the base.",
+                "Torques of a robot with closed loops and a floating base, and the wrench on the base.",
                 "passive: as in loop_map. base, wrenches, wrench: as in inverse_dynamics_of_floating_base. tau: as in \
                  inverse_dynamics_of_loops.";
             FloatingMassMatrixOfLoops [MassMatrix.floating.of_loops] = floating_mass_matrix_of_loops(q: Positions, passive: Passive) -> FloatingMatrix:
-                "The mass matrix of a robot with closed loops whose base nothing holds: six rows, then the joints.",
+                "The mass matrix of a robot with closed loops and a floating base: six rows, then the joints.",
                 "passive: as in loop_map. mass[i][j]: as in floating_mass_matrix, of the joints of q.";
             FloatingForwardDynamicsOfLoops [ForwardDynamics.floating.with_wrenches.of_loops] = floating_forward_dynamics_of_loops(
                 q: Positions, passive: Passive, qd: Rates, tau: Torques, omega: BaseVelocity, wrenches: Wrenches
             ) -> FloatingAccelerations:
-                "Accelerations of the base and of the joints of a robot with closed loops, when nothing holds the base.",
+                "Accelerations of the base and of the joints of a robot with closed loops and a floating base.",
                 "passive: as in loop_map. omega, wrenches, base: as in floating_forward_dynamics. qdd: as in \
                  forward_dynamics_of_loops.";
             TorqueGradient [TorqueGradient] = torque_gradient(
@@ -479,7 +479,7 @@ macro_rules! functions {
             FloatingEulerStep [EulerStep.floating.with_wrenches] = floating_euler_step(
                 q: Positions, qd: Rates, tau: Torques, pose: BasePose, twist: BaseTwist, step: Step, wrenches: Wrenches
             ) -> FloatingNextState:
-                "A step of the semi-implicit Euler method where nothing holds the base: the state after it.",
+                "A step of the semi-implicit Euler method with a floating base: the state after it.",
                 "pose: of frame 0 in the world, in whose axes the robot file has gravity. twist: as in \
                  floating_kinetic_energy. step: as in euler_step. wrenches: as in inverse_dynamics_with_wrenches; they \
                  do not change during the step. The velocities come first, by the accelerations of \

@@ -302,7 +302,7 @@ impl Arm {
         self.arm.dof()
     }
 
-    /// Whether nothing holds the base. Functions of a floating base need one.
+    /// Whether the base floats. Functions of a floating base need one.
     #[getter]
     fn floating(&self) -> bool {
         self.robot().floating_base.is_some()

@@ -78,7 +78,7 @@ methods! {
         parameters: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyTuple>>;
 
-    /// The state after steps of the classical Runge-Kutta method where nothing holds the base.
+    /// The state after steps of the classical Runge-Kutta method with a floating base.
     ///
     /// Arguments and results are those of `floating_euler_step`. `steps` steps follow each other under the same torques
     /// `tau` and the same `wrenches`, which do not change in axes of their tips. Each step of duration `step` (s)

@@ -29,7 +29,7 @@ use crate::seven_steps::mechanism::Mechanism;
 use crate::{BaseMotion, BaseTwist, Constant, Pose, Scalar};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    /// The kinetic energy on a base that moves as told, or stands still.
+    /// The kinetic energy on a base with a given motion, or at rest.
     pub(crate) fn kinetic<T: Scalar>(self, q: &[T], qd: &[T], twist: Option<&BaseTwist<T>>) -> T {
         let zeros = self.zeros();
         let joints = JointMotions::new(q, qd, zeros.as_ref());

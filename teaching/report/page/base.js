@@ -1,4 +1,4 @@
-// The base of a robot that nothing holds: how it stands in the world and how it moves, in its own axes.
+// The floating base of a robot: how it stands in the world and how it moves, in its own axes.
 
 /** The rows of the panel: words, letter, unit, and how far a slider goes. */
 const OF_BASE = {
@@ -32,7 +32,7 @@ class BaseSliders {
     this.root = element(
       "details",
       { class: "base-motion", open: true },
-      element("summary", {}, `Base: nothing holds “${inspection.floating.name}”`),
+      element("summary", {}, `Floating base “${inspection.floating.name}”`),
       element("table", { class: "sliders" }, element("thead", {}, head), element("tbody", {}, ...rows)),
       element("p", { class: "hint" }, words),
     );

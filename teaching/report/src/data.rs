@@ -11,8 +11,8 @@ use serde_json::{Map, Value, json};
 /// equations. `names` has arrays of quantity, joint, component (or null), part (where it is one) and what the link
 /// carries there (where it is not the first). A component has its name, its equation and, unless it is computed, what
 /// became of it, with its reason by number. `programs` are three: `folded`, with the tip wrench as arguments
-/// `with_wrench`, and `reduced` with names of its own, for its frames are not those of the lecture. Where nothing holds
-/// the base, `folded` takes the wrenches at the tips itself, and `floating` has the base and these tips.
+/// `with_wrench`, and `reduced` with names of its own, for its frames are not those of the lecture. With a
+/// floating base, `folded` takes the wrenches at the tips itself, and `floating` has the base and these tips.
 #[must_use]
 pub fn data(robot: &Robot, torques: &Program, with_wrench: Option<&Program>, reduced: Option<&Program>) -> Value {
     let folded = Inspection::new(robot, torques);

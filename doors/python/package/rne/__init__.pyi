@@ -199,12 +199,12 @@ class Arm:
         base_acceleration: ArrayLike | None = ..., base_gravity: ArrayLike | None = ...,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
-        """Torques on a base that moves as told, under gravity as told, with a free tip."""
+        """Torques on a base with a given motion, under a given gravity, with a free tip."""
     def actuator_torques(
         self, qd: Joints, qdd: Joints, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
-        """What rotors behind gears and friction add to the torques."""
+        """Torques of rotors behind gears and of friction, beside those of the links."""
     def inverse_mass_matrix(
         self, q: Joints, *,
         parameters: Parameters = ..., out: Floats | None = ...,
@@ -261,27 +261,27 @@ class Arm:
         base_acceleration: ArrayLike | None = ..., base_gravity: ArrayLike | None = ...,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
-        """Torques, and the wrench that must act on the base, when nothing holds the base and it moves as told."""
+        """Torques of a robot with a floating base, and the wrench that must act on the base, for a given motion."""
     def floating_mass_matrix(
         self, q: Joints, *,
         payload: ArrayLike | None = ..., parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
-        """The mass matrix of a robot whose base nothing holds, symmetric: six rows of the base, then the joints."""
+        """The mass matrix of a robot with a floating base, symmetric: six rows of the base, then the joints."""
     def floating_bias(
         self, q: Joints, qd: Joints, omega: ArrayLike, wrenches: ArrayLike | dict[str, ArrayLike] | None = ..., *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
-        """Wrench on a base that nothing holds and torques, for zero accelerations: velocity products and tips."""
+        """Wrench on a floating base and torques, for zero accelerations: velocity products and tips."""
     def floating_forward_dynamics(
         self, q: Joints, qd: Joints, tau: Joints, omega: ArrayLike, wrenches: ArrayLike | dict[str, ArrayLike] | None = ..., *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
-        """Accelerations of the base and of the joints for torques `tau`, when nothing holds the base."""
+        """Accelerations of a floating base and of the joints for torques `tau`."""
     def centroidal_momentum_matrix(
         self, q: Joints, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
-        """The matrix A of a robot whose base nothing holds: A v is its momentum about its centre of mass."""
+        """The matrix A of a robot with a floating base: A v is its momentum about its centre of mass."""
     def centroidal_bias(
         self, q: Joints, qd: Joints, omega: ArrayLike, *,
         parameters: Parameters = ..., out: Floats | None = ...,
@@ -293,12 +293,12 @@ class Arm:
         base_acceleration: ArrayLike | None = ..., base_gravity: ArrayLike | None = ...,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
-        """Wrench on a base that nothing holds and torques per inertial parameter of the base and of each link."""
+        """Wrench on a floating base and torques per inertial parameter of the base and of each link."""
     def floating_kinetic_energy(
         self, q: Joints, qd: Joints, twist: ArrayLike, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats | float:
-        """Kinetic energy of a robot whose base nothing holds, J."""
+        """Kinetic energy of a robot with a floating base, J."""
     def floating_potential_energy(
         self, q: Joints, pose: ArrayLike, *,
         parameters: Parameters = ..., out: Floats | None = ...,
@@ -308,17 +308,17 @@ class Arm:
         self, q: Joints, qd: Joints, twist: ArrayLike, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
-        """The momentum of a robot whose base nothing holds, and its angular momentum about the centre of mass."""
+        """The momentum of a robot with a floating base, and its angular momentum about the centre of mass."""
     def tip_jacobians(
         self, q: Joints, base_rotation: ArrayLike, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
-        """The Jacobian of each tip of a robot whose base nothing holds, in world axes: linear rows, then angular."""
+        """The Jacobian of each tip of a robot with a floating base, in world axes: linear rows, then angular."""
     def tip_accelerations(
         self, q: Joints, qd: Joints, omega: ArrayLike, base_rotation: ArrayLike, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
-        """Accelerations of the tips of a robot on a floating base that accelerates nowhere: J̇ v, in world axes."""
+        """J̇ v: accelerations of the tips where base and joints do not accelerate, in world axes, for a floating base."""
     def forward_dynamics_in_contact(
         self, q: Joints, qd: Joints, tau: Joints, omega: ArrayLike, base_rotation: ArrayLike, *,
         parameters: Parameters = ..., out: Floats | None = ...,
@@ -372,17 +372,17 @@ class Arm:
         base_acceleration: ArrayLike | None = ..., base_gravity: ArrayLike | None = ...,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
-        """Torques of a robot with closed loops, and the wrench on its base, when nothing holds the base."""
+        """Torques of a robot with closed loops and a floating base, and the wrench on the base."""
     def floating_mass_matrix_of_loops(
         self, q: Joints, passive: Joints, *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> Floats:
-        """The mass matrix of a robot with closed loops whose base nothing holds: six rows, then the joints."""
+        """The mass matrix of a robot with closed loops and a floating base: six rows, then the joints."""
     def floating_forward_dynamics_of_loops(
         self, q: Joints, passive: Joints, qd: Joints, tau: Joints, omega: ArrayLike, wrenches: ArrayLike | dict[str, ArrayLike] | None = ..., *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats]:
-        """Accelerations of the base and of the joints of a robot with closed loops, when nothing holds the base."""
+        """Accelerations of the base and of the joints of a robot with closed loops and a floating base."""
     def torque_gradient(
         self, q: Joints, qd: Joints, qdd: Joints, multipliers: Joints, *,
         parameters: Parameters = ..., out: Floats | None = ...,
@@ -442,7 +442,7 @@ class Arm:
         self, q: Joints, qd: Joints, tau: Joints, pose: ArrayLike, twist: ArrayLike, step: ArrayLike, wrenches: ArrayLike | dict[str, ArrayLike] | None = ..., *,
         parameters: Parameters = ..., out: Floats | None = ...,
     ) -> tuple[Floats, Floats, Floats, Floats]:
-        """A step of the semi-implicit Euler method where nothing holds the base: the state after it."""
+        """A step of the semi-implicit Euler method with a floating base: the state after it."""
     def floating_euler_step_derivatives(
         self, q: Joints, qd: Joints, tau: Joints, pose: ArrayLike, twist: ArrayLike, step: ArrayLike, wrenches: ArrayLike | dict[str, ArrayLike] | None = ..., *,
         parameters: Parameters = ..., out: Floats | None = ...,
@@ -530,7 +530,7 @@ class Arm:
         self, q: Joints, qd: Joints, tau: Joints, pose: ArrayLike, twist: ArrayLike, step: ArrayLike,
         wrenches: ArrayLike | dict[str, ArrayLike] | None = ..., *, steps: int = ..., parameters: Parameters = ...,
     ) -> tuple[Floats, Floats, Floats, Floats]:
-        """The state after steps of the classical Runge-Kutta method where nothing holds the base."""
+        """The state after steps of the classical Runge-Kutta method with a floating base."""
     def floating_runge_kutta_step_derivatives(
         self, q: Joints, qd: Joints, tau: Joints, pose: ArrayLike, twist: ArrayLike, step: ArrayLike,
         wrenches: ArrayLike | dict[str, ArrayLike] | None = ..., *, steps: int = ..., parameters: Parameters = ...,
