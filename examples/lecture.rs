@@ -1,5 +1,5 @@
-//! Lecture 38 on one page: recursive Newton-Euler for a serial arm with a standard table, in symbols of the lecture. The
-//! torques have the bits of `rne::Arm`: `cargo test --test robots lecture`.
+//! Lecture 38 on one page: recursive Newton-Euler for a serial arm with a standard table. Its torques have the bits of
+//! `rne::Arm`: `cargo test --test robots lecture`.
 //!
 //! Link i is the one that joint i moves; p is the link before it. Vectors of link i are in axes that are fixed to it,
 //! with z along joint i.
