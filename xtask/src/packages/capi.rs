@@ -25,7 +25,7 @@ const SANITIZERS: [&str; 4] =
 const STRICT: [&str; 4] = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"];
 
 /// The folder of headers that replace those of ros2_control, for the example of a controller.
-const STUB: &str = "-Idoors/capi/tests/ros2_stub";
+const STUB: &str = "-Idoors/c/tests/ros2_stub";
 
 /// Builds the C library, lays it out below a prefix, and runs programs of C and C++ against it
 ///
