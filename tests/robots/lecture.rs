@@ -5,7 +5,7 @@ use rne::model::{Convention, Robot};
 
 #[path = "../../examples/lecture.rs"]
 #[allow(dead_code)] // its program
-mod lecture;
+mod on_one_page;
 
 #[test]
 fn the_lecture_on_one_page_has_the_bits_of_the_runtime() {
@@ -24,7 +24,7 @@ fn the_lecture_on_one_page_has_the_bits_of_the_runtime() {
             let mut list = || (0..robot.dof()).map(|_| 6.0 * random.f64() - 3.0).collect::<Vec<_>>();
             let (q, qd, qdd) = (list(), list(), list());
             let expected = arm.inverse_dynamics(&q, &qd, &qdd).expect("one per joint");
-            assert_eq!(lecture::inverse_dynamics(&robot, &q, &qd, &qdd), expected, "{name}");
+            assert_eq!(on_one_page::inverse_dynamics(&robot, &q, &qd, &qdd), expected, "{name}");
         }
     }
     assert!(robots >= 8, "{robots} robots with a standard table");
