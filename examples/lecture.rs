@@ -27,8 +27,8 @@ struct Link {
 pub(crate) fn inverse_dynamics(robot: &Robot, q: &[f64], qd: &[f64], qdd: &[f64]) -> Vec<f64> {
     let (e, zero) = (Vector3::z(), Vector3::<f64>::zeros());
     let mut links: Vec<Link> = Vec::new();
-    // The base rests under the gravity of the robot file.
     let (mut omega, mut omega_dot, mut c_ddot, mut g) = (zero, zero, zero, Vector3::from(robot.gravity));
+    // The base is at rest. Below, R_i = Rx(α_p) Rz(θ_i).
     let (mut twist, mut r) = (Matrix3::<f64>::identity(), zero);
 
     // Forward, from the base to the tip.
@@ -36,26 +36,26 @@ pub(crate) fn inverse_dynamics(robot: &Robot, q: &[f64], qd: &[f64], qdd: &[f64]
         let Row { kind, dh, link } = joint.row;
         let is_revolute = kind == JointKind::Revolute;
         let rotation = twist * rz(&joint.row, q[i]);
-        let to_p = |vector: Vector3<f64>| rotation.tr_mul(&vector); // R_iᵀ
+        let into_i = |vector: Vector3<f64>| rotation.tr_mul(&vector); // R_iᵀ, from axes of link p
+        // the table has com and inertia in axes at the end of the link, which Rx(α_i) turns
         let com = rx(&dh.alpha) * Vector3::from(link.com);
         let d = Vector3::new(dh.a, 0.0, if is_revolute { dh.d } else { dh.d + q[i] }) + com;
 
-        // the origin of joint i, a point of link p
         let origin_ddot = (c_ddot + omega_dot.cross(&r)) + omega.cross(&omega.cross(&r));
         // Steps 1 and 2: angular velocity ω_i and acceleration ω̇_i.
-        (omega, omega_dot) = (to_p(omega), to_p(omega_dot));
+        (omega, omega_dot) = (into_i(omega), into_i(omega_dot));
         if is_revolute {
             omega += e * qd[i];
             omega_dot = (omega_dot + e * qdd[i]) + omega.cross(&e) * qd[i];
         }
-        // Step 3, the velocity of the centre of mass, is not needed for the torques.
+        // Step 3, the velocity ċ_i, is not needed for the torques.
         // Step 4: acceleration c̈_i of the centre of mass.
-        c_ddot = (to_p(origin_ddot) + omega_dot.cross(&d)) + omega.cross(&omega.cross(&d));
+        c_ddot = (into_i(origin_ddot) + omega_dot.cross(&d)) + omega.cross(&omega.cross(&d));
         if !is_revolute {
             c_ddot = (c_ddot + e * qdd[i]) + omega.cross(&e) * (2.0 * qd[i]);
         }
         // Step 5: gravity g_i.
-        g = to_p(g);
+        g = into_i(g);
         // Step 6, the link alone.
         let inertia = (rx(&dh.alpha) * Matrix3::from(link.inertia.rows()).transpose()) * rx(&dh.alpha).transpose();
         let force = (c_ddot - g) * link.mass;
@@ -64,7 +64,7 @@ pub(crate) fn inverse_dynamics(robot: &Robot, q: &[f64], qd: &[f64], qdd: &[f64]
         (twist, r) = (rx(&dh.alpha), -com);
     }
 
-    // Backward, from the tip to the base. Step 6, the balance: what joint i carries, and what joint i + 1 asks of it.
+    // Backward, from the tip to the base. Step 6, the balance of link i with what joint i + 1 asks of it.
     let mut torques = vec![0.0; links.len()];
     let (mut f, mut n, mut r_cross_f) = (zero, zero, zero);
     for (i, link) in links.iter().enumerate().rev() {
@@ -83,7 +83,7 @@ fn rx(Angle { sin: s, cos: c, .. }: &Angle) -> Matrix3<f64> {
     Matrix3::new(1.0, 0.0, 0.0, 0.0, *c, -s, 0.0, *s, *c)
 }
 
-/// Rz(θ_i), with θ_i + q_i for a revolute joint. A right angle is exact: sin(q + 90°) is cos q.
+/// Rz(θ_i), with θ_i + q_i for a revolute joint. Quarter turns are exact: each maps (sin, cos) to (cos, -sin).
 fn rz(row: &Row, q: f64) -> Matrix3<f64> {
     let theta = &row.dh.theta;
     let (s, c) = match (row.kind, theta.right) {

@@ -19,8 +19,11 @@
 //! link i stand in the axes of form P: fixed to link i, z along joint i. The lecture writes the same vectors in axes
 //! fixed to link i-1: Rz(θ_i) leads there and leaves z elements, so τ, as they are.
 //!
-//! A link without mass may have a first moment h, about the point that its centre of mass would be: a set of base
-//! parameters has such links. Their terms stand apart, for no body has them.
+//! R_i and d_i are computed in [`crate::seven_steps::link_frame`]. `kind.x(rigid, …)` adds the term of the joint to
+//! `rigid`, the value if the joint did not move. f_{i,k} is f_{p,i} of a joint k that link i carries.
+//!
+//! The lecture has no rotors of motors (`spins`), no floating base and no first moment h: a body has h = 0, and only a
+//! set of base parameters has links without mass that have one.
 //!
 //! The order of the operations is part of the contract: generated code repeats it and is compared bit for bit.
 
@@ -113,8 +116,8 @@ fn turning<T: Scalar>(h: &Vector3<T>, this: &LinkMotion<T>) -> Vector3<T> {
 /// Step 6, the balance: force and moment from the parent link, the moment about the joint's reference point. The sums
 /// run over the joints k that link i carries, and the tip; in a chain there is one of them.
 ///
-/// - f_{p,i} = f_i + Σ f_{i,k} - m_i g_i
-/// - n_{p,i} = n_i + Σ n_{i,k} + d_i × f_{p,i} + Σ r_k × f_{i,k}      with a first moment - h_i × g_i
+/// - f_{p,i} = f_i + Σ R_k f_{i,k} - m_i g_i
+/// - n_{p,i} = n_i + Σ R_k n_{i,k} + d_i × f_{p,i} + Σ r_k × R_k f_{i,k}      with a first moment - h_i × g_i
 ///
 /// f_i - m_i g_i is computed as m_i (c̈_i - g_i): one product instead of two.
 fn joint_wrench<T: Scalar>(
@@ -215,6 +218,7 @@ pub(crate) fn backward<S: Constant, T: Scalar>(
         let tau = actuator(&link, &joint);
         loads[index] = LinkLoad { inertia, joint, tau, ..loads[index] };
         let parent = link.parent.map_or(&mut base, |parent| &mut loads[parent]);
+        // R_i f_{p,i}, R_i n_{p,i} and r_i × R_i f_{p,i}
         parent.carry(&this.rotation, &link.mount.r, &joint);
     }
     base

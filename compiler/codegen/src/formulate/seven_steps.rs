@@ -6,8 +6,11 @@
 //!
 //! Link i is the one that joint i moves, link p the one that carries joint i: its parent, or the base. In a chain p is
 //! i-1. r_i = C_p → J_i tells where joint i is mounted; the lecture calls it r_{i-1}. What a kind of joint adds stands
-//! in [`super::joint`]. A link without mass may have a first moment h about the point that its centre of mass would be,
-//! as in a set of base parameters: its terms are written separately, because no real body has them.
+//! in [`super::joint`]. `line.vector(name, || formula)` computes a formula and gives the result its name in the
+//! generated code.
+//!
+//! The lecture has no rotors of motors, no floating base and no first moment h: a body has h = 0, and only a set of
+//! base parameters has links without mass that have one.
 
 use crate::formulate::arm::identity;
 use crate::formulate::{Arm, AtTip, Body, Joint, JointState, Mount, Spin, Wrench};
@@ -178,8 +181,8 @@ type Spinning<'a, 's> = (&'a Spin<'s>, [Symbol<'s>; 2]);
 ///
 /// ```text
 /// f_i = m_i c̈_i                n_i = I_i ω̇_i + ω_i × (I_i ω_i)
-/// f_{p,i} = f_i + Σ f_{i,k} - m_i g_i
-/// n_{p,i} = n_i + Σ n_{i,k} + d_i × f_{p,i} + Σ r_k × f_{i,k}
+/// f_{p,i} = f_i + Σ R_k f_{i,k} - m_i g_i
+/// n_{p,i} = n_i + Σ R_k n_{i,k} + d_i × f_{p,i} + Σ r_k × R_k f_{i,k}
 /// ```
 ///
 /// f_i - m_i g_i is written m_i (c̈_i - g_i): one product instead of two. So torques do not need f_i by itself. Of a
@@ -193,6 +196,7 @@ fn wrench<'s>(
 ) -> Wrench<'s> {
     let Motion { turning: Turning { omega, omega_dot, .. }, d, c_ddot, gravity, .. } = *motion;
     let of_moment = body.first_moment.map(|h| turning_force(line, &motion.turning, h));
+    // only listings show it
     line.vector(Quantity::InertiaForce, || with(c_ddot * body.mass, of_moment));
     let angular_momentum = line.vector(Quantity::AngularMomentum, || body.inertia * omega);
     let inertia_moment = line.vector(Quantity::InertiaMoment, || {
