@@ -202,7 +202,8 @@ fn tests_are_there(document: &str, command: &str) {
     let crates = shelves.flat_map(|shelf| folders(&shelf).chain([shelf.clone()]).collect::<Vec<_>>());
     let found = crates.chain([Path::new(ROOT).to_owned()]).find_map(|folder| {
         let manifest = fs::read_to_string(folder.join("Cargo.toml")).ok()?;
-        manifest.lines().any(|line| line == package).then_some((folder, manifest))
+        let own = manifest.lines().find(|line| line.starts_with("name = "));
+        (own == Some(&package)).then_some((folder, manifest))
     });
     let (root, manifest) = found.unwrap_or_else(|| panic!("{document}: `{command}`: there is no package {package}"));
     let files = ["tests/NAME.rs", "tests/NAME/main.rs", "tests/NAME/all.rs"].map(|file| file.replace("NAME", name));
