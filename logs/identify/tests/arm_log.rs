@@ -13,7 +13,7 @@ use rne_model::Robot;
 const LOG: &str = "docs/desk_arm_log.csv";
 
 fn file(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(name)
 }
 
 fn robot(name: &str) -> Robot {
