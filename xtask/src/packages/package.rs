@@ -75,7 +75,8 @@ impl Package {
         let build = build.path();
         let packaged = build.join("package");
         // not built one by one: the two crates below are made of all of them, as they are packaged
-        machine::without_flags(cmd!(shell, "cargo package --workspace --allow-dirty --no-verify --quiet"))
+        let published = CRATES.iter().flat_map(|name| ["--package", name]);
+        machine::without_flags(cmd!(shell, "cargo package {published...} --allow-dirty --no-verify --quiet"))
             .env("CARGO_TARGET_DIR", build)
             .run()?;
 
