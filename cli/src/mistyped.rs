@@ -414,6 +414,22 @@ mod tests {
         }
     }
 
+    /// The parser does not ask for an option that another one excludes; so what needs that option is excluded, too.
+    #[test]
+    fn nothing_is_given_without_what_it_needs() {
+        for line in [
+            "certify a.yaml --check a.md --force",
+            "certify a.yaml --check a.md --real double",
+            "emit a.yaml --lang c --check a.c --force",
+            "man eval --force",
+            "watch a.yaml a.csv --baseline b.yaml --save-baseline c.yaml",
+            "eval a.yaml --states a.csv --payload-on hand",
+        ] {
+            let words = std::iter::once("rne").chain(line.split(' '));
+            assert!(Arguments::try_parse_from(words).is_err(), "{line}");
+        }
+    }
+
     #[test]
     fn missing_and_stray_arguments_have_an_example() {
         for command in ["eval", "emit", "export", "ops"] {

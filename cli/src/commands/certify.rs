@@ -143,7 +143,7 @@ pub(crate) struct Arguments {
     #[arg(long, requires = "output")]
     pub(super) force: bool,
     /// Check OUT, and the code beside it
-    #[arg(long, value_name = "OUT", conflicts_with_all = ["output", "evidence"])]
+    #[arg(long, value_name = "OUT", conflicts_with_all = ["output", "evidence", "force", "real"])]
     pub(super) check: Option<PathBuf>,
 }
 

@@ -111,7 +111,7 @@ pub(crate) struct Arguments {
     #[arg(long, requires = "output")]
     force: bool,
     /// Write nothing; check that this file is up to date
-    #[arg(long, value_name = "OUT", conflicts_with = "output")]
+    #[arg(long, value_name = "OUT", conflicts_with_all = ["output", "force"])]
     check: Option<PathBuf>,
 }
 

@@ -20,7 +20,7 @@ Examples:
   rne man -o ~/.local/share/man/man1     all pages, for `man rne-eval`")]
 pub(crate) struct Arguments {
     /// Print the page of this command [default: the page of rne]
-    #[arg(value_name = "COMMAND", conflicts_with = "output")]
+    #[arg(value_name = "COMMAND", conflicts_with_all = ["output", "force"])]
     command: Option<String>,
     /// Write the pages of rne and of all its commands to this folder, which is made if it is not there
     #[arg(short, long, value_name = "DIR")]

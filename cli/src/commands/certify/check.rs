@@ -12,7 +12,7 @@ use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TITLE, TYPED};
 
 /// Compares a file with the certificate of now, line by line, and then the code beside it with its SHA-256.
-pub(in crate::commands) fn check(file: &Path, text: &str, certificate: &Certificate) -> Result<Outcome, Failure> {
+pub(super) fn check(file: &Path, text: &str, certificate: &Certificate) -> Result<Outcome, Failure> {
     let shown = file.display();
     let found = match output_file::existing(file) {
         Existing::Text(found) if found.trim().is_empty() => {

@@ -21,21 +21,21 @@ use crate::files::input_file::is_stream;
 use crate::outcome::Failure;
 
 /// The code of the arm in files of a folder.
-pub(in crate::commands) struct Code {
+pub(super) struct Code {
     /// The file with the functions, and how the certificate names it.
-    pub(in crate::commands) source: String,
+    pub(super) source: String,
     /// SHA-256 of the files.
-    pub(in crate::commands) hashes: BTreeMap<String, String>,
+    pub(super) hashes: BTreeMap<String, String>,
     /// The text of the code.
-    pub(in crate::commands) text: String,
+    pub(super) text: String,
     /// An image for each call.
-    pub(in crate::commands) images: Vec<String>,
+    pub(super) images: Vec<String>,
     /// Options of the compiler.
-    pub(in crate::commands) options: Vec<String>,
+    pub(super) options: Vec<String>,
 }
 
 /// Writes the code and a program of the board for each call, and compiles and links them.
-pub(in crate::commands) fn build(
+pub(super) fn build(
     arguments: &Arguments,
     robot: &Robot,
     programs: &[Program],
@@ -103,7 +103,7 @@ pub(in crate::commands) fn build(
 }
 
 /// The name of the files without their endings.
-pub(in crate::commands) fn stem(arguments: &Arguments, robot: &Robot) -> String {
+pub(super) fn stem(arguments: &Arguments, robot: &Robot) -> String {
     let file = arguments.source.as_ref().unwrap_or(&arguments.file);
     let stem = file.file_stem().filter(|_| !is_stream(file));
     stem.map_or_else(|| robot.name.clone(), |stem| stem.to_string_lossy().into_owned())
@@ -138,7 +138,7 @@ fn rust_library(dof: usize, programs: &[Program], calls: &[Call]) -> String {
 }
 
 /// Runs the code in QEMU and compares instructions with the listing and results with those of this computer.
-pub(in crate::commands) fn emulate(
+pub(super) fn emulate(
     core: Core,
     robot: &Robot,
     subject: &Subject,

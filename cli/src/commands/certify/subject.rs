@@ -13,7 +13,7 @@ use crate::outcome::Failure;
 use crate::palette::TYPED;
 
 /// A function of the code.
-pub(in crate::commands) enum Subject<'a> {
+pub(super) enum Subject<'a> {
     Program(&'a Program),
     /// An update of the observer, which calls the program.
     Observer(&'a Program, LowPass),
@@ -23,7 +23,7 @@ pub(in crate::commands) enum Subject<'a> {
 
 impl Subject<'_> {
     /// Its name in the code, without the prefix.
-    pub(in crate::commands) fn name(&self) -> &str {
+    pub(super) fn name(&self) -> &str {
         match self {
             Self::Program(program) => program.function.name(),
             Self::Observer(..) => "observer_update",
@@ -32,7 +32,7 @@ impl Subject<'_> {
     }
 
     /// The other functions that it may call beside the sine, without their prefix.
-    pub(in crate::commands) fn callees(&self) -> Vec<&str> {
+    pub(super) fn callees(&self) -> Vec<&str> {
         match self {
             Self::Program(_) => Vec::new(),
             Self::Observer(program, _) => vec![program.function.name()],
@@ -41,19 +41,21 @@ impl Subject<'_> {
     }
 
     /// Why there is no certificate of it.
-    pub(in crate::commands) fn refused(&self, fault: &NoFigures) -> Failure {
-        match self {
-            Self::Program(program) if program.function == Function::ActuatorTorques => Failure::input(format_args!(
-                "the robot file has dry friction, and its code branches over the sign of each velocity; \
+    pub(super) fn refused(&self, fault: &NoFigures) -> Failure {
+        match (self, fault) {
+            (Self::Program(program), NoFigures::NotStraight(..)) if program.function == Function::ActuatorTorques => {
+                Failure::input(format_args!(
+                    "the robot file has dry friction, and its code branches over the sign of each velocity; \
                  {TYPED}--friction{TYPED:#} certifies the smooth law of friction. {fault}"
-            )),
+                ))
+            }
             _ => Failure::input(fault),
         }
     }
 
     /// The call on the board; an error where a program takes other arguments than arrays of joints, or returns no
     /// plain array.
-    pub(in crate::commands) fn call(&self, prefix: &str, robot: &Robot) -> Result<Call, Failure> {
+    pub(super) fn call(&self, prefix: &str, robot: &Robot) -> Result<Call, Failure> {
         let dof = robot.dof();
         if dof > board::MOST_JOINTS {
             return Err(Failure::usage(format_args!(
@@ -69,7 +71,7 @@ impl Subject<'_> {
     }
 
     /// The numbers that the call writes at a state of the board, with the operations of the code.
-    pub(in crate::commands) fn expected(&self, robot: &Robot, number: u32) -> Option<Vec<f32>> {
+    pub(super) fn expected(&self, robot: &Robot, number: u32) -> Option<Vec<f32>> {
         let sin_cos = rne_emit::sin_cos_f32;
         match self {
             Self::Program(program) => {
@@ -83,7 +85,7 @@ impl Subject<'_> {
     }
 
     /// How the function was compared with the recursive Newton-Euler algorithm.
-    pub(in crate::commands) fn proof(&self) -> Vec<String> {
+    pub(super) fn proof(&self) -> Vec<String> {
         match self {
             Self::Program(program) | Self::Observer(program, _) => {
                 let mut lines = program.proof.as_ref().map_or_else(
@@ -117,7 +119,7 @@ impl Subject<'_> {
     }
 
     /// The error over a sample.
-    pub(in crate::commands) fn accuracy(&self, robot: &Robot, sample: Sample) -> Result<Accuracy, Failure> {
+    pub(super) fn accuracy(&self, robot: &Robot, sample: Sample) -> Result<Accuracy, Failure> {
         let errors = self.errors(robot, sample);
         let errors = errors.ok_or_else(|| Failure::input("the interpreter cannot run this function"))?;
         let of_joints = |array: &str, unit: &dyn Fn(JointKind) -> &'static str| {

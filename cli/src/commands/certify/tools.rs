@@ -46,10 +46,7 @@ impl Tool {
 }
 
 /// The versions of QEMU and cppcheck, and a note for each that is not installed; an error for one that is required.
-pub(in crate::commands) fn versions(
-    lang: Language,
-    required: &[Tool],
-) -> Result<([Option<String>; 2], String), Failure> {
+pub(super) fn versions(lang: Language, required: &[Tool]) -> Result<([Option<String>; 2], String), Failure> {
     let mut notes = String::new();
     let mut version = |tool: Tool| {
         // the rules are for C

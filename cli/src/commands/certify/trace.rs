@@ -22,7 +22,7 @@ use crate::palette::{TITLE, TYPED};
 const CHECKED: [Function; 3] = [Function::InverseDynamics, Function::BiasTorques, Function::GravityTorques];
 
 /// Refuses evidence of code that the checker does not read.
-pub(in crate::commands) fn check_options(arguments: &Arguments, functions: &[Function]) -> Result<(), Failure> {
+pub(super) fn check_options(arguments: &Arguments, functions: &[Function]) -> Result<(), Failure> {
     if arguments.lang == Language::C && functions.iter().any(|function| CHECKED.contains(function)) {
         return Ok(());
     }
@@ -46,7 +46,7 @@ fn not_supported(robot: &Robot) -> Vec<&'static str> {
 
 /// Writes the C code, its header and the trace of its constants; returns a note where the checker does not support the
 /// robot.
-pub(in crate::commands) fn write(
+pub(super) fn write(
     arguments: &Arguments,
     evidence: &Path,
     robot: &Robot,

@@ -44,7 +44,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "LOG")]
     quiet: Vec<PathBuf>,
     /// Compare the logs with this file, which --save-baseline wrote, and not with --quiet logs
-    #[arg(long, value_name = "YAML", conflicts_with = "quiet")]
+    #[arg(long, value_name = "YAML", conflicts_with_all = ["quiet", "save_baseline"])]
     baseline: Option<PathBuf>,
     /// Save a summary of the --quiet logs to this file, for --baseline
     #[arg(long, value_name = "YAML", requires = "quiet")]
