@@ -24,7 +24,7 @@
 //!
 //! There is one trait per capability, generic over the [`Scalar`]: `f32`, `f64`, SIMD lanes, dual numbers, fixed point.
 //!
-#![doc = include_str!("../docs/capabilities.md")]
+#![doc = include_str!("../docs/reference/capabilities.md")]
 //!
 //! # A robot at run time
 //!
@@ -161,7 +161,7 @@ pub mod robot_file {}
 
 /// Runs the example of states that are arrays.
 #[cfg(all(doctest, feature = "compiled"))]
-#[doc = include_str!("../docs/run-time.md")]
+#[doc = include_str!("../docs/control/run-time.md")]
 mod run_time {}
 
 /// Runs the examples in the documentation of the derives.

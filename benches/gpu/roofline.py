@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the roofline of docs/gpu.md from the table of the page: `python3 benches/gpu/roofline.py` writes the picture
+"""Draws the roofline of docs/control/gpu.md from the table of the page: `python3 benches/gpu/roofline.py` writes the picture
 docs/pictures/gpu-roofline.svg. It needs Python's standard library alone.
 
 The roof is what the card did at best: the slope is the copy of memory, the flat parts are chains of fused multiply-adds.
@@ -14,7 +14,7 @@ import sys
 from xml.sax.saxutils import escape
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PAGE, PICTURE = ROOT / "docs/gpu.md", ROOT / "docs/pictures/gpu-roofline.svg"
+PAGE, PICTURE = ROOT / "docs/control/gpu.md", ROOT / "docs/pictures/gpu-roofline.svg"
 FONT = "Inter, 'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif"
 COLOURS = {"f32": "#0072b2", "f64": "#d55e00"}
 LEFT, RIGHT, TOP, BOTTOM = 110, 1240, 130, 640
@@ -75,7 +75,7 @@ def picture(page):
         " <title>Functions of robots below the roof of an H200</title>",
         ' <rect width="100%" height="100%" fill="#ffffff"/>',
         text(40, 46, "Functions of robots on an H200, one thread per state", font_size=26, font_weight=600),
-        text(40, 74, "One run, columns, 2²² states or more; the rows of the table in docs/gpu.md. The roof is what a copy and chains "
+        text(40, 74, "One run, columns, 2²² states or more; the rows of the table in docs/control/gpu.md. The roof is what a copy and chains "
              "of fused multiply-adds did.", font_size=16, fill="#595959"),
     ]
     for value in (0.2, 0.5, 1, 2, 5, 10, 20):

@@ -115,7 +115,8 @@ fn of_libraries(error: &clap::Error) -> Option<String> {
     let of_matrices = FUNCTIONS.contains(&value.as_str()).then(|| {
         format!(
             "`{value}` is a function of Rust and Python only, because its arguments are matrices: see the section \
-             Operational space of docs/functions.md; rne eval computes the arguments, `mass_matrix` and `jacobian`"
+             Operational space of docs/reference/functions.md; rne eval computes the arguments, `mass_matrix` and \
+             `jacobian`"
         )
     });
     of_matrices.or_else(|| choice::composed(value))

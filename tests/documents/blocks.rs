@@ -6,13 +6,13 @@ use crate::{read, root};
 
 /// The documents with blocks, and which blocks these are; what is measured or printed by a command does not count.
 const DOCUMENTS: &[(&str, &[&str])] = &[
-    ("docs/c-library.md", &["controller"]),
+    ("docs/firmware/c-library.md", &["controller"]),
     ("doors/python/package/rne/__init__.pyi", &["stubs"]),
     ("README.md", &["headline", "example", "control", "twelve_lines"]),
-    ("docs/firmware.md", &["torque", "config", "embedded"]),
-    ("docs/functions.md", &["functions", "two_hands"]),
-    ("docs/performance.md", &["operations", "tricks"]),
-    ("docs/ros2.md", &["ros2_controller"]),
+    ("docs/firmware/first-firmware.md", &["torque", "config", "embedded"]),
+    ("docs/reference/functions.md", &["functions", "two_hands"]),
+    ("docs/measured/performance.md", &["operations", "tricks"]),
+    ("docs/control/ros2.md", &["ros2_controller"]),
     (
         "docs/robot-file.md",
         &[
@@ -30,7 +30,7 @@ const DOCUMENTS: &[(&str, &[&str])] = &[
             "every_key",
         ],
     ),
-    ("docs/teaching.md", &["code"]),
+    ("docs/teaching/for-teachers.md", &["code"]),
     ("robots/README.md", &["sources", "robots", "trees"]),
 ];
 

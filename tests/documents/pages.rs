@@ -23,10 +23,10 @@ fn the_robot_file_of_the_readme_is_valid() {
     assert!(checked.lints.is_empty(), "{}", checked.lints);
 }
 
-/// The plan that docs/reduced-form.md explains is the one that is shipped.
+/// The plan that docs/teaching/reduced-form.md explains is the one that is shipped.
 #[test]
 fn the_explained_plan_is_the_shipped_one() {
-    let page = read(&root().join("docs/reduced-form.md"));
+    let page = read(&root().join("docs/teaching/reduced-form.md"));
     let (_, explained) = page.split_once("\n    format: 3 ").expect("a plan");
     let (explained, _) = explained.split_once("\n    rewritten:").expect("two forms");
     let explained = format!("format: 3 {explained}\n").replace("\n    ", "\n");
@@ -34,20 +34,23 @@ fn the_explained_plan_is_the_shipped_one() {
         Robot::from_yaml(&read(&root().join("robots/puma560.yaml"))).unwrap_or_else(|report| panic!("{report}"));
     let plan = |name: &str, text: &str| PlanFile::read(name, text, &robot).unwrap_or_else(|report| panic!("{report}"));
     let shipped = plan("puma560.plan.yaml", &read(&root().join("robots/puma560.plan.yaml")));
-    assert_eq!(plan("docs/reduced-form.md", &explained).reduced, shipped.reduced);
+    assert_eq!(plan("docs/teaching/reduced-form.md", &explained).reduced, shipped.reduced);
 }
 
 /// `cargo xtask mutate` finds what it breaks, and the page has a line for each mutant that some test noticed.
 #[test]
 fn the_page_of_mutations_is_of_the_mutants() {
-    let (file, page) = ("xtask/mutants.yaml", read(&root().join("docs/mutations.md")));
+    let (file, page) = ("xtask/mutants.yaml", read(&root().join("docs/measured/mutations.md")));
     let mutants: Vec<BTreeMap<String, String>> = serde_yaml::from_str(&read(&root().join(file))).expect("mutants");
     for mutant in &mutants {
         let [what, source, old] = ["what", "file", "old"].map(|key| mutant[key].as_str());
         let times = read(&root().join(source)).matches(old).count();
         assert_eq!(times, 1, "{file}: {what}: `{old}` must occur once in {source}");
         let row = page.lines().find_map(|row| row.strip_prefix(&format!("| {what} | ")));
-        assert!(row.is_some_and(|tests| tests.starts_with('`')), "docs/mutations.md: cargo xtask mutate '{what}'");
+        assert!(
+            row.is_some_and(|tests| tests.starts_with('`')),
+            "docs/measured/mutations.md: cargo xtask mutate '{what}'"
+        );
     }
     assert_eq!(page.lines().filter(|row| row.ends_with("` |")).count(), mutants.len());
 }
@@ -55,7 +58,7 @@ fn the_page_of_mutations_is_of_the_mutants() {
 /// Both tables of `cargo xtask tree-counts --loops` have the counts of the programs.
 #[test]
 fn the_page_of_closed_loops_counts_the_programs() {
-    let page = read(&root().join("docs/closed-loops.md"));
+    let page = read(&root().join("docs/control/closed-loops.md"));
     let (_, tables) = page.split_once("<!-- begin: measured loops,").expect("the tables");
     let cells = |row: &str| row.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
     for function in [Function::InverseDynamicsOfLoops, Function::LoopMap] {

@@ -30,8 +30,8 @@ pub(crate) fn control() -> String {
 /// The derive and the calls of an example with two tips, for a file in the folder of the page.
 pub(crate) fn two_hands() -> String {
     let (derive, calls) = example("two_hands", "let mut w");
-    let derive = derive.replace("../docs/", "");
-    assert!(derive.contains("path = \"dual_arm.yaml\"") && calls.lines().count() == 3, "{derive}{calls}");
+    let derive = derive.replace("../docs/", "../");
+    assert!(derive.contains("path = \"../dual_arm.yaml\"") && calls.lines().count() == 3, "{derive}{calls}");
     format!("```rust,ignore\n{derive}{calls}```\n")
 }
 
@@ -48,9 +48,10 @@ pub(crate) fn code(steps: usize) -> String {
     format!("```rust\n{code}```\n")
 }
 
-/// The PUMA 560 on the Cortex-M4F, by the first table of docs/embedded.md, and the loop that it is compared with there.
+/// The PUMA 560 on the Cortex-M4F, by the first table of docs/measured/embedded.md, and the loop that it is compared
+/// with there.
 pub(crate) fn embedded() -> String {
-    let document = read(&root().join("docs/embedded.md"));
+    let document = read(&root().join("docs/measured/embedded.md"));
     let rows = || document.lines().map(|line| line.split(" | ").collect::<Vec<_>>());
     let mut text = String::from(
         "| PUMA 560 on a Cortex-M4F, `f32` | instructions of a call | bytes of code and constants | bytes of stack |\n\

@@ -53,7 +53,7 @@ pub(crate) fn headline() -> String {
             format!("{} (`{name}`)", number(&row[robot]))
         })
     };
-    let certificate = read(&root().join("docs/embedded.md"));
+    let certificate = read(&root().join("docs/measured/embedded.md"));
     let (_, m4f) = certificate.split_once("\n## Cortex-M4F\n").expect("the first board");
     let instructions = |form: &str| {
         let find = |robot| {

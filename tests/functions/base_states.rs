@@ -76,7 +76,7 @@ fn states_of_mujoco() {
     same(wrench.to_mujoco(&placed), numbers(&tool["force"]));
 }
 
-/// The lines of Drake, iDynTree and dynibo in docs/conventions.md.
+/// The lines of Drake, iDynTree and dynibo in docs/reference/conventions.md.
 #[test]
 fn tools_in_world_axes() {
     let golden = golden();

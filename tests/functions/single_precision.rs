@@ -13,7 +13,7 @@ use crate::check::ROOT;
 use crate::golden::ROBOTS;
 use crate::states;
 
-const PAGE: &str = "docs/accuracy.md";
+const PAGE: &str = "docs/measured/accuracy.md";
 const BEGIN: &str = "<!-- begin: measured functions, cargo test --test functions single -->\n";
 const END: &str = "<!-- end -->\n";
 

@@ -1,5 +1,5 @@
 //! Every function of every kind of robot: through each door it is the number of the definition, or it is refused with
-//! the reason that all doors give. docs/matrix.md is the table; `RNE_WRITE_DOCUMENTS=1` writes it anew.
+//! the reason that all doors give. docs/reference/matrix.md is the table; `RNE_WRITE_DOCUMENTS=1` writes it anew.
 
 mod kinds;
 
@@ -114,7 +114,7 @@ fn cell(column: &Column<'_>, function: Function) -> Option<char> {
     None
 }
 
-const DOCUMENT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/matrix.md");
+const DOCUMENT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/reference/matrix.md");
 
 const TEXT: &str = "\
 # Which function for which robot
@@ -154,5 +154,8 @@ fn every_function_of_every_kind_of_robot_is_computed_or_refused_at_all_doors() {
         fs::write(DOCUMENT, &page).expect("a document of the repository");
     }
     let written = fs::read_to_string(DOCUMENT).unwrap_or_default();
-    assert!(written == page, "docs/matrix.md is older: RNE_WRITE_DOCUMENTS=1 cargo test -p matrix writes it anew");
+    assert!(
+        written == page,
+        "docs/reference/matrix.md is older: RNE_WRITE_DOCUMENTS=1 cargo test -p matrix writes it anew"
+    );
 }

@@ -20,7 +20,7 @@ SIZES = [(390, 844), (1280, 720), (1920, 1080)]
 # arms of each kind, and a tree with a joint that follows another; half a second for each name of a page, so one in a sample
 FIVE = ["planar1", "planar2", "puma560", "stanford", "gripper"]
 POINTED = FIVE[: None if "CI_FULL" in os.environ else 1]
-TREES = [ROOT / "robots", ROOT / "robots/trees", ROOT / "docs", ROOT / "docs/lecture"]
+TREES = [ROOT / "robots", ROOT / "robots/trees", ROOT / "docs", ROOT / "docs/teaching/lecture"]
 
 
 def written(rne, folder, names):

@@ -1,4 +1,4 @@
-"""The state of a floating base in other tools: each line of the table of docs/conventions.md, by the tool itself.
+"""The state of a floating base in other tools: each line of the table of docs/reference/conventions.md, by the tool itself.
 
 Usage: python conventions.py [--write]     with numpy, and those of pin, mujoco, drake, idyntree and dynibo at hand
 

@@ -14,7 +14,7 @@ use crate::shipped::{Shipped, Visitor};
 const TOLERANCE: f64 = 1e-12;
 
 /// The page with the table of errors.
-const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/accuracy.md");
+const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/measured/accuracy.md");
 
 /// Where the table begins and ends.
 const BEGIN: &str = "<!-- begin: measured golden, RNE_EXHAUSTIVE=1 cargo test --test robots golden -->\n";

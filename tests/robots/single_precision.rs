@@ -15,7 +15,7 @@ const TOLERANCE: f64 = 2e-5;
 const WRITE: &str = "RNE_EXHAUSTIVE=1 RNE_WRITE_DOCUMENTS=1 cargo test --test robots close_to_double";
 
 /// The page with the measured figures.
-const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/accuracy.md");
+const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/measured/accuracy.md");
 
 /// The head of the table, which is the last thing on the page.
 const HEADER: &str = "| robot | worst error of f32 |\n";

@@ -1,4 +1,4 @@
-//! The certificate of the generated code on microcontrollers: `firmware/`, docs/embedded.md.
+//! The certificate of the generated code on microcontrollers: `firmware/`, docs/measured/embedded.md.
 
 use anyhow::{Context as _, Result, ensure};
 use clap::Args;
@@ -7,7 +7,8 @@ use xshell::{Shell, cmd};
 use crate::Verdict;
 use crate::machine::{self, Missing};
 
-/// Builds every shipped robot for Cortex-M4F and M7F, reads and runs the code, and compares it with docs/embedded.md
+/// Builds every shipped robot for Cortex-M4F and M7F, reads and runs the code, and compares it with
+/// docs/measured/embedded.md
 ///
 /// Needs Debian's packages rustc-web, cargo-web, rust-web-src (a compiler with the sources of `core`),
 /// gcc-arm-none-eabi, libnewlib-arm-none-eabi, qemu-system-arm, cppcheck, binutils-riscv64-unknown-elf and lld; Node
@@ -19,14 +20,14 @@ Exit status: 1 when a function panics, calls, branches or has grown by more than
 
 Examples:
   cargo xtask certificate             judge
-  cargo xtask certificate --update    judge, and write docs/embedded.md anew
+  cargo xtask certificate --update    judge, and write docs/measured/embedded.md anew
   cargo xtask certificate --sample    judge the Cortex-M4F alone, in Rust, and every third robot in C
   cargo xtask certificate --install   get what is missing by apt-get (Debian) first
   cargo xtask certificate --sample --changed
                                       nothing, unless something has changed since --record")]
 #[allow(clippy::struct_excessive_bools)] // each is an option
 pub(crate) struct Certificate {
-    /// Write docs/embedded.md anew
+    /// Write docs/measured/embedded.md anew
     #[arg(long)]
     update: bool,
     /// Judge the Cortex-M4F alone, in Rust, and every third robot in C: neither M7F nor fused multiply-add, RISC-V and
@@ -126,7 +127,7 @@ const RECORD: &str = "firmware/certified.txt";
 /// The files that decide what is certified: the emitted code by its list, the runtime, and all that builds, runs and
 /// judges them.
 const CERTIFIED: [&str; 14] = [
-    "docs/embedded.md",
+    "docs/measured/embedded.md",
     "firmware/board",
     "firmware/certificate",
     "firmware/robots",

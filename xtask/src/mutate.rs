@@ -27,8 +27,8 @@ use crate::mutants::{self, Check, Mutant};
 
 /// Breaks the compiler in one place at a time, in a copy of this tree, and runs the tests that must notice
 ///
-/// The mutants are those of xtask/mutants.yaml; docs/mutations.md is what this prints. A mutant of the reduced form
-/// takes some ten to thirty seconds, another one some minutes. Plain mutants (an operator, a comparison) are the
+/// The mutants are those of xtask/mutants.yaml; docs/measured/mutations.md is what this prints. A mutant of the reduced
+/// form takes some ten to thirty seconds, another one some minutes. Plain mutants (an operator, a comparison) are the
 /// business of cargo-mutants: `cargo mutants --file compiler/codegen/src/ir/graph.rs`, set up in .cargo/mutants.toml.
 #[derive(Args)]
 #[command(after_help = "\
@@ -38,7 +38,7 @@ Examples:
   cargo xtask mutate             all mutants
   cargo xtask mutate Coriolis    those whose file and description match a regular expression
   cargo xtask mutate --look      whether all texts are in the source; runs no test
-  cargo xtask mutate --update    write docs/mutations.md anew")]
+  cargo xtask mutate --update    write docs/measured/mutations.md anew")]
 pub(crate) struct Mutate {
     /// Those whose file and description match
     #[arg(default_value = "", hide_default_value = true)]
@@ -46,12 +46,12 @@ pub(crate) struct Mutate {
     /// Only look whether each mutant's text is in the source
     #[arg(long)]
     look: bool,
-    /// Write docs/mutations.md anew
+    /// Write docs/measured/mutations.md anew
     #[arg(long, conflicts_with_all = ["regex", "look"])]
     update: bool,
 }
 
-const PAGE: &str = "docs/mutations.md";
+const PAGE: &str = "docs/measured/mutations.md";
 
 const HEAD: &str = "\
 # Mutations

@@ -38,7 +38,7 @@ const JSON: &[&str] = &[
     "ops planar1 --function inverse_dynamics",
     "show planar1",
     "diagnose planar2 --q 0.3,0.5 --qd 1,2 --qdd 0.5,-1 --tau=-14.1097,-1.95268",
-    "mark planar1 --states docs/lecture/class/key.csv docs/lecture/class/ada.csv",
+    "mark planar1 --states docs/teaching/lecture/class/key.csv docs/teaching/lecture/class/ada.csv",
     "log docs/desk_arm_log.csv --robot docs/desk_arm.yaml",
     "identify docs/desk_arm.yaml docs/desk_arm_log.csv --hold-out 0.3",
     "watch docs/desk_arm_identified.yaml docs/desk_arm_worn.csv --quiet docs/desk_arm_log.csv",

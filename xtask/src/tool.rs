@@ -18,7 +18,7 @@ Examples:
   cargo xtask tool deny --install        licences, sources and duplicates of what every lock file has: deny.toml;
                                          takes minutes to install
   cargo xtask tool semver --install      the public interface against the last tag; takes minutes to install
-  cargo xtask tool book --install        docs/lecture as a book in target/book; takes minutes to install")]
+  cargo xtask tool book --install        docs/teaching/lecture as a book in target/book; takes minutes to install")]
 pub(crate) struct Tool {
     /// Tool to get
     tool: Name,
@@ -74,7 +74,7 @@ impl Tool {
                 let book = machine::target_folder("target")?.join("book");
                 machine::without_flags(cmd!(shell, "cargo build --quiet --bin rne")).quiet().run()?;
                 let rne = machine::target_folder("target")?.join("debug/rne");
-                cmd!(shell, "mdbook build docs/lecture --dest-dir {book}").quiet().ignore_stderr().run()?;
+                cmd!(shell, "mdbook build docs/teaching/lecture --dest-dir {book}").quiet().ignore_stderr().run()?;
                 for robot in LIVE {
                     let page = book.join(robot).with_extension("html");
                     cmd!(shell, "{rne} report {robot} -o {page} --force").quiet().ignore_stdout().run()?;

@@ -55,7 +55,7 @@ objdump, runs it in QEMU, compares the results with those of this computer, and
 bounds their error. It fails if the code branches, uses doubles, or calls other
 functions than its sine. Needed: arm-none-eabi-gcc; used if installed:
 qemu-system-arm, cppcheck. To certify a file of `rne emit`, give the same
-options as there. See docs/assurance.md.")]
+options as there. See docs/firmware/assurance.md.")]
 #[allow(clippy::struct_excessive_bools)] // options of a command
 pub(crate) struct Arguments {
     /// Robot file, or a name from `rne list`

@@ -40,7 +40,7 @@ pub(crate) struct Arguments {
     /// Write the URDF format
     #[arg(long)]
     urdf: bool,
-    /// Write an FMU of FMI 2 or 3 [default: 3]; docs/fmi.md explains it
+    /// Write an FMU of FMI 2 or 3 [default: 3]; docs/control/fmi.md explains it
     #[arg(long, value_name = "VERSION", num_args = 0..=1, default_missing_value = "3",
         value_parser = ["2", "3", "2.0", "3.0"], hide_possible_values = true)]
     fmu: Option<String>,

@@ -1,4 +1,4 @@
-//! An identified payload in words and as JSON: docs/identify.md lists the keys.
+//! An identified payload in words and as JSON: docs/control/identify.md lists the keys.
 
 use std::fmt::Write as _;
 

@@ -32,14 +32,14 @@ pub(crate) fn composed(name: &str) -> Option<String> {
             return Some(format!(
                 "`{name}` is no value of {TYPED}--function{TYPED:#}: {TYPED}rne emit FILE --lang c \
                  --friction{TYPED:#} writes it in C, and Python has it as a method; see the section Friction and \
-                 limits in C of docs/firmware.md"
+                 limits in C of docs/firmware/first-firmware.md"
             ));
         }
         _ => return None,
     };
     Some(format!(
         "`{name}` is no value of {TYPED}--function{TYPED:#}, because {where_it_is}; see the section A step of an \
-         integrator of docs/optimal-control.md"
+         integrator of docs/control/optimal-control.md"
     ))
 }
 

@@ -97,15 +97,15 @@ fn the_figures_of_json_are_those_of_the_page() {
     }
 }
 
-/// The tables of docs/firmware.md, and that more options of the compiler do not change a bit: QEMU's results are
-/// compared with those of this computer.
+/// The tables of docs/firmware/first-firmware.md, and that more options of the compiler do not change a bit: QEMU's
+/// results are compared with those of this computer.
 #[test]
 #[ignore = "slow: cargo xtask verify certify"]
 fn options_of_the_compiler_make_robots_smaller() {
     if !has_tools() {
         return;
     }
-    let document = fs::read_to_string(Path::new(ROOT).join("docs/firmware.md")).expect("it is there");
+    let document = fs::read_to_string(Path::new(ROOT).join("docs/firmware/first-firmware.md")).expect("it is there");
     let rows = |start: &str| -> Vec<Vec<&str>> {
         document
             .lines()

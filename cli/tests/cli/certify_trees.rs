@@ -308,7 +308,8 @@ fn the_checker_refuses_what_is_no_trace() {
     }
 }
 
-/// The flags of docs/firmware.md give code without calls of a library, and `nm` shows the calls of other flags.
+/// The flags of docs/firmware/first-firmware.md give code without calls of a library, and `nm` shows the calls of other
+/// flags.
 #[test]
 fn the_flags_of_the_page_give_code_without_a_library() {
     if !has_tools() {
@@ -326,7 +327,7 @@ fn the_flags_of_the_page_give_code_without_a_library() {
         let output = Command::new("arm-none-eabi-nm").arg("-u").arg(&object).output().expect("it starts");
         String::from_utf8_lossy(&output.stdout).into_owned()
     };
-    let page = fs::read_to_string(Path::new(ROOT).join("docs/firmware.md")).expect("it is there");
+    let page = fs::read_to_string(Path::new(ROOT).join("docs/firmware/first-firmware.md")).expect("it is there");
     let rows = page.lines().filter_map(|line| line.strip_prefix("| Cortex-M")?.split('`').nth(1));
     let rows: Vec<&str> = rows.filter(|flags| flags.contains("-mcpu=")).collect();
     assert_eq!(rows.len(), 2, "{rows:?}");

@@ -14,40 +14,41 @@ use crate::call::{ROOT, folder};
 const DOCUMENTS: [&str; 31] = [
     "README.md",
     "CONTRIBUTING.md",
-    "docs/c-library.md",
-    "docs/closed-loops.md",
-    "docs/command-line.md",
-    "docs/firmware.md",
-    "docs/fmi.md",
-    "docs/identify.md",
-    "docs/inspection.md",
-    "docs/jax.md",
-    "docs/lecture/README.md",
-    "docs/lecture/errata.md",
-    "docs/lecture/answers.md",
-    "docs/lecture/exercises.md",
-    "docs/lecture/folding.md",
-    "docs/lecture/frames.md",
-    "docs/lecture/one-link.md",
-    "docs/lecture/prismatic.md",
-    "docs/lecture/reduced.md",
-    "docs/lecture/results.md",
-    "docs/lecture/two-links.md",
-    "docs/logs.md",
-    "docs/operational-space.md",
-    "docs/optimal-control.md",
-    "docs/python.md",
+    "docs/firmware/c-library.md",
+    "docs/control/closed-loops.md",
+    "docs/reference/command-line.md",
+    "docs/firmware/first-firmware.md",
+    "docs/control/fmi.md",
+    "docs/control/identify.md",
+    "docs/teaching/inspection.md",
+    "docs/control/jax.md",
+    "docs/teaching/lecture/README.md",
+    "docs/teaching/lecture/errata.md",
+    "docs/teaching/lecture/answers.md",
+    "docs/teaching/lecture/exercises.md",
+    "docs/teaching/lecture/folding.md",
+    "docs/teaching/lecture/frames.md",
+    "docs/teaching/lecture/one-link.md",
+    "docs/teaching/lecture/prismatic.md",
+    "docs/teaching/lecture/reduced.md",
+    "docs/teaching/lecture/results.md",
+    "docs/teaching/lecture/two-links.md",
+    "docs/control/logs.md",
+    "docs/control/operational-space.md",
+    "docs/control/optimal-control.md",
+    "docs/control/python.md",
     "docs/robot-file.md",
-    "docs/run-time.md",
-    "docs/teaching.md",
-    "docs/urdf.md",
-    "docs/watch.md",
+    "docs/control/run-time.md",
+    "docs/teaching/for-teachers.md",
+    "docs/control/urdf.md",
+    "docs/control/watch.md",
     "robots/README.md",
 ];
 
 /// The documents whose commands run in each `cargo test`: the first page, and the first of each track. `cargo xtask
 /// verify certify` runs the commands of all.
-const FIRST_READ: [&str; 4] = ["README.md", "docs/command-line.md", "docs/firmware.md", "docs/teaching.md"];
+const FIRST_READ: [&str; 4] =
+    ["README.md", "docs/reference/command-line.md", "docs/firmware/first-firmware.md", "docs/teaching/for-teachers.md"];
 
 /// Commands that take long, install something or change the repository: how they begin, and the file that has them run,
 /// by this text.
@@ -120,7 +121,8 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
 /// A copy of what commands read, in a folder that they may leave.
 pub(crate) fn copy(name: &str) -> PathBuf {
     let folder = folder(name).join("clone");
-    let of_documents = ["robots", "docs", "docs/lecture", "docs/lecture/answers", "docs/lecture/class"];
+    let of_documents =
+        ["robots", "docs", "docs/teaching/lecture", "docs/teaching/lecture/answers", "docs/teaching/lecture/class"];
     for part in of_documents.into_iter().chain(["benches/trees/loops"]) {
         fs::create_dir_all(folder.join(part)).expect("a folder");
         for entry in fs::read_dir(Path::new(ROOT).join(part)).expect("a folder") {

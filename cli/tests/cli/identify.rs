@@ -461,12 +461,12 @@ fn the_reply_is_the_account() {
     };
     let reply = json(&["--json"]);
     let keys: Vec<&String> = reply.as_object().expect("an object").keys().collect();
-    let mut documented = fs::read_to_string(format!("{ROOT}/docs/identify.md")).expect("a page");
+    let mut documented = fs::read_to_string(format!("{ROOT}/docs/control/identify.md")).expect("a page");
     documented = documented.split_once("## As JSON").expect("a section").1.to_owned();
     let mut seen = Vec::new();
     keys_of(&reply, &mut seen);
     for key in seen {
-        assert!(documented.contains(&format!("`{key}`")), "{key} is not in docs/identify.md");
+        assert!(documented.contains(&format!("`{key}`")), "{key} is not in docs/control/identify.md");
     }
     assert!(keys.len() >= 11, "{keys:?}");
     assert_eq!(reply["robot"], "ur10_log");
@@ -604,7 +604,7 @@ fn a_payload_is_found_and_written() {
     assert!(again.lines().nth(1).is_some_and(|line| line.starts_with("no payload: ")), "{again}");
     let mut keys = Vec::new();
     keys_of(&reply, &mut keys);
-    let document = fs::read_to_string(format!("{ROOT}/docs/identify.md")).expect("a document");
+    let document = fs::read_to_string(format!("{ROOT}/docs/control/identify.md")).expect("a document");
     assert!(keys.iter().all(|key| document.contains(&format!("`{key}`"))), "{keys:?}");
 }
 

@@ -180,7 +180,7 @@ fn hints_have_no_answer() {
             "1",
             "--trace",
             "--compare",
-            "docs/lecture/class/bob.csv",
+            "docs/teaching/lecture/class/bob.csv",
         ];
         let called = rne(&[&call, more].concat());
         assert_eq!((called.status, called.err.as_str()), (1, ""));
@@ -246,7 +246,14 @@ fn states_of_a_class() {
     let key = folder.join("key.csv");
     let with = |text: &str| {
         fs::write(&key, text).expect("a file");
-        rne(&["mark", "planar1", "--states", path(&key), "docs/lecture/class/ada.csv", "docs/lecture/class/carl.csv"])
+        rne(&[
+            "mark",
+            "planar1",
+            "--states",
+            path(&key),
+            "docs/teaching/lecture/class/ada.csv",
+            "docs/teaching/lecture/class/carl.csv",
+        ])
     };
     let one = with("q1,qd1,qdd1\n0.3,0.5,1\n");
     assert!(one.status == 0 && one.out.contains("ada       14/14"), "{one:?}");
@@ -272,7 +279,7 @@ fn states_of_a_class() {
             assert!(called.said().contains(part), "{text:?}: no {part} in {}", called.err);
         }
     }
-    fails(2, &["mark", "planar1", "docs/lecture/class/ada.csv"], &["--states <KEY>|--seed <N>"]);
+    fails(2, &["mark", "planar1", "docs/teaching/lecture/class/ada.csv"], &["--states <KEY>|--seed <N>"]);
     // names of students are those of the file of states
     fs::write(&key, "name,q1\nada,0.3\nbo b,0.4\n").expect("a file");
     let sheets = folder.join("sheets");

@@ -39,7 +39,8 @@ fn rms(numbers: &[f64]) -> f64 {
 }
 
 /// Predicted torques are those of `rne eval` and the file's friction, and both sides pass the low-pass that
-/// docs/identify.md gives: a Gaussian that ends after four deviations, and lets half the power pass at the cut-off.
+/// docs/control/identify.md gives: a Gaussian that ends after four deviations, and lets half the power pass at the
+/// cut-off.
 #[test]
 fn torques_are_those_of_the_arm() {
     let folder = folder("residuals");

@@ -49,10 +49,11 @@ fn an_inspection_for_programs() {
     }
 }
 
-/// docs/inspection.md tells every field there is, and no other.
+/// docs/teaching/inspection.md tells every field there is, and no other.
 #[test]
 fn the_fields_of_an_inspection_are_written_down() {
-    let page = std::fs::read_to_string(std::path::Path::new(ROOT).join("docs/inspection.md")).expect("the page");
+    let page =
+        std::fs::read_to_string(std::path::Path::new(ROOT).join("docs/teaching/inspection.md")).expect("the page");
     let rows = page.lines().filter_map(|line| line.strip_prefix("| `"));
     let told: BTreeSet<String> =
         rows.filter_map(|row| Some(row.split_once('`')?.0.rsplit('.').next()?.to_owned())).collect();

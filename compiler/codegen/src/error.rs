@@ -367,7 +367,7 @@ impl fmt::Display for CompileError {
                 let load = if axes.load == Load::Wrench { Load::Wrenches } else { axes.load };
                 match Function::find(Axes { load, ..axes }) {
                     Some(of_loops) => write!(f, "Use `{of_loops}`"),
-                    None => f.write_str("docs/closed-loops.md lists the functions of closed loops"),
+                    None => f.write_str("docs/control/closed-loops.md lists the functions of closed loops"),
                 }
             }
             Self::NoClosedLoops { function } => write!(

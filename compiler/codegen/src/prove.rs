@@ -230,7 +230,8 @@ pub(crate) fn loss_of_seven_steps(robot: &Robot, program: &Program) -> Result<Op
 }
 
 /// Factor between the error that is reported and the largest error that was measured: at 20 other states of 200
-/// calibrated tables, errors were up to 6.4 times as large, in 22 functions more than 3 times (docs/accuracy.md).
+/// calibrated tables, errors were up to 6.4 times as large, in 22 functions more than 3 times
+/// (docs/measured/accuracy.md).
 const MARGIN: f64 = 3.0;
 
 /// The largest error in single precision times the margin, in parts of the largest number that the function returns at

@@ -43,7 +43,7 @@ fn what_returns_torques_has_one_number_per_joint() {
     }
 }
 
-/// The name that the grammar of docs/function-names.md gives.
+/// The name that the grammar of docs/reference/function-names.md gives.
 fn by_grammar(Axes { what, base, load, loops }: Axes) -> String {
     let floating = if base == Base::Floating { "floating_" } else { "" };
     // these are about loops alone
@@ -62,7 +62,7 @@ fn by_grammar(Axes { what, base, load, loops }: Axes) -> String {
 /// The names of the document's table of names that will change, and of no others, differ from the grammar.
 #[test]
 fn names_follow_the_grammar() {
-    let document = include_str!("../../../docs/function-names.md");
+    let document = include_str!("../../../docs/reference/function-names.md");
     let table = document.split("## ").find(|part| part.starts_with("Names that will change")).expect("a section");
     let rows = table.lines().filter_map(|line| line.strip_prefix("| `")?.strip_suffix("` |")?.split_once("` | `"));
     let will_change: Vec<(&str, &str)> = rows.collect();

@@ -1,4 +1,4 @@
-/* rne: the dynamics of robot arms, compiled when a robot file is read. Link with -lrne; docs/c-library.md shows how.
+/* rne: the dynamics of robot arms, compiled when a robot file is read. Link with -lrne; docs/firmware/c-library.md shows how.
  *
  * Units: rad, rad/s, rad/s² and N m for revolute joints; m, m/s, m/s² and N for prismatic ones; kg, kg m². Joints are
  * counted from 0 at the base. Arrays of joints have rne_arm_dof() elements.
@@ -269,7 +269,7 @@ enum rne_status rne_arm_joint_kind(const struct rne_arm *arm, size_t joint, enum
 enum rne_status rne_arm_joint_limits(const struct rne_arm *arm, size_t joint, struct rne_limits *limits);
 
 /**
- * The id of a function by its name: "inverse_dynamics", "mass_matrix", …; `docs/functions.md` has them all. An id is
+ * The id of a function by its name: "inverse_dynamics", "mass_matrix", …; `docs/reference/functions.md` has them all. An id is
  * that of every arm. It may be another in another version of this library: do not store it.
  */
 enum rne_status rne_function_find(const char *name,

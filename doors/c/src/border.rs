@@ -221,8 +221,8 @@ pub unsafe extern "C" fn rne_arm_joint_limits(arm: *const Arm, joint: usize, lim
     status::status(|| unsafe { give(limits, "limits", reference(arm, "arm")?.limits(joint)?) })
 }
 
-/// The id of a function by its name: "inverse_dynamics", "mass_matrix", …; `docs/functions.md` has them all. An id is
-/// that of every arm. It may be another in another version of this library: do not store it.
+/// The id of a function by its name: "inverse_dynamics", "mass_matrix", …; `docs/reference/functions.md` has them all.
+/// An id is that of every arm. It may be another in another version of this library: do not store it.
 ///
 /// # Safety
 /// `name` is NULL or ends with a zero byte; `id` is NULL or a place for a number.

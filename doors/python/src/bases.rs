@@ -1,6 +1,6 @@
 //! The motion of a floating base in the vectors of other tools, as arguments of
-//! `Arm.inverse_dynamics_of_floating_base`, and its derivatives as their matrices: docs/conventions.md has the table of
-//! these conventions.
+//! `Arm.inverse_dynamics_of_floating_base`, and its derivatives as their matrices: docs/reference/conventions.md has
+//! the table of these conventions.
 
 use numpy::PyUntypedArrayMethods;
 use pyo3::exceptions::{PyTypeError, PyValueError};

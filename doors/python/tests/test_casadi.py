@@ -386,7 +386,7 @@ def test_the_example_of_a_controller_plans_alike_with_expressions_and_with_rne(t
 
 
 def test_the_page_runs_as_it_stands(tmp_path, monkeypatch):
-    page = ROBOTS.parent / "docs/optimal-control.md"
+    page = ROBOTS.parent / "docs/control/optimal-control.md"
     text = page.read_text(encoding="utf-8")
     program = os.environ.get("RNE")
     if program is None:

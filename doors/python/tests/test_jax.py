@@ -381,6 +381,6 @@ def test_a_program_of_the_cache_of_another_process_is_that_of_its_arm(tmp_path):
 
 
 def test_the_examples_of_the_page_run():
-    page = Path(__file__).parents[3] / "docs/jax.md"
+    page = Path(__file__).parents[3] / "docs/control/jax.md"
     names = run_examples(page, lambda text: text.split("\n## PyTorch\n")[0])
     assert "power" in names

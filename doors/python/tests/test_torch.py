@@ -180,4 +180,4 @@ def test_frames_and_no_state():
 
 
 def test_the_example_of_the_page_runs():
-    run_examples(Path(__file__).parents[3] / "docs/jax.md", lambda text: text.split("\n## PyTorch\n")[1])
+    run_examples(Path(__file__).parents[3] / "docs/control/jax.md", lambda text: text.split("\n## PyTorch\n")[1])

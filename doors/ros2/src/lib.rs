@@ -2,7 +2,7 @@
 //! observer, and diagnostics.
 //!
 //! [`Monitor`] computes all this from messages and needs no ROS: data in, data out. [`node::run`] connects it with the
-//! topics, by the crate ros2-client. `docs/ros2.md` describes the node.
+//! topics, by the crate ros2-client. `docs/control/ros2.md` describes the node.
 #![warn(missing_debug_implementations)]
 
 pub mod arm;

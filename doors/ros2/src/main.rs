@@ -117,9 +117,9 @@ mod tests {
 
     #[test]
     fn the_document_has_every_option() {
-        let document = include_str!("../../../docs/ros2.md");
+        let document = include_str!("../../../docs/control/ros2.md");
         for option in Arguments::command().get_arguments().filter_map(|argument| argument.get_long()) {
-            assert!(document.contains(&format!("`--{option}")), "docs/ros2.md lacks --{option}");
+            assert!(document.contains(&format!("`--{option}")), "docs/control/ros2.md lacks --{option}");
         }
     }
 

@@ -27,7 +27,7 @@ use crate::log::{Agreement, Log};
 use crate::report::Report;
 use crate::table::{Baseline, Row, Table};
 
-/// Builds, reads and runs the generated code for microcontrollers, and compares it with docs/embedded.md
+/// Builds, reads and runs the generated code for microcontrollers, and compares it with docs/measured/embedded.md
 #[derive(Parser)]
 #[command(
     name = "cargo xtask certificate",
@@ -37,11 +37,11 @@ failed.
 
 Examples:
   cargo xtask certificate             judge
-  cargo xtask certificate --update    judge, and write docs/embedded.md anew
+  cargo xtask certificate --update    judge, and write docs/measured/embedded.md anew
   cargo xtask certificate --sample    judge the Cortex-M4F alone, in Rust, and every third robot in C"
 )]
 struct Arguments {
-    /// Write docs/embedded.md anew
+    /// Write docs/measured/embedded.md anew
     #[arg(long)]
     update: bool,
     /// Judge the Cortex-M4F alone, in Rust, and every third robot in C: neither M7F nor fused multiply-add, RISC-V and
@@ -62,15 +62,15 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<ExitCode> {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).parent().context("the package is in a workspace")?;
-    let path = workspace.join("../docs/embedded.md");
+    let path = workspace.join("../docs/measured/embedded.md");
     let report = examine(workspace, arguments.sample)?;
     summary(&report)?;
     if arguments.update {
-        fs::write(&path, report.document()).context("docs/embedded.md")?;
-        println!("wrote docs/embedded.md");
+        fs::write(&path, report.document()).context("docs/measured/embedded.md")?;
+        println!("wrote docs/measured/embedded.md");
         return Ok(ExitCode::SUCCESS);
     }
-    let committed = fs::read_to_string(&path).context("docs/embedded.md")?;
+    let committed = fs::read_to_string(&path).context("docs/measured/embedded.md")?;
     let baseline = Baseline::read(&committed);
     let grown: Vec<String> = report.tables.iter().flat_map(|table| table.growth(&baseline)).collect();
     if !grown.is_empty() {
@@ -79,10 +79,11 @@ fn run(arguments: &Arguments) -> Result<ExitCode> {
         return Ok(ExitCode::FAILURE);
     }
     for table in report.tables.iter().filter(|table| table.is_of_another_compiler(&baseline)) {
-        println!("{}: not compared, docs/embedded.md is of another compiler than {}", table.title, table.compiler);
+        let (title, compiler) = (&table.title, &table.compiler);
+        println!("{title}: not compared, docs/measured/embedded.md is of another compiler than {compiler}");
     }
     if !arguments.sample && !report::is_same(&committed, &report.document()) {
-        println!("docs/embedded.md is of older figures; cargo xtask certificate --update writes them anew");
+        println!("docs/measured/embedded.md is of older figures; cargo xtask certificate --update writes them anew");
     }
     println!("certified");
     Ok(ExitCode::SUCCESS)

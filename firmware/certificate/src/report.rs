@@ -1,4 +1,4 @@
-//! `docs/embedded.md`: what was found out, and what it means.
+//! `docs/measured/embedded.md`: what was found out, and what it means.
 
 use std::fmt::Write as _;
 

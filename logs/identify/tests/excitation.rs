@@ -73,7 +73,7 @@ fn rows(robot: &Robot, motion: &Fourier, instants: usize, with_friction: bool) -
                 rows[(row, column)] = element;
             }
             if with_friction {
-                // the smooth sign as docs/identify.md has it
+                // the smooth sign as docs/control/identify.md has it
                 let sign = qd[joint] / (qd[joint] * qd[joint] + 0.025 * 0.025).sqrt();
                 for (column, element) in [qd[joint], sign, 1.0].into_iter().enumerate() {
                     rows[(row, rank + 3 * joint + column)] = element;

@@ -1,5 +1,5 @@
-//! Events and trends as data for other programs, as `rne watch --json` and Python give them: docs/watch.md lists the
-//! keys.
+//! Events and trends as data for other programs, as `rne watch --json` and Python give them: docs/control/watch.md
+//! lists the keys.
 
 use rne_identify::JointError;
 use rne_logs::UtcTime;

@@ -1,4 +1,5 @@
-//! The state of a floating base in the vectors of other tools: docs/conventions.md has the table of these conventions.
+//! The state of a floating base in the vectors of other tools: docs/reference/conventions.md has the table of these
+//! conventions.
 
 use num_traits::Float;
 

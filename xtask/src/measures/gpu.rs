@@ -23,10 +23,10 @@ numbers of them find no register; 2 when there is no assembler.
 
 Examples:
   cargo xtask gpu                       a table
-  cargo xtask gpu --update              write the table into docs/gpu.md
+  cargo xtask gpu --update              write the table into docs/control/gpu.md
   cargo xtask gpu --install             get the assembler into target/tools first; takes 40 MB")]
 pub(crate) struct Gpu {
-    /// Write the table into docs/gpu.md
+    /// Write the table into docs/control/gpu.md
     #[arg(long)]
     update: bool,
     /// Get the assembler with pip
@@ -34,7 +34,7 @@ pub(crate) struct Gpu {
     pub(crate) install: bool,
 }
 
-const PAGE: &str = "docs/gpu.md";
+const PAGE: &str = "docs/control/gpu.md";
 /// The lines before and after the table.
 const MARKS: [&str; 2] = ["<!-- cargo xtask gpu --update -->\n", "<!-- end -->"];
 const PACKAGE: &str = "nvidia-cuda-nvcc-cu12==12.*";

@@ -1,4 +1,4 @@
-//! Measures docs/performance.md again: the blocks that name a machine and a date.
+//! Measures docs/measured/performance.md again: the blocks that name a machine and a date.
 
 use std::fs;
 
@@ -12,7 +12,8 @@ use crate::{
     machine, measures::batch_profile, measures::growth, measures::plain_build, measures::single_calls, packages::python,
 };
 
-/// Writes the measured blocks of docs/performance.md, between `<!-- begin: measured NAME, … -->` and `<!-- end -->`
+/// Writes the measured blocks of docs/measured/performance.md, between `<!-- begin: measured NAME, … -->` and
+/// `<!-- end -->`
 ///
 /// All blocks take about ten minutes on an idle machine. The blocks of operations do not depend on the machine:
 /// RNE_WRITE_DOCUMENTS=1 cargo test --test documents. CARGO_TARGET_DIR is obeyed.
@@ -31,7 +32,7 @@ pub(crate) struct Performance {
     print: bool,
 }
 
-const PAGE: &str = "docs/performance.md";
+const PAGE: &str = "docs/measured/performance.md";
 
 /// A block of the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

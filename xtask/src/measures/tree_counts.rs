@@ -31,14 +31,14 @@ const ROBOTS: [&str; 15] = [
 const LOOPS: [&str; 3] = ["docs/four_bar.yaml", "benches/trees/loops/g1_ankle.yaml", "benches/trees/loops/delta.yaml"];
 
 /// Where their table is.
-const PAGE: &str = "docs/closed-loops.md";
+const PAGE: &str = "docs/control/closed-loops.md";
 
 /// Counts the operations of robots with branches beside Khalil's algorithm
 ///
 /// Inverse dynamics in the form reduced, on fixed and on floating bases, by the plan files, and the customised
 /// Newton-Euler algorithm with base parameters, from the same robot files. `tests/witnesses/tree_counts.py` has the
 /// rules of both counts. With --loops: robots with closed loops beside their spanning trees with a dense projection, by
-/// the rules of `tests/witnesses/loop_counts.py`; the table is written to docs/closed-loops.md.
+/// the rules of `tests/witnesses/loop_counts.py`; the table is written to docs/control/closed-loops.md.
 #[derive(Args)]
 #[command(after_help = "\
 Exit status: 1 when a robot needs more operations than its bar. Needs python3 with PyYAML.

@@ -17,7 +17,7 @@ use crate::{Verdict, machine, page};
 /// Builds one static site: the documents, the playground, a page for each shipped robot, and the reference
 ///
 /// The site is the folder target/site. Any web server can host it, and its links are relative. A link that leads
-/// nowhere is an error. Documents keep their paths: docs/teaching.md is docs/teaching.html.
+/// nowhere is an error. Documents keep their paths: docs/teaching/for-teachers.md is docs/teaching/for-teachers.html.
 #[derive(Args)]
 #[command(after_help = "\
 Needs what `cargo xtask playground` needs; --test needs what `cargo xtask page`
@@ -40,8 +40,8 @@ pub(crate) struct Site {
 /// The head of each page: its name and its link from the root.
 const PLACES: [(&str, &str); 6] = [
     ("rne", "index.html"),
-    ("lecture", "docs/lecture/README.html"),
-    ("teaching", "docs/teaching.html"),
+    ("lecture", "docs/teaching/lecture/README.html"),
+    ("teaching", "docs/teaching/for-teachers.html"),
     ("playground", "playground/index.html"),
     ("robots", "reports/index.html"),
     ("reference", "api/rne/index.html"),
@@ -379,18 +379,19 @@ mod tests {
     #[test]
     fn links_of_documents_are_links_of_pages() {
         let sources =
-            ["README.md", "docs/teaching.md", "docs/lecture/README.md", "robots/README.md"].map(PathBuf::from);
+            ["README.md", "docs/teaching/for-teachers.md", "docs/teaching/lecture/README.md", "robots/README.md"]
+                .map(PathBuf::from);
         let folder = tempfile::tempdir().expect("a folder");
         let document = Document { source: &sources[1], sources: &sources, site: folder.path() };
         let mut wrong = Vec::new();
         let mut link = |to: &str| document.link(to, &mut wrong).expect("a link");
-        assert_eq!(link("lecture/README.md#a"), "../docs/lecture/README.html#a");
-        assert_eq!(link("../README.md"), "../index.html");
-        assert_eq!(link("../robots"), "../robots/README.html");
-        assert_eq!(link("states.csv"), "../docs/states.csv");
+        assert_eq!(link("lecture/README.md#a"), "../../docs/teaching/lecture/README.html#a");
+        assert_eq!(link("../../README.md"), "../../index.html");
+        assert_eq!(link("../../robots"), "../../robots/README.html");
+        assert_eq!(link("../states.csv"), "../../docs/states.csv");
         assert_eq!(link("https://example.org/"), "https://example.org/");
-        assert_eq!(link("nowhere.md"), "../docs/nowhere.md");
-        assert_eq!(wrong, ["docs/teaching.md: `nowhere.md` leads nowhere"]);
+        assert_eq!(link("nowhere.md"), "../../docs/teaching/nowhere.md");
+        assert_eq!(wrong, ["docs/teaching/for-teachers.md: `nowhere.md` leads nowhere"]);
         assert!(folder.path().join("docs/states.csv").exists());
     }
 }

@@ -34,7 +34,7 @@ Examples:
   rne log docs/two_arms_log.csv --where robot_id=r2
 
 rne reads CSV and npy logs. It also reads ROS 2 bags (*.db3, *.mcap) and Parquet
-logs if it was built with the features `bags` and `parquet`. docs/logs.md lists
+logs if it was built with the features `bags` and `parquet`. docs/control/logs.md lists
 the names of columns that rne knows.")]
 #[allow(clippy::struct_excessive_bools)] // each is an option
 pub(crate) struct Arguments {

@@ -31,7 +31,7 @@ Examples:
     --quiet docs/desk_arm_log.csv
 
 The exit status is 1 if rne reports an event, or if the model does not explain
-the torques of a joint. docs/watch.md describes the events.")]
+the torques of a joint. docs/control/watch.md describes the events.")]
 #[allow(clippy::struct_excessive_bools)] // each is a flag of its own
 pub(crate) struct Arguments {
     /// Robot file with friction, such as the output of `rne identify`

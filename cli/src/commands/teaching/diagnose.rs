@@ -36,7 +36,7 @@ Examples:
 rne tries the usual mistakes one by one, then in pairs: convention, gravity,
 inertia and centre of mass about another point, units, offsets, signs, motors,
 wrench, order of lists, and the misprints of the lecture
-(docs/lecture/errata.md). Single mistakes also include two exchanged joints and
+(docs/teaching/lecture/errata.md). Single mistakes also include two exchanged joints and
 the sign of one alpha, one theta, or one component of a centre of mass. In a
 tree rne also tries exchanged branches and a tip on another link, and no
 misprints; followers may have the other sign. Give speeds and accelerations of all joints:

@@ -267,7 +267,7 @@ fn swapped(name: &str, path: &Path) -> Option<Failure> {
 /// Explanation of the formulas of tricks.
 const OF_TRICKS: &str = "\
 A trick is a simplification that saves operations in the reduced form. The number in brackets after a formula is the \
-section of docs/reduced-form.md that explains the formula.";
+section of docs/teaching/reduced-form.md that explains the formula.";
 
 /// How arguments are given.
 const OF_EVAL: &str = "\

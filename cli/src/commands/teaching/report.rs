@@ -23,7 +23,7 @@ The page is one HTML file and needs no network. The page shows the arm in 3-D,
 the seven steps of inverse dynamics for each joint, torques over a motion, and
 exercises. Each component of a step has its equation, its numbers, its code, and
 the terms that vanish, with the reasons. The component is linked with its vector
-on the arm. docs/teaching.md describes how to use the page.")]
+on the arm. docs/teaching/for-teachers.md describes how to use the page.")]
 pub(crate) struct Arguments {
     /// Robot file, or a name from `rne list`
     #[arg(value_name = "FILE")]

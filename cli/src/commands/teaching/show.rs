@@ -71,7 +71,7 @@ pub(crate) struct Arguments {
     /// Show each component as an equation, with the terms that vanish and the code
     #[arg(long, conflicts_with_all = ["keep", "without"])]
     equations: bool,
-    /// Print equations and code as JSON, described in docs/inspection.md
+    /// Print equations and code as JSON, described in docs/teaching/inspection.md
     #[arg(long, conflicts_with_all = ["joint", "step", "keep", "without", "equations"])]
     json: bool,
     /// List the combinations of link parameters on which the torques depend

@@ -4,7 +4,7 @@ use crate::named::named;
 use crate::plan::{Moment, OriginShift, Plan, RegroupingTarget, Side};
 
 named! {
-    /// A simplification of the reduced form. The section numbers refer to `docs/reduced-form.md`.
+    /// A simplification of the reduced form. The section numbers refer to `docs/teaching/reduced-form.md`.
     Trick, "trick of the reduced form" {
         /// Matter on joint axes is given to the link before, so that it vanishes from the link.
         Regrouping = "regrouping",

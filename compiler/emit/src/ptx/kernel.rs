@@ -17,7 +17,7 @@ use crate::wrap::{WIDTH, fill};
 const BLOCK: usize = 64;
 const MOST_SHARED: usize = 48 * 1024;
 /// Results of a state beyond which they go through shared memory. An H200 wrote the 49 of a mass matrix of the Panda
-/// nine times as fast so, and its 7 torques three times as slowly (docs/gpu.md).
+/// nine times as fast so, and its 7 torques three times as slowly (docs/control/gpu.md).
 const WIDE: usize = 32;
 
 macro_rules! abouts {

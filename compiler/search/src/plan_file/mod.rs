@@ -258,9 +258,9 @@ impl PlanFile {
 /// The comment at the head of a plan file.
 const HEADING: &str = "\
 # Choices and rewritten graphs of the reduced form of ROBOT, found by a search and replayed by every build;
-# docs/reduced-form.md explains them. `fingerprint` is that of the robot's numbers, `accuracy` the largest difference
-# from the seven steps, in parts of the largest number returned: in double precision, in single precision, and of the
-# seven steps in single precision.
+# docs/teaching/reduced-form.md explains them. `fingerprint` is that of the robot's numbers, `accuracy` the largest
+# difference from the seven steps, in parts of the largest number returned: in double precision, in single precision,
+# and of the seven steps in single precision.
 ";
 
 /// The value of a key in a key …, or the key itself where the value stands below it, as far as the keys are found.

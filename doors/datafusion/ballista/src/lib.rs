@@ -6,7 +6,7 @@ mod scheduler;
 mod session;
 
 /// Whether executors ask for tasks or are sent them. With what is sent, Ballista 55.0 loses slots of executors when
-/// another one dies after a shuffle: `docs/fleet.md`.
+/// another one dies after a shuffle: `docs/control/fleet.md`.
 pub use ballista_core::config::TaskSchedulingPolicy;
 
 pub use crate::executor::executor;

@@ -294,13 +294,13 @@ async fn an_executor_that_dies_after_a_shuffle_costs_time_and_no_rows() -> Resul
 }
 
 #[tokio::test(flavor = "multi_thread")]
-#[ignore = "Ballista 55.0 waits for ever: docs/fleet.md"]
+#[ignore = "Ballista 55.0 waits for ever: docs/control/fleet.md"]
 async fn the_adaptive_planner_bears_an_executor_that_dies_after_a_shuffle() -> Result<()> {
     an_executor_dies(Loss::AfterAShuffle, Like::Adaptive).await
 }
 
 #[tokio::test(flavor = "multi_thread")]
-#[ignore = "Ballista 55.0 may wait for ever: docs/fleet.md"]
+#[ignore = "Ballista 55.0 may wait for ever: docs/control/fleet.md"]
 async fn tasks_that_are_sent_bear_an_executor_that_dies_after_a_shuffle() -> Result<()> {
     an_executor_dies(Loss::AfterAShuffle, Like::Sent).await
 }

@@ -9,7 +9,7 @@
 memory; `rne.robots` has the robots in the box. Arrays have the shape `(n,)` for one state or `(N, n)` for many; units are
 SI: rad, m, N m, N, kg. Torques are what the actuators must deliver.
 
-`rne.log`, `rne.identify`, `rne.identify_payload`, `rne.watch` and `rne.excite` are about logs: docs/python.md.
+`rne.log`, `rne.identify`, `rne.identify_payload`, `rne.watch` and `rne.excite` are about logs: docs/control/python.md.
 """
 
 from typing import Iterator

@@ -141,7 +141,7 @@ def log(paths, robot=None, **options):
         Selects the joints of this arm.
     **options
         How the log is read: joints, topic, torque_constants, angles, cutoff, gap, derive_velocities, recorded,
-        time_unit, rate, columns, map, where. docs/python.md describes them.
+        time_unit, rate, columns, map, where. docs/control/python.md describes them.
 
     Returns
     -------

@@ -34,7 +34,7 @@ def reading(
     map=None,
     where=None,
 ):
-    """The keywords of logs as the reader takes them; `docs/python.md` says what each is for."""
+    """The keywords of logs as the reader takes them; `docs/control/python.md` says what each is for."""
     if isinstance(joints, str) or isinstance(columns, str):
         raise TypeError("`joints` and `columns` are lists of names")
     return {

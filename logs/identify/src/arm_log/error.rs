@@ -169,7 +169,7 @@ impl fmt::Display for ArmLogError {
                 write!(
                     f,
                     "; rne does not read the columns {}, because columns of efforts have names such as tau1 or \
-                     elbow/effort: see docs/logs.md",
+                     elbow/effort: see docs/control/logs.md",
                     unread.join(", ")
                 )
             }

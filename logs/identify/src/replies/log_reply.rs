@@ -1,5 +1,5 @@
-//! The content of a log as data for other programs, as `rne log --json` and Python give it: docs/logs.md lists the
-//! keys.
+//! The content of a log as data for other programs, as `rne log --json` and Python give it: docs/control/logs.md lists
+//! the keys.
 
 use rne_logs::{Cutoff, LeftOut, Log, Run, Survey};
 use serde::Serialize;

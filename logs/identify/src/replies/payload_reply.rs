@@ -1,5 +1,5 @@
-//! A payload as data for other programs, as `rne identify --payload --json` and Python give it: docs/identify.md lists
-//! the keys.
+//! A payload as data for other programs, as `rne identify --payload --json` and Python give it:
+//! docs/control/identify.md lists the keys.
 
 use rne_model::{Joint, Robot};
 use serde::Serialize;

@@ -1,5 +1,5 @@
-//! An identification as data for other programs, as `rne identify --json` and Python give it: docs/identify.md lists
-//! the keys.
+//! An identification as data for other programs, as `rne identify --json` and Python give it: docs/control/identify.md
+//! lists the keys.
 
 use rne_logs::Motion;
 use rne_model::{FrictionTransition, Joint, JointKind, Robot};

@@ -296,9 +296,9 @@ mod tests {
     /// The tables of the documentation are those of this module.
     #[test]
     fn the_documentation_has_these_patterns_and_words() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/logs.md");
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/control/logs.md");
         let text = std::fs::read_to_string(path).unwrap();
-        let has = |row: &str| assert!(text.contains(row), "docs/logs.md does not have\n{row}");
+        let has = |row: &str| assert!(text.contains(row), "docs/control/logs.md does not have\n{row}");
         for Pattern(form, between, after) in PATTERNS {
             let names = |quantity: &str, joint: &str| match form {
                 Form::JointBefore => format!("`{joint}{between}{quantity}{after}`"),
@@ -316,7 +316,7 @@ mod tests {
         }
         let rows =
             text.lines().filter(|row| row.starts_with("| `") && row.contains("{quantity}") && row.contains("`, `"));
-        assert_eq!(rows.count(), PATTERNS.len(), "docs/logs.md has other patterns too");
+        assert_eq!(rows.count(), PATTERNS.len(), "docs/control/logs.md has other patterns too");
         let mut table = "\n| `{quantity}` | words |\n|---|---|\n".to_owned();
         for (quantity, is_current, words) in WORDS {
             let what = if is_current { "current" } else { quantity.word() };

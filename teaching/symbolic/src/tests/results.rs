@@ -1,5 +1,5 @@
 //! The results of the lecture's example, 1 to 10, as its page has them in the lecture's symbols:
-//! `docs/lecture/results.md`.
+//! `docs/teaching/lecture/results.md`.
 //!
 //! Each is the polynomial that the seven steps find, turned into the lecture's frame, the number that the runtime
 //! finds, and what the page shows of both.
@@ -19,7 +19,7 @@ use crate::{ClosedForm, read};
 const STATE: [f64; 3] = [0.6, 1.3, -0.7];
 
 fn of_docs(file: &str) -> String {
-    let path = format!("{}/../../docs/lecture/{file}", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/../../docs/teaching/lecture/{file}", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
