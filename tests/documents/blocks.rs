@@ -119,7 +119,11 @@ fn documents_say_what_the_code_prints() {
         if std::env::var_os("RNE_WRITE_DOCUMENTS").is_some() {
             std::fs::write(&path, &renewed).expect("a writable file");
         } else {
-            assert_eq!(document, renewed, "{}: RNE_WRITE_DOCUMENTS=1 cargo test --test documents", path.display());
+            let help = "RNE_WRITE_DOCUMENTS=1 cargo test --test documents";
+            for (at, (old, new)) in document.lines().zip(renewed.lines()).enumerate() {
+                assert_eq!(old, new, "{name}:{}: {help}", at + 1);
+            }
+            assert_eq!(document.len(), renewed.len(), "{name}: {help}");
         }
     }
 }

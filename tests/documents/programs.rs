@@ -30,8 +30,8 @@ pub(crate) fn control() -> String {
 /// The derive and the calls of an example with two tips, for a file in the folder of the page.
 pub(crate) fn two_hands() -> String {
     let (derive, calls) = example("two_hands", "let mut w");
-    let derive = derive.replace("../docs/", "../");
-    assert!(derive.contains("path = \"../dual_arm.yaml\"") && calls.lines().count() == 3, "{derive}{calls}");
+    let derive = derive.replace("../docs/", "");
+    assert!(derive.contains("path = \"dual_arm.yaml\"") && calls.lines().count() == 3, "{derive}{calls}");
     format!("```rust,ignore\n{derive}{calls}```\n")
 }
 
