@@ -13,21 +13,24 @@
 //! τ            torque (N m) or force (N) of the actuator
 //! ```
 //!
-//! Link i is the one that joint i moves, link p the one that carries joint i: its `parent`, or the base. In a chain p
-//! is i-1, and the lecture's r_{i-1} is the r_i of here, for it depends on where joint i is mounted:
-//! [`crate::seven_steps::mount`]. What a kind of joint adds stands in [`crate::seven_steps::joint`]. The vectors of
-//! link i stand in the axes of form P: fixed to link i, z along joint i. The lecture writes the same vectors in axes
-//! fixed to link i-1: Rz(θ_i) leads there and leaves z elements, so τ, as they are.
+//! Link i is the one that joint i moves. Link p is the one that carries joint i: its `parent`, or the base. In a chain p
+//! is i-1, and r_i is the lecture's r_{i-1} ([`mount`]). f_{i,k} is f_{p,i} of a joint k that link i carries.
 //!
-//! R_i and d_i are computed in [`crate::seven_steps::link_frame`]. `kind.x(rigid, …)` adds the term of the joint to
-//! `rigid`, the value if the joint did not move. f_{i,k} is f_{p,i} of a joint k that link i carries.
+//! The components of a vector of link i are along axes that are fixed to link i, with z along joint i. These axes are
+//! called form P. The lecture uses axes that are fixed to link i-1: Rz(θ_i) turns one into the other and does not
+//! change z elements, so τ is the same.
 //!
-//! The lecture has no rotors of motors (`spins`), no floating base and no first moment h: a body has h = 0, and only a
-//! set of base parameters has links without mass that have one.
+//! R_i and d_i are computed in [`link_frame`]. `kind.x(rigid, …)` adds the term of a revolute or a prismatic joint to
+//! `rigid`, the value if the joint did not move ([`joint`]).
+//!
+//! The lecture has a chain on a base that does not move. What moving bases, rotors of motors and links without mass
+//! add is in [`base`], [`spin`] and [`first_moment`].
 //!
 //! The order of the operations is part of the contract: generated code repeats it and is compared bit for bit.
 
 pub(crate) mod at_tip;
+pub(crate) mod base;
+mod first_moment;
 pub(crate) mod joint;
 pub(crate) mod link_frame;
 pub(crate) mod link_state;
@@ -39,6 +42,7 @@ pub(crate) mod trace;
 use nalgebra::Vector3;
 
 use crate::seven_steps::at_tip::AtTip;
+use crate::seven_steps::first_moment::{with_force, with_moment, without_weight};
 use crate::seven_steps::joint::JointLaws;
 use crate::seven_steps::link_frame::{Chain, LinkFrame};
 use crate::seven_steps::link_state::{Carried, ForceMoment, Joint, JointMotions, LinkLoad, LinkMotion};
@@ -97,27 +101,19 @@ fn gravity<T: Scalar>(parent: &LinkMotion<T>, this: &LinkMotion<T>) -> Vector3<T
 
 /// Step 6, the link alone: force and moment that accelerate it.
 ///
-/// - f_i = m_i c̈_i                             with a first moment + ω̇_i × h_i + ω_i × (ω_i × h_i)
-/// - n_i = I_i ω̇_i + ω_i × (I_i ω_i)           with a first moment + h_i × c̈_i
+/// - f_i = m_i c̈_i
+/// - n_i = I_i ω̇_i + ω_i × (I_i ω_i)
 fn inertia_wrench<T: Scalar>(link: &LinkFrame<T>, this: &LinkMotion<T>) -> ForceMoment<T> {
     let force = this.acceleration * link.mass;
     let moment = link.inertia * this.omega_dot + this.omega.cross(&(link.inertia * this.omega));
-    match &link.first_moment {
-        None => ForceMoment { force, moment },
-        Some(h) => ForceMoment { force: force + turning(h, this), moment: moment + h.cross(&this.acceleration) },
-    }
-}
-
-/// ω̇_i × h_i + ω_i × (ω_i × h_i)
-fn turning<T: Scalar>(h: &Vector3<T>, this: &LinkMotion<T>) -> Vector3<T> {
-    this.omega_dot.cross(h) + this.omega.cross(&this.omega.cross(h))
+    ForceMoment { force: with_force(link, this, force), moment: with_moment(link, this, moment) }
 }
 
 /// Step 6, the balance: force and moment from the parent link, the moment about the joint's reference point. The sums
 /// run over the joints k that link i carries, and the tip; in a chain there is one of them.
 ///
 /// - f_{p,i} = f_i + Σ R_k f_{i,k} - m_i g_i
-/// - n_{p,i} = n_i + Σ R_k n_{i,k} + d_i × f_{p,i} + Σ r_k × R_k f_{i,k}      with a first moment - h_i × g_i
+/// - n_{p,i} = n_i + Σ R_k n_{i,k} + d_i × f_{p,i} + Σ r_k × R_k f_{i,k}
 ///
 /// f_i - m_i g_i is computed as m_i (c̈_i - g_i): one product instead of two.
 fn joint_wrench<T: Scalar>(
@@ -126,20 +122,15 @@ fn joint_wrench<T: Scalar>(
     inertia: &ForceMoment<T>,
     carried: Option<&Carried<T>>,
 ) -> ForceMoment<T> {
-    let own = (this.acceleration - this.gravity) * link.mass;
-    let own = link.first_moment.as_ref().map_or(own, |h| own + turning(h, this));
-    let joint = match carried {
-        None => ForceMoment { force: own, moment: inertia.moment + this.d.cross(&own) },
+    let own = with_force(link, this, (this.acceleration - this.gravity) * link.mass);
+    let (force, moment) = match carried {
+        None => (own, inertia.moment + this.d.cross(&own)),
         Some(Carried { wrench, of_levers }) => {
             let force = own + wrench.force;
-            let moment = ((inertia.moment + wrench.moment) + this.d.cross(&force)) + of_levers;
-            ForceMoment { force, moment }
+            (force, ((inertia.moment + wrench.moment) + this.d.cross(&force)) + of_levers)
         }
     };
-    match &link.first_moment {
-        None => joint,
-        Some(h) => ForceMoment { moment: joint.moment - h.cross(&this.gravity), ..joint },
-    }
+    ForceMoment { force, moment: without_weight(link, this, moment) }
 }
 
 /// Step 7: what the actuator delivers is the element along the joint's axis.
@@ -150,17 +141,6 @@ fn actuator<T: Scalar>(link: &LinkFrame<T>, joint: &ForceMoment<T>) -> T {
     link.kind.actuator(joint)
 }
 
-/// The motion of the base, where the forward pass starts.
-pub(crate) fn base_motion<S: Constant, T: Scalar>(chain: Chain<'_, S>, motion: &BaseMotion<T>) -> LinkMotion<T> {
-    LinkMotion::of_base(motion, chain.floating_base.map(|_| chain.base().com))
-}
-
-/// Step 3 of the base: the velocity of its centre of mass, or of the origin of frame 0 where the world holds it.
-pub(crate) fn base_velocity<S: Constant, T: Scalar>(chain: Chain<'_, S>, motion: &BaseMotion<T>) -> Vector3<T> {
-    let (origin, base) = (Vector3::from(motion.velocity), base_motion(chain, motion));
-    if chain.floating_base.is_some() { origin + base.omega.cross(&base.d) } else { origin }
-}
-
 /// The forward pass, steps 1, 2, 4 and 5, from the base to the tip: parents before what they carry. Links beyond the
 /// shortest argument stay as they are.
 pub(crate) fn forward<S: Constant, T: Scalar>(
@@ -169,7 +149,7 @@ pub(crate) fn forward<S: Constant, T: Scalar>(
     joints: JointMotions<'_, T>,
     motions: &mut [LinkMotion<T>],
 ) {
-    let base = base_motion(chain, base);
+    let base = base::motion(chain, base);
     for (index, joint) in chain.joints(joints).enumerate().take(motions.len()) {
         let parent = joint.link.parent.map_or(base, |parent| motions[parent]);
         let mut this = LinkMotion::placed(&joint);
@@ -189,7 +169,7 @@ pub(crate) fn velocities<S: Constant, T: Scalar>(
     motions: &[LinkMotion<T>],
     velocities: &mut [Vector3<T>],
 ) {
-    let (base_velocity, base) = (self::base_velocity(chain, base), base_motion(chain, base));
+    let (base_velocity, base) = (base::velocity(chain, base), base::motion(chain, base));
     for (index, (joint, this)) in chain.joints(joints).zip(motions).enumerate() {
         let parent = joint.link.parent.map_or((&base, base_velocity), |parent| (&motions[parent], velocities[parent]));
         velocities[index] = velocity(&joint, parent.0, &parent.1, this);
@@ -210,10 +190,7 @@ pub(crate) fn backward<S: Constant, T: Scalar>(
     tip.put(chain, motions, loads);
     let mut base = LinkLoad::empty();
     for (index, (link, this)) in chain.links().zip(motions).enumerate().rev() {
-        let mut inertia = inertia_wrench(&link, this);
-        for spin in chain.spins.on(Some(index)) {
-            inertia.moment += chain.spins.moment(spin, joints, this);
-        }
+        let inertia = chain.spins.with_moments(Some(index), joints, this, inertia_wrench(&link, this));
         let joint = joint_wrench(&link, this, &inertia, loads[index].carried.as_ref());
         let tau = actuator(&link, &joint);
         loads[index] = LinkLoad { inertia, joint, tau, ..loads[index] };
@@ -222,22 +199,6 @@ pub(crate) fn backward<S: Constant, T: Scalar>(
         parent.carry(&this.rotation, &link.mount.r, &joint);
     }
     base
-}
-
-/// Step 6 of the base: the force and moment that must act on it, the moment about the origin of frame 0, after the
-/// backward pass has left `load` on it.
-pub(crate) fn base_wrench<S: Constant, T: Scalar>(
-    chain: Chain<'_, S>,
-    joints: JointMotions<'_, T>,
-    this: &LinkMotion<T>,
-    load: &LinkLoad<T>,
-) -> ForceMoment<T> {
-    let base = LinkFrame::of_base(chain.base());
-    let mut inertia = inertia_wrench(&base, this);
-    for spin in chain.spins.on(None) {
-        inertia.moment += chain.spins.moment(spin, joints, this);
-    }
-    joint_wrench(&base, this, &inertia, load.carried.as_ref())
 }
 
 #[cfg(test)]

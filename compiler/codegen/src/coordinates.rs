@@ -162,7 +162,7 @@ impl Coordinates {
             let terms = followed.iter().map(|&(followed, ratio)| scaled(argument(followed), ratio));
             terms.chain(bias).reduce(|sum, term| sum + term).unwrap_or_else(|| builder.zero())
         };
-        quantity.of_follower().map_or_else(sum, |quantity| builder.by(None, || line.scalar(quantity, sum)))
+        quantity.of_follower().map_or_else(sum, |quantity| builder.by(None, || line.define(quantity).by(sum())))
     }
 
     /// The acceleration of a joint where no coordinate accelerates, Ġ q̇; `None` where closed loops do not move it.

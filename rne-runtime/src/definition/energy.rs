@@ -38,7 +38,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let velocities = self.velocities(joints, &base, &motions);
         let turning = twist.map(|twist| Vector3::from(twist.angular));
         let mut twice = turning.map_or_else(T::zero, |omega| {
-            let (link, velocity) = (self.chain.base(), seven_steps::base_velocity(self.chain, &base));
+            let (link, velocity) = (self.chain.base(), seven_steps::base::velocity(self.chain, &base));
             let spin = omega.dot(&(link.inertia * omega));
             link.mass * velocity.dot(&velocity) + spin
         });

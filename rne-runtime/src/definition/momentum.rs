@@ -194,7 +194,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
             *place = Some(carry(*place, body.turned(&motions[i].rotation), &link.mount.r));
         }
         let link = LinkFrame::of_base(chain.base());
-        let (motion, velocity) = (seven_steps::base_motion(chain, &base), seven_steps::base_velocity(chain, &base));
+        let (motion, velocity) = (seven_steps::base::motion(chain, &base), seven_steps::base::velocity(chain, &base));
         let whole = Body::of(&link, &motion, &velocity, of_spins(None), on_base.as_ref());
         let centre = whole.first_moment * (T::one() / whole.mass);
         let about = whole.angular - centre.cross(&whole.linear);

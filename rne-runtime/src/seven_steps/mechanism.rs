@@ -62,8 +62,8 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         tip: AtTip<'_, T>,
     ) -> (ForceMoment<T>, J::Of<T>) {
         let (_, loads, of_base) = self.all_passes(joints, base, tip);
-        let motion = seven_steps::base_motion(self.chain, base);
-        let wrench = seven_steps::base_wrench(self.chain, joints, &motion, &of_base);
+        let motion = seven_steps::base::motion(self.chain, base);
+        let wrench = seven_steps::base::wrench(self.chain, joints, &motion, &of_base);
         (wrench, self.per_joint.of(|joint| loads.as_ref()[joint].tau))
     }
 

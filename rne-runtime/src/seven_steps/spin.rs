@@ -12,7 +12,7 @@
 
 use nalgebra::Vector3;
 
-use crate::seven_steps::link_state::{JointMotions, LinkMotion};
+use crate::seven_steps::link_state::{ForceMoment, JointMotions, LinkMotion};
 use crate::{Constant, Scalar};
 
 /// The constants of a rotor.
@@ -63,14 +63,18 @@ impl<'a, S: Constant> Spins<'a, S> {
         spin.axis.map(S::to) * (spin.inertia.to::<T>() * self.of_joints(spin, values))
     }
 
-    /// Jm ṡ a + ω × Jm s a
-    pub(crate) fn moment<T: Scalar>(
+    /// n_c of a link, or of the base (`None`), with Jm ṡ a + ω × Jm s a of each rotor on it.
+    pub(crate) fn with_moments<T: Scalar>(
         self,
-        spin: &Spin<S>,
+        carrier: Option<usize>,
         joints: JointMotions<'_, T>,
-        carrier: &LinkMotion<T>,
-    ) -> Vector3<T> {
-        self.momentum(spin, joints.qdd) + carrier.omega.cross(&self.momentum(spin, joints.qd))
+        motion: &LinkMotion<T>,
+        mut inertia: ForceMoment<T>,
+    ) -> ForceMoment<T> {
+        for spin in self.on(carrier) {
+            inertia.moment += self.momentum(spin, joints.qdd) + motion.omega.cross(&self.momentum(spin, joints.qd));
+        }
+        inertia
     }
 
     /// Adds n (Jm Σ n x + Jm a · y) to the element of each joint with which a rotor turns, with x and y rates or

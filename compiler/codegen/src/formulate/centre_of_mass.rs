@@ -77,7 +77,7 @@ fn links<'s>(builder: &'s Builder, frames: &Frames<'s>, centres: &[Vector<'s>]) 
     let centres = frames.joints.iter().zip(centres).enumerate();
     centres
         .map(|(index, (frame, d))| {
-            builder.joint(index + 1).vector(Quantity::ComPosition, || frame.rotation * *d + frame.origin)
+            builder.joint(index + 1).define(Quantity::ComPosition).by(frame.rotation * *d + frame.origin)
         })
         .collect()
 }

@@ -288,7 +288,7 @@ pub(crate) fn step<'s>(builder: &'s Builder, robot: &Robot) -> Outputs<'s> {
     let positions = robot.closed.passive.iter().zip(changes).map(|(joint, change)| {
         let position = builder.argument(Name::scalar(Quantity::Position, joint + 1));
         let line = builder.joint(joint + 1);
-        let closed = line.scalar(Quantity::ClosedPosition, || position + change);
+        let closed = line.define(Quantity::ClosedPosition).by(position + change);
         (Name::scalar(Quantity::ClosedPosition, joint + 1), closed)
     });
     let residuals = closure.residuals.iter().enumerate().map(|(equation, &residual)| {

@@ -85,7 +85,7 @@ fn lost<'s>(arm: &Arm<'s>, gravity: Vector<'s>, frames: &Frames<'s>, centres: &[
     let mut lost = of_base.unwrap_or_else(|| builder.constant(0.0, Cause::Arithmetic));
     for (index, ((link, frame), d)) in arm.links.iter().zip(&frames.joints).zip(centres).enumerate() {
         let line = builder.joint(index + 1);
-        let centre = line.vector(Quantity::ComPosition, || frame.rotation * *d + frame.origin);
+        let centre = line.define(Quantity::ComPosition).by(frame.rotation * *d + frame.origin);
         lost = line.within(Quantity::Potential, || {
             let lost = lost + gravity.dot(centre) * link.body.mass;
             link.body.first_moment.map_or(lost, |h| lost + gravity.dot(frame.rotation * h))

@@ -65,7 +65,7 @@ impl<'s, 'a> FloatingStep<'s, 'a> {
         let ([linear, angular], line) = ([0, 3].map(of_base), builder.joint(0));
         builder.keep_accelerations((0..).map(|row| system.acceleration(row)).zip(solved.iter().copied()));
         let moved = |quantity, change: Vector<'s>| vector(builder, quantity, 0) + change * step;
-        let omega = line.vector(Quantity::NextOmega, || moved(Quantity::Omega, angular));
+        let omega = line.define(Quantity::NextOmega).by(moved(Quantity::Omega, angular));
         let (back, turning) = line.within(Quantity::NextTurn, || {
             let turn = Turn::of(builder, omega * step);
             (turn.matrix(builder).transpose(), turn.by_rate(step))
@@ -74,7 +74,7 @@ impl<'s, 'a> FloatingStep<'s, 'a> {
             let in_base = pose_of_base(builder).rotation.transpose() * gravity;
             (moved(Quantity::OriginVelocity, linear), in_base * step)
         });
-        let velocity = line.vector(Quantity::NextVelocity, || back * (linear + falling));
+        let velocity = line.define(Quantity::NextVelocity).by(back * (linear + falling));
         let factors = factors.divided_by(step);
         Self { builder, system, step, factors, linear, falling, back, turning, velocity }
     }

@@ -34,8 +34,8 @@ pub(crate) fn step<'s>(
     for (&joint, &(_, acceleration)) in coordinates.joints().iter().zip(accelerations) {
         let (line, argument) =
             (builder.joint(joint + 1), |quantity| builder.argument(Name::scalar(quantity, joint + 1)));
-        let rate = line.scalar(Quantity::NextRate, || argument(Quantity::Rate) + step * acceleration);
-        let position = line.scalar(Quantity::NextPosition, || argument(Quantity::Position) + step * rate);
+        let rate = line.define(Quantity::NextRate).by(argument(Quantity::Rate) + step * acceleration);
+        let position = line.define(Quantity::NextPosition).by(argument(Quantity::Position) + step * rate);
         positions.push((Name::scalar(Quantity::NextPosition, joint + 1), position));
         rates.push((Name::scalar(Quantity::NextRate, joint + 1), rate));
     }
@@ -56,13 +56,13 @@ pub(crate) fn floating_step<'s>(
     let Frame { rotation, origin } = pose_of_base(builder);
     let (line, step) = (builder.joint(0), duration(builder));
     let moved = |x: Vector<'s>, change: Vector<'s>| x + change * step;
-    let omega = line.vector(Quantity::NextOmega, || moved(omega, angular));
+    let omega = line.define(Quantity::NextOmega).by(moved(omega, angular));
     let in_world = line.within(Quantity::NextOrigin, || moved(rotation * moved(velocity, linear), gravity));
-    let origin = line.vector(Quantity::NextOrigin, || moved(origin, in_world));
-    let rotation = line.matrix(Quantity::NextRotation, || {
-        next_to(builder, rotation * Turn::of(builder, omega * step).matrix(builder))
-    });
-    let velocity = line.vector(Quantity::NextVelocity, || rotation.transpose() * in_world);
+    let origin = line.define(Quantity::NextOrigin).by(moved(origin, in_world));
+    let rotation = line
+        .define(Quantity::NextRotation)
+        .by(next_to(builder, rotation * Turn::of(builder, omega * step).matrix(builder)));
+    let velocity = line.define(Quantity::NextVelocity).by(rotation.transpose() * in_world);
     let mut outputs = Outputs::new();
     for (row, elements) in Axis::ALL.into_iter().zip(rotation.0) {
         let name = |column| Name::matrix(Quantity::NextRotation, 0, row, column);

@@ -62,7 +62,7 @@ impl<'s> Joint<'_, 's> {
     /// R_i: how the joint is mounted, then Rz(θ_i).
     pub(crate) fn rotation(&self) -> Matrix<'s> {
         let about_z = self.turn();
-        self.lines.matrix(Quantity::Rotation, || self.link.mount.rotation * about_z)
+        self.lines.define(Quantity::Rotation).by(self.link.mount.rotation * about_z)
     }
 
     /// Rz(θ_i)
@@ -91,14 +91,14 @@ impl<'s> Joint<'_, 's> {
             (Revolute, Some((s, c)), None) => {
                 let (sin, cos) = self.constant_turn();
                 (
-                    line.scalar(Quantity::TurnedSine, || s * cos + c * sin),
-                    line.scalar(Quantity::TurnedCosine, || c * cos - s * sin),
+                    line.define(Quantity::TurnedSine).by(s * cos + c * sin),
+                    line.define(Quantity::TurnedCosine).by(c * cos - s * sin),
                 )
             }
             (Revolute, None, right) => {
                 let q = self.state.q;
                 let angle =
-                    if right.is_some() { q } else { line.scalar(Quantity::Angle, || line.constant_angle(&theta) + q) };
+                    if right.is_some() { q } else { line.define(Quantity::Angle).by(line.constant_angle(&theta) + q) };
                 let (s, c) = line.builder.sine_and_cosine(angle);
                 let turn = (line.name(Quantity::Sine, s), line.name(Quantity::Cosine, c));
                 by_quarters(turn, right.unwrap_or(QuarterTurns::Zero))
@@ -119,7 +119,7 @@ impl<'s> Joint<'_, 's> {
         let d = || self.offset(self.link.offset) + self.link.body.com;
         match self.link.kind {
             Revolute => self.lines.name_vector(Quantity::D, d()),
-            Prismatic => self.lines.vector(Quantity::D, d),
+            Prismatic => self.lines.define(Quantity::D).by(d()),
         }
     }
 
@@ -161,7 +161,7 @@ impl<'s> Joint<'_, 's> {
             Revolute => rigid,
             Prismatic => {
                 let two = || self.lines.builder.entry(Name::scalar(Quantity::Two, 0), 2.0);
-                let twice_rate = || self.lines.scalar(Quantity::TwiceRate, || two() * self.state.qd);
+                let twice_rate = || self.lines.define(Quantity::TwiceRate).by(two() * self.state.qd);
                 rigid + omega.cross(self.e) * twice_rate()
             }
         }

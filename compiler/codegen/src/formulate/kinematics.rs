@@ -46,7 +46,7 @@ pub(crate) fn frames<'s>(arm: &Arm<'s>, states: &[JointState<'s>], base: Frame<'
         let own = joint.rotation();
         let axes = line.within(Quantity::FrameRotation, || before.rotation * own);
         let origin = line.within(Quantity::FrameOrigin, || axes * joint.offset(link.offset) + before.origin);
-        let table = line.matrix(Quantity::FrameRotation, || axes * link.table_axes);
+        let table = line.define(Quantity::FrameRotation).by(axes * link.table_axes);
         line.name_vector(Quantity::FrameOrigin, origin);
         joints.push(Frame { rotation: axes, origin: before.origin });
         links.push(Frame { rotation: table, origin });
@@ -54,7 +54,7 @@ pub(crate) fn frames<'s>(arm: &Arm<'s>, states: &[JointState<'s>], base: Frame<'
     let last = arm.tip_link.map_or((1, base, base), |link| (link + 1, joints[link], links[link]));
     let before = mounted(arm, &arm.tip, last);
     let line = builder.joint(dof).named(dof + 1);
-    let rotation = line.matrix(Quantity::FrameRotation, || before.rotation * arm.tip.rotation);
+    let rotation = line.define(Quantity::FrameRotation).by(before.rotation * arm.tip.rotation);
     line.name_vector(Quantity::FrameOrigin, before.origin);
     Frames { joints, links, tip: Frame { rotation, origin: before.origin } }
 }
@@ -181,7 +181,7 @@ pub(crate) fn tip_acceleration<'s>(arm: &Arm<'s>, states: &[JointState<'s>], bas
         let mut carried = arm.carried_joints(joint.index).map(|(index, _)| index);
         point = match carried.find(|index| arm.moves_tip(*index)) {
             None => line.within(Quantity::TipAcceleration, next),
-            Some(carried) => line.named(carried + 1).vector(Quantity::JointPointAcceleration, next),
+            Some(carried) => line.named(carried + 1).define(Quantity::JointPointAcceleration).by(next()),
         };
         rotations.push((line, rotation));
     }

@@ -3,11 +3,14 @@
 pub(crate) mod actuation;
 pub(crate) mod adjoint;
 pub(crate) mod arm;
+pub(crate) mod base;
+pub(crate) mod carried;
 pub(crate) mod centre_of_mass;
 pub(crate) mod centroid;
 pub(crate) mod closure;
 pub(crate) mod contact;
 pub(crate) mod energy;
+pub(crate) mod first_moment;
 pub(crate) mod floating;
 pub(crate) mod floating_step;
 pub(crate) mod integrator;
@@ -33,7 +36,7 @@ pub(crate) use floating_step::FloatingStep;
 pub(crate) use joint::{Joint, JointState, Wrench};
 pub(crate) use kinematics::{Frame, Frames};
 pub(crate) use payload::{AtTip, Payload};
-pub(crate) use seven_steps::{Load, Motion, Turning};
+pub(crate) use seven_steps::{JointLoad, Motion, Turning};
 pub(crate) use spin::Spin;
 pub(crate) use tips::Tips;
 
@@ -238,7 +241,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         Self { builder, robot, arm, states, base, tip }
     }
 
-    fn loads(&self) -> Vec<Load<'s>> {
+    fn loads(&self) -> Vec<JointLoad<'s>> {
         seven_steps::inverse_dynamics(&self.arm, &self.states, &self.base, &self.tip)
     }
 
@@ -464,7 +467,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
     fn joint_wrenches(&self) -> Outputs<'s> {
         let wrenches = self.loads().into_iter().enumerate();
         let named = wrenches.filter(|(index, _)| self.coordinates().has(*index)).flat_map(
-            |(index, Load { wrench: Wrench { force, moment }, .. })| {
+            |(index, JointLoad { wrench: Wrench { force, moment }, .. })| {
                 let parent = self.robot.parent(index).map_or(0, |parent| parent + 1);
                 let parts = [(Quantity::JointForce, force), (Quantity::JointMoment, moment)];
                 parts.into_iter().flat_map(move |(part, vector)| {

@@ -28,7 +28,7 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::formulate::seven_steps::with;
+use crate::formulate::carried::plus_sum;
 use crate::formulate::{Arm, AtTip, Body, Joint, JointState, Motion, Outputs, Payload, centroid};
 use crate::ir::{Cause, JointLines, Quantity, Symbol, Vector};
 
@@ -66,7 +66,7 @@ pub(crate) fn momentum_and_rate<'s>(
         let body = body(line, (&link.body, link.mount.r), motion, &of_spins, &carried[joint.index]);
         let parent = link.parent.map_or(base, |parent| &motions[parent]);
 
-        let momentum = line.scalar(Quantity::Momentum, || {
+        let momentum = line.define(Quantity::Momentum).by({
             let momentum = match link.kind {
                 Revolute => body.angular.z(),
                 Prismatic => body.linear.z(),
@@ -78,7 +78,7 @@ pub(crate) fn momentum_and_rate<'s>(
             });
             resistances.fold(momentum, |momentum, resistance| momentum + resistance)
         });
-        let rate = line.scalar(Quantity::MomentumRate, || {
+        let rate = line.define(Quantity::MomentumRate).by({
             let applied = arm.coordinates.applied(line.builder, joint.index);
             applied + of_motion(&joint, &body, motion, parent) + of_gravity(&joint, &body, motion)
         });
@@ -127,7 +127,7 @@ pub(crate) fn centroidal_momentum<'s>(
 impl<'s> Carried<'s> {
     /// In the axes of the parent, whose line this is.
     fn turned(self, line: JointLines<'s>, motion: &Motion<'s>) -> Self {
-        let turned = |quantity, vector| line.vector(quantity, || motion.turning.rotation * vector);
+        let turned = |quantity, vector| line.define(quantity).by(motion.turning.rotation * vector);
         Self {
             first_moment: turned(Quantity::TurnedMomentBehind, self.first_moment),
             linear: turned(Quantity::TurnedLinearMomentum, self.linear),
@@ -141,9 +141,9 @@ impl<'s> Carried<'s> {
 fn of_payload<'s>(arm: &Arm<'s>, payload: &Payload<'s>, link: usize, motion: &Motion<'s>) -> Carried<'s> {
     let (dof, rotation) = (arm.links.len(), arm.tip.rotation);
     let [linear, angular] = payload.momenta(arm, motion);
-    let moment = arm.builder.joint(dof + 1).vector(Quantity::MomentBehind, || payload.com * payload.mass);
+    let moment = arm.builder.joint(dof + 1).define(Quantity::MomentBehind).by(payload.com * payload.mass);
     let line = arm.builder.joint(link + 1).carrying(arm.tip.label);
-    let turned = |quantity, vector| line.vector(quantity, || rotation * vector);
+    let turned = |quantity, vector| line.define(quantity).by(rotation * vector);
     Carried {
         mass: payload.mass,
         first_moment: turned(Quantity::TurnedMomentBehind, moment),
@@ -166,22 +166,22 @@ fn body<'s>(
     let mass = line.within(Quantity::MomentBehind, || {
         carries.iter().map(|k| k.mass).reduce(|sum, mass| sum + mass).map_or(link.mass, |sum| link.mass + sum)
     });
-    let sum = |of: fn(&Carried<'s>) -> Vector<'s>| carries.iter().map(of).reduce(|sum, vector| sum + vector);
-    let first_moment = line.vector(Quantity::MomentBehind, || {
+    let all = |of: fn(&Carried<'s>) -> Vector<'s>| carries.iter().map(of);
+    let first_moment = line.define(Quantity::MomentBehind).by({
         let own = d * mass;
         let own = link.first_moment.map_or(own, |h| own + h);
-        with(with(own, sum(|k| k.r * k.mass)), sum(|k| k.first_moment))
+        plus_sum(plus_sum(own, all(|k| k.r * k.mass)), all(|k| k.first_moment))
     });
-    let linear = line.vector(Quantity::LinearMomentum, || {
+    let linear = line.define(Quantity::LinearMomentum).by({
         let own = c_dot * link.mass;
         let own = link.first_moment.map_or(own, |h| own + omega.cross(h));
-        with(own, sum(|k| k.linear))
+        plus_sum(own, all(|k| k.linear))
     });
-    let angular = line.vector(Quantity::AngularMomentumBehind, || {
+    let angular = line.define(Quantity::AngularMomentumBehind).by({
         let own = link.inertia * omega;
         let own = link.first_moment.map_or(own, |h| own + h.cross(c_dot));
         let own = of_spins.iter().fold(own, |own, momentum| own + *momentum);
-        with(with(own, sum(|k| k.angular)) + d.cross(linear), sum(|k| k.r.cross(k.linear)))
+        plus_sum(plus_sum(own, all(|k| k.angular)) + d.cross(linear), all(|k| k.r.cross(k.linear)))
     });
     Carried { mass, first_moment, linear, angular, r }
 }

@@ -10,7 +10,7 @@
 
 use crate::formulate::{Arm, Motion, Wrench};
 use crate::function::Argument;
-use crate::ir::{Builder, Matrix, Quantity, Symbol, Vector, all_names_of};
+use crate::ir::{Builder, Cause, Matrix, Quantity, Symbol, Vector, all_names_of};
 
 /// A payload, in tip axes.
 #[derive(Clone, Copy)]
@@ -45,29 +45,29 @@ impl<'s> Payload<'s> {
         let link = arm.tip_link.map_or(0, |link| link + 1);
 
         // 1, 2
-        let omega = line.vector(Quantity::Omega, || back * last.turning.omega);
-        let omega_dot = line.vector(Quantity::OmegaDot, || back * last.turning.omega_dot);
+        let omega = line.define(Quantity::Omega).by(back * last.turning.omega);
+        let omega_dot = line.define(Quantity::OmegaDot).by(back * last.turning.omega_dot);
 
         // 4
         let omega_cross_r =
-            line.named(link).carrying(arm.tip.label).vector(Quantity::OmegaCrossR, || last.turning.omega.cross(r));
-        let tip = line.vector(Quantity::JointPointAcceleration, || {
-            last.c_ddot + last.turning.omega_dot.cross(r) + last.turning.omega.cross(omega_cross_r)
-        });
-        let omega_cross_c = line.vector(Quantity::OmegaCrossD, || omega.cross(com));
+            line.named(link).carrying(arm.tip.label).define(Quantity::OmegaCrossR).by(last.turning.omega.cross(r));
+        let tip = line
+            .define(Quantity::JointPointAcceleration)
+            .by(last.c_ddot + last.turning.omega_dot.cross(r) + last.turning.omega.cross(omega_cross_r));
+        let omega_cross_c = line.define(Quantity::OmegaCrossD).by(omega.cross(com));
         let c_ddot =
-            line.vector(Quantity::Acceleration, || back * tip + omega_dot.cross(com) + omega.cross(omega_cross_c));
+            line.define(Quantity::Acceleration).by(back * tip + omega_dot.cross(com) + omega.cross(omega_cross_c));
 
         // 5
-        let gravity = line.vector(Quantity::Gravity, || back * last.gravity);
+        let gravity = line.define(Quantity::Gravity).by(back * last.gravity);
 
         // 6
-        let angular_momentum = line.vector(Quantity::AngularMomentum, || inertia * omega);
+        let angular_momentum = line.define(Quantity::AngularMomentum).by(inertia * omega);
         let inertia_moment =
-            line.vector(Quantity::InertiaMoment, || inertia * omega_dot + omega.cross(angular_momentum));
+            line.define(Quantity::InertiaMoment).by(inertia * omega_dot + omega.cross(angular_momentum));
         let at_tip = line.behind(arm.tip_link);
-        let force = at_tip.vector(Quantity::JointForce, || (c_ddot - gravity) * mass);
-        let moment = at_tip.vector(Quantity::JointMoment, || inertia_moment + com.cross(force));
+        let force = at_tip.define(Quantity::JointForce).by((c_ddot - gravity) * mass);
+        let moment = at_tip.define(Quantity::JointMoment).by(inertia_moment + com.cross(force));
         Wrench { force, moment }
     }
 
@@ -79,13 +79,13 @@ impl<'s> Payload<'s> {
         let dof = arm.links.len();
         let (line, r, back) = (arm.builder.joint(dof + 1), arm.tip.r, arm.tip.rotation.transpose());
         let link = arm.tip_link.map_or(0, |link| link + 1);
-        let omega = line.vector(Quantity::Omega, || back * last.turning.omega);
+        let omega = line.define(Quantity::Omega).by(back * last.turning.omega);
         let omega_cross_r =
-            line.named(link).carrying(arm.tip.label).vector(Quantity::OmegaCrossR, || last.turning.omega.cross(r));
-        let tip = line.vector(Quantity::JointPointVelocity, || last.c_dot + omega_cross_r);
-        let velocity = line.vector(Quantity::Velocity, || back * tip + omega.cross(com));
-        let linear = line.vector(Quantity::LinearMomentum, || velocity * mass);
-        let angular = line.vector(Quantity::AngularMomentumBehind, || inertia * omega + com.cross(linear));
+            line.named(link).carrying(arm.tip.label).define(Quantity::OmegaCrossR).by(last.turning.omega.cross(r));
+        let tip = line.define(Quantity::JointPointVelocity).by(last.c_dot + omega_cross_r);
+        let velocity = line.define(Quantity::Velocity).by(back * tip + omega.cross(com));
+        let linear = line.define(Quantity::LinearMomentum).by(velocity * mass);
+        let angular = line.define(Quantity::AngularMomentumBehind).by(inertia * omega + com.cross(linear));
         [linear, angular]
     }
 }
@@ -109,7 +109,10 @@ impl<'s> AtTip<'s> {
             (Self::Wrench(wrench), _) => vec![*wrench],
             (Self::Wrenches(wrenches), _) => wrenches.clone(),
             (Self::Payload(payload), Some(last)) => vec![payload.wrench(arm, last)],
-            _ => arm.tips.iter().map(|_| Wrench::of_free_tip(arm.builder)).collect(),
+            _ => {
+                let zeros = arm.builder.zeros(Cause::FreeTip);
+                vec![Wrench { force: zeros, moment: zeros }; arm.tips.len()]
+            }
         }
     }
 }

@@ -12,7 +12,7 @@
 use rne_model::{Convention, Robot};
 
 use crate::coordinates::{Ratio, scaled};
-use crate::formulate::JointState;
+use crate::formulate::{Arm, Joint, JointState, Motion};
 use crate::ir::{Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
 
 /// A rotor that turns on a link.
@@ -81,6 +81,46 @@ impl<'s> Spin<'s> {
             (spin + along) + along
         });
         (self.inertia * spin) * whole
+    }
+}
+
+/// The rotors of a robot with their spins, for steps 6 and 7.
+pub(crate) struct Rotors<'a, 's> {
+    /// Each with s and ṡ.
+    spins: Vec<(&'a Spin<'s>, [Symbol<'s>; 2])>,
+}
+
+impl<'a, 's> Rotors<'a, 's> {
+    pub(crate) fn of(arm: &'a Arm<'s>, states: &[JointState<'s>]) -> Self {
+        let spinning = |spin: &Spin<'s>| {
+            let rate = spin.of_joints(Quantity::Spin, states, |state| state.qd);
+            [rate, spin.of_joints(Quantity::SpinDot, states, |state| state.qdd)]
+        };
+        Self { spins: arm.spins.iter().map(|spin| (spin, spinning(spin))).collect() }
+    }
+
+    /// n_c of a link that turns with ω_c, or of the base (`None`), with that of the rotors on it.
+    pub(crate) fn with_moment(&self, carrier: Option<usize>, omega: Vector<'s>, moment: Vector<'s>) -> Vector<'s> {
+        let on_carrier = self.spins.iter().filter(|(spin, _)| spin.on == carrier);
+        on_carrier.fold(moment, |moment, (spin, [rate, rate_dot])| {
+            moment + (spin.momentum(*rate_dot) + omega.cross(spin.momentum(*rate)))
+        })
+    }
+
+    /// The torque of a joint with that of the rotors: G² Jm q̈ of its own motor, if that belongs to the arm, and those
+    /// of the list `motors`.
+    pub(crate) fn with_torque(
+        &self,
+        joint: &Joint<'_, 's>,
+        (base, motions): (&Motion<'s>, &[Motion<'s>]),
+        torque: Symbol<'s>,
+    ) -> Symbol<'s> {
+        let torque = joint.link.rotor.map_or(torque, |rotor| torque + rotor * joint.state.qdd);
+        let resistances = self.spins.iter().filter_map(|(spin, [_, rate_dot])| {
+            let carrier = spin.on.map_or(base, |link| &motions[link]);
+            spin.resistance(joint.index, *rate_dot, carrier.turning.omega_dot)
+        });
+        resistances.fold(torque, |torque, resistance| torque + resistance)
     }
 }
 

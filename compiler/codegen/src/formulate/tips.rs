@@ -34,7 +34,7 @@ impl<'s> Tips<'s> {
         let frames = kinematics::frames(arm, states, base);
         let origin = |(index, (link, mount)): (usize, &(Option<usize>, Mount<'s>))| {
             let line = arm.builder.joint(link.map_or(0, |link| link + 1)).named(states.len() + 1 + index);
-            line.vector(Quantity::FrameOrigin, || match link {
+            line.define(Quantity::FrameOrigin).by(match link {
                 Some(link) => frames.joints[*link].rotation * mount.lever + frames.links[*link].origin,
                 None => rotation * mount.lever,
             })
@@ -123,9 +123,12 @@ impl<'s> Tips<'s> {
             joints.resize(joint.index, at_rest);
             let parent = joint.link.parent;
             let turning = seven_steps::turning(&joint, parent.map_or(base, |parent| &turnings[parent]));
-            let point = joint.lines.vector(Quantity::JointPointAcceleration, || {
-                on_link(&turnings, &joints, parent, joint.link.mount.lever)
-            });
+            let point = joint.lines.define(Quantity::JointPointAcceleration).by(on_link(
+                &turnings,
+                &joints,
+                parent,
+                joint.link.mount.lever,
+            ));
             let back = turning.rotation.transpose();
             joints.push(joint.lines.within(Quantity::TipAcceleration, || back * point));
             turnings.push(turning);

@@ -500,19 +500,10 @@ impl<'s> JointLines<'s> {
         self.builder.name_carried(quantity, [self.named, self.carried], vector)
     }
 
-    /// A quantity that is one number.
-    pub(crate) fn scalar(&self, quantity: Quantity, formula: impl FnOnce() -> Symbol<'s>) -> Symbol<'s> {
-        self.within(quantity, || self.name(quantity, formula()))
-    }
-
-    /// A vector.
-    pub(crate) fn vector(&self, quantity: Quantity, formula: impl FnOnce() -> Vector<'s>) -> Vector<'s> {
-        self.within(quantity, || self.name_vector(quantity, formula()))
-    }
-
-    /// A matrix.
-    pub(crate) fn matrix(&self, quantity: Quantity, formula: impl FnOnce() -> Matrix<'s>) -> Matrix<'s> {
-        self.within(quantity, || self.builder.name_matrix(quantity, self.named, formula()))
+    /// Begins a quantity: `line.define(quantity).by(formula)` computes the formula and gives its result the name of
+    /// the quantity. The operations of the formula belong to this quantity.
+    pub(crate) fn define(&self, quantity: Quantity) -> Begun<'s> {
+        Begun { line: *self, quantity, outer: self.builder.enter(self.builder.place(quantity, self.joint), None) }
     }
 
     /// Writes what belongs to a quantity and gets no name of its own.
@@ -521,5 +512,47 @@ impl<'s> JointLines<'s> {
         let value = formula();
         self.builder.enter(outer.0, outer.1);
         value
+    }
+}
+
+/// A quantity of a joint that has no formula yet.
+#[must_use]
+pub(crate) struct Begun<'s> {
+    line: JointLines<'s>,
+    quantity: Quantity,
+    /// Where the operations before belong.
+    outer: (Option<Place>, Option<Axis>),
+}
+
+impl<'s> Begun<'s> {
+    /// Ends the quantity: it has the value of this formula.
+    pub(crate) fn by<V: Value<'s>>(self, formula: V) -> V {
+        let value = formula.named(&self.line, self.quantity);
+        self.line.builder.enter(self.outer.0, self.outer.1);
+        value
+    }
+}
+
+/// The value of a quantity: a number, a vector or a matrix.
+pub(crate) trait Value<'s> {
+    /// The value with the name of a quantity on each of its elements.
+    fn named(self, line: &JointLines<'s>, quantity: Quantity) -> Self;
+}
+
+impl<'s> Value<'s> for Symbol<'s> {
+    fn named(self, line: &JointLines<'s>, quantity: Quantity) -> Self {
+        line.name(quantity, self)
+    }
+}
+
+impl<'s> Value<'s> for Vector<'s> {
+    fn named(self, line: &JointLines<'s>, quantity: Quantity) -> Self {
+        line.name_vector(quantity, self)
+    }
+}
+
+impl<'s> Value<'s> for Matrix<'s> {
+    fn named(self, line: &JointLines<'s>, quantity: Quantity) -> Self {
+        line.builder.name_matrix(quantity, line.named, self)
     }
 }

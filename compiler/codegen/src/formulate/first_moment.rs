@@ -1,0 +1,47 @@
+//! The first moment h of a link without mass, which the lecture does not have.
+//!
+//! Only a set of base parameters has such links. A body has none, and then each function here returns its argument.
+//!
+//! ```text
+//! f_i  + ω̇_i × h_i + ω_i × (ω_i × h_i)
+//! n_i  + h_i × c̈_i
+//! n_{p,i}  - h_i × g_i
+//! ```
+
+use crate::formulate::carried::plus_sum;
+use crate::formulate::{Body, Motion};
+use crate::ir::{JointLines, Quantity, Vector};
+
+/// The first moment of a link, if it has one, with the motion of the link.
+pub(crate) struct FirstMoment<'a, 's> {
+    h: Option<Vector<'s>>,
+    /// ω̇ × h + ω × (ω × h)
+    force: Option<Vector<'s>>,
+    motion: &'a Motion<'s>,
+}
+
+impl<'a, 's> FirstMoment<'a, 's> {
+    pub(crate) fn of(body: &Body<'s>, line: JointLines<'s>, motion: &'a Motion<'s>) -> Self {
+        let force = body.first_moment.map(|h| {
+            let (omega, omega_dot) = (motion.turning.omega, motion.turning.omega_dot);
+            let omega_cross_h = line.define(Quantity::OmegaCrossMoment).by(omega.cross(h));
+            line.define(Quantity::MasslessForce).by(omega_dot.cross(h) + omega.cross(omega_cross_h))
+        });
+        Self { h: body.first_moment, force, motion }
+    }
+
+    /// f_i
+    pub(crate) fn with_force(&self, force: Vector<'s>) -> Vector<'s> {
+        plus_sum(force, self.force)
+    }
+
+    /// n_i
+    pub(crate) fn with_moment(&self, moment: Vector<'s>) -> Vector<'s> {
+        plus_sum(moment, self.h.map(|h| h.cross(self.motion.c_ddot)))
+    }
+
+    /// n_{p,i}
+    pub(crate) fn without_weight(&self, moment: Vector<'s>) -> Vector<'s> {
+        self.h.map_or(moment, |h| moment - h.cross(self.motion.gravity))
+    }
+}
