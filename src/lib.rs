@@ -112,9 +112,9 @@
 //! # Robot files
 //!
 //! [`model`] reads and checks robot files, and contains the plain types of the table that [`Arm::new`] takes: one YAML
-//! document per arm, where every number may be an expression (`pi/2`, `m*a^2/12`). [`robot_file`] explains every key,
-//! and leads an arm from its datasheet to its torque. `rne check FILE` reports mistakes and suspicious values,
-//! `rne show FILE` the annotated code.
+//! document per arm, where every number may be an expression (`pi/2`, `m*a^2/12`). [`robot_file`] leads an arm from
+//! its datasheet to its torque, and [`robot_file::keys`] explains every key. `rne check FILE` reports mistakes and
+//! suspicious values, `rne show FILE` the annotated code.
 #![warn(missing_debug_implementations)]
 #![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "std"), no_std)]
@@ -157,7 +157,10 @@ pub mod compiled {
 
 #[cfg(doc)]
 #[doc = include_str!("../docs/robot-file.md")]
-pub mod robot_file {}
+pub mod robot_file {
+    #[doc = include_str!("../docs/reference/robot-file-keys.md")]
+    pub mod keys {}
+}
 
 /// Runs the example of states that are arrays.
 #[cfg(all(doctest, feature = "compiled"))]

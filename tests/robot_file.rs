@@ -1,5 +1,5 @@
-//! `docs/robot-file.md`, and `docs/every-key.yaml` with the examples of `format: 2`, have the keys that the format has,
-//! no more and no fewer. The list of keys is that of rne-model's schema.
+//! `docs/reference/robot-file-keys.md`, and `docs/every-key.yaml` with the examples of `format: 2`, have the keys that
+//! the format has, no more and no fewer. The list of keys is that of rne-model's schema.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -147,15 +147,16 @@ fn a_file_with_every_key_has_every_key() {
 
 #[test]
 fn the_page_explains_every_key() {
-    let page = read("docs/robot-file.md");
+    const PAGE: &str = "docs/reference/robot-file-keys.md";
+    let page = read(PAGE);
     let (_, files) = page.split_once("\n## A file with every key\n").expect("the section");
     for file in FILES {
-        let link = file.strip_prefix("docs/").map_or_else(|| format!("(../{file})"), |file| format!("({file})"));
-        assert!(files.contains(&link), "docs/robot-file.md, A file with every key: no {link}");
+        let link = file.strip_prefix("docs/").map_or_else(|| format!("(../../{file})"), |file| format!("(../{file})"));
+        assert!(files.contains(&link), "{PAGE}, A file with every key: no {link}");
     }
     for mapping in format() {
         let heading = format!("\n### Keys of {}\n", mapping.name);
-        let (_, section) = page.split_once(&heading).unwrap_or_else(|| panic!("docs/robot-file.md: no{heading}"));
+        let (_, section) = page.split_once(&heading).unwrap_or_else(|| panic!("{PAGE}: no{heading}"));
         let rows = section.lines().skip_while(|line| !line.starts_with("| `")).take_while(|line| line.starts_with('|'));
         let written: Vec<(String, bool)> = rows
             .map(|row| {
@@ -165,6 +166,6 @@ fn the_page_explains_every_key() {
             })
             .collect();
         let keys: Vec<(String, bool)> = mapping.keys.iter().map(|key| (key.name.to_owned(), key.is_required)).collect();
-        assert_eq!(written, keys, "docs/robot-file.md,{heading}");
+        assert_eq!(written, keys, "{PAGE},{heading}");
     }
 }

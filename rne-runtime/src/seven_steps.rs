@@ -13,8 +13,8 @@
 //! τ            torque (N m) or force (N) of the actuator
 //! ```
 //!
-//! Link i is the one that joint i moves. Link p is the one that carries joint i: its `parent`, or the base. In a chain p
-//! is i-1, and r_i is the lecture's r_{i-1} ([`mount`]). f_{i,k} is f_{p,i} of a joint k that link i carries.
+//! Link i is the one that joint i moves. Link p is the one that carries joint i: its `parent`, or the base. In a chain
+//! p is i-1, and r_i is the lecture's r_{i-1} ([`mount`]). f_{i,k} is f_{p,i} of a joint k that link i carries.
 //!
 //! The components of a vector of link i are along axes that are fixed to link i, with z along joint i. These axes are
 //! called form P. The lecture uses axes that are fixed to link i-1: Rz(θ_i) turns one into the other and does not

@@ -8,7 +8,7 @@ use crate::{read, root};
 const DOCUMENTS: &[(&str, &[&str])] = &[
     ("docs/firmware/c-library.md", &["controller"]),
     ("doors/python/package/rne/__init__.pyi", &["stubs"]),
-    ("README.md", &["headline", "example", "control", "twelve_lines"]),
+    ("README.md", &["headline", "example", "control"]),
     ("docs/firmware/first-firmware.md", &["torque", "config", "embedded"]),
     ("docs/reference/functions.md", &["functions", "two_hands"]),
     ("docs/measured/performance.md", &["operations", "tricks"]),
@@ -16,23 +16,33 @@ const DOCUMENTS: &[(&str, &[&str])] = &[
     (
         "docs/robot-file.md",
         &[
+            "desk_arm",
+            "two_bars",
             "frames",
             "tree",
             "gripper",
             "palletiser",
             "four_bar",
             "wam7_motors",
-            "two_hands",
-            "dual_arm",
+            "bodies",
+            "tips",
             "satellite",
-            "two_bars",
-            "desk_arm",
-            "every_key",
+            "contacts",
         ],
     ),
+    ("docs/reference/robot-file-keys.md", &["every_key"]),
     ("docs/teaching/for-teachers.md", &["code"]),
     ("robots/README.md", &["sources", "robots", "trees"]),
 ];
+
+/// The lines of a robot file from the first that begins with `from` to the one before the next that begins with `to`.
+fn part(file: &str, from: &str, to: Option<&str>) -> String {
+    let text = read(&root().join(file));
+    let lines = text.lines().skip_while(|line| !line.starts_with(from));
+    let lines: Vec<&str> = lines.take_while(|line| to.is_none_or(|to| !line.starts_with(to))).collect();
+    assert!(!lines.is_empty() && to.is_none_or(|to| text.contains(to)), "{file}: from {from} to {to:?}");
+    format!("```yaml\n{}\n```\n", lines.join("\n"))
+}
 
 /// The text of a block of a document.
 fn block(name: &str) -> String {
@@ -50,24 +60,21 @@ fn block(name: &str) -> String {
             let lines = config.lines().filter(|line| !line.trim_start().starts_with('#'));
             lines.fold("```toml\n".to_owned(), |text, line| text + line + "\n") + "```\n"
         }
-        "frames" => {
-            let file = read(&root().join("docs/desk_arm_frames.yaml"));
-            let list = file.lines().skip_while(|line| !line.starts_with("frames:"));
-            let list: Vec<&str> = list.take_while(|line| !line.starts_with("joints:")).collect();
-            format!("```yaml\n{}\n```\n", list.join("\n"))
-        }
-        "wam7_motors" => {
-            let file = read(&root().join("robots/trees/wam7_coupled.yaml"));
-            let list: Vec<&str> = file.lines().skip_while(|line| !line.starts_with("motors:")).collect();
-            format!("```yaml\n{}\n```\n", list.join("\n"))
-        }
-        "desk_arm" | "tree" | "gripper" | "palletiser" | "four_bar" | "dual_arm" | "satellite" | "two_bars" => {
-            format!("```yaml\n{}```\n", read(&root().join(format!("docs/{name}.yaml"))))
-        }
+        "two_bars" => part("docs/two_bars.yaml", "    link: {first_moment", None),
+        "frames" => part("docs/desk_arm_frames.yaml", "frames:", Some("joints:")),
+        "tree" => part("docs/tree.yaml", "  - name: left", Some("    link:")),
+        "gripper" => part("docs/gripper.yaml", "couplings:", None),
+        "palletiser" => part("docs/palletiser.yaml", "loops:", None),
+        "four_bar" => part("docs/four_bar.yaml", "loops:", None),
+        "wam7_motors" => part("robots/trees/wam7_coupled.yaml", "motors:", Some("  - {name: m4")),
+        "bodies" => part("docs/dual_arm.yaml", "  - name: camera", None),
+        "tips" => part("docs/dual_arm.yaml", "frames:", Some("joints:")),
+        "satellite" => part("docs/satellite.yaml", "floating_base:", Some("joints:")),
+        "contacts" => part("docs/standing_hyq.yaml", "tips:", Some("  - {tip: rf_foot")),
+        "desk_arm" => format!("```yaml\n{}```\n", read(&root().join("docs/desk_arm.yaml"))),
         "every_key" => format!("```yaml\n{}```\n", read(&root().join("docs/every-key.yaml"))),
         "headline" => headline(),
-        "twelve_lines" => code(2),
-        "code" => code(5),
+        "code" => code(),
         "sources" => sources(),
         "robots" => robots(),
         "trees" => trees(),

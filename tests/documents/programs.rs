@@ -35,12 +35,12 @@ pub(crate) fn two_hands() -> String {
     format!("```rust,ignore\n{derive}{calls}```\n")
 }
 
-/// The emitted code of the first steps of joint 3 of the PUMA 560.
-pub(crate) fn code(steps: usize) -> String {
+/// The emitted code of steps 1 to 5 of joint 3 of the PUMA 560.
+pub(crate) fn code() -> String {
     let robot = robot(&root().join("robots/puma560.yaml"));
     let program = inverse_dynamics(&robot);
     let what = |&step| Selection { joint: Some(3), step: Some(step), ..Selection::default() };
-    let steps = Step::ALL[..steps].iter().map(|step| listing(&robot, &program, what(step)));
+    let steps = Step::ALL[..5].iter().map(|step| listing(&robot, &program, what(step)));
     let code: Vec<String> = steps.filter(|listing| !listing.is_empty()).map(|listing| listing.to_string()).collect();
     let code = code.join("\n");
     let emitted = rne_emit::rust_file(&robot, &[program]);

@@ -139,7 +139,10 @@ impl Caught {
     fn words(&self) -> Option<String> {
         match self {
             Self::Nothing => None,
-            Self::By(names) => Some(names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")),
+            Self::By(names) => {
+                let more = names.len().checked_sub(2).map(|after| format!(" and {} more", after + 1)).unwrap_or_default();
+                names.first().map(|name| format!("`{name}`{more}"))
+            }
             Self::Build => Some("`cargo build`: the proof refuses in `derive(InverseDynamics)`".to_owned()),
             Self::SomethingElse => Some("**something else**".to_owned()),
         }

@@ -1,5 +1,5 @@
 """one_state.py: microseconds of a call of every function of one state from Python, and of Pinocchio's function where it has
-the same one; `cargo xtask performance python_calls` writes the table.
+the same one; `cargo xtask performance python_calls` writes the rows with such a time, and those above 10 microseconds.
 
 Arguments are plain arrays of float64, as a controller has them. The arm and the robot on a floating base are read from the
 URDFs of example-robot-data, which Pinocchio reads too; a robot with contacts and a closed loop are files of this repository.
@@ -113,14 +113,15 @@ def main():
                 if one:
                     best[at, column] = min(best.get((at, column), np.inf), median(one, 101))
     one = next(best[at, 0] for at, (_, name, what, *_) in enumerate(rows) if (name, what) == ("inverse_dynamics", ""))
-    print(f"{'robot':<9} {'function':<58} {'rne':>7} {'pinocchio':>9} {'/ inverse_dynamics':>18}")
+    width = 58 if given.all else 42
+    print(f"{'robot':<9} {'function':<{width}} {'rne':>7} {'pinocchio':>9} {'/ inverse_dynamics':>18}")
     shown = set()
     for at, (robot, name, what, _, peer) in enumerate(rows):
         is_new = given.all or robot in URDFS or (name, what) not in shown
         shown.add((name, what))
         if best[at, 0] > given.above and is_new:
             theirs = f"{best[at, 1]:9.1f}" if peer else " " * 9
-            print(f"{robot:<9} {f'{name} {what}':<58} {best[at, 0]:7.1f} {theirs} {best[at, 0] / one:18.1f}")
+            print(f"{robot:<9} {f'{name} {what}':<{width}} {best[at, 0]:7.1f} {theirs} {best[at, 0] / one:18.1f}")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,9 @@
 """tables.py WORK [--readme FILE]: merges the rounds of a run into WORK/times.csv and WORK/tables.md; prints the latter.
 
 A median is the median of the rounds' medians, a minimum the least of all rounds. A ratio is one median over another.
-With --readme the tables replace what stands between the markers of the section `Measured` of FILE.
+With --readme short tables replace what stands between the markers of the section `Measured` of FILE. They have no
+minima, no deviations, no chained calls, no rows of x86-64-v3, and of the compilers of generated C those that are the
+fastest of one function on some robot.
 """
 
 import csv
@@ -82,7 +84,8 @@ COMPILERS = ["", "_ffast", "_clang_ffast"]
 class Times:
     """Every competitor's times for every robot."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, is_short=False):
+        self.is_short = is_short
         samples = {}
         for path in sorted(folder.glob("*.csv")):
             for row in csv.DictReader(path.open()):
@@ -125,6 +128,20 @@ class Times:
         row = "rne_mass_matrix"
         return [peer.removeprefix(row) for peer in self.peers if peer.startswith(row)]
 
+    def is_shown(self, peer):
+        """Whether a row is in the tables; the short ones leave out rows that no comparison needs."""
+        if not self.is_short:
+            return True
+        if is_ours(peer):
+            return not peer.endswith("_v3")
+        name = next(peer.removesuffix(end) for end in sorted(COMPILERS, key=len, reverse=True) if peer.endswith(end))
+        rivals = [name + end for end in COMPILERS if name + end in self.peers]
+        for robot in self.robots:
+            of_robot = [(x, rival) for rival in rivals if (x := self.get(robot, rival, "independent")) is not None]
+            if of_robot and min(of_robot)[1] == peer:
+                return True
+        return False
+
     def best_casadi(self, robot, key):
         """The fastest of CasADi's functions of one state, as (time, name), or None."""
         forms = [form[0] for form in FORMS.values() if "casadi" in form[0] and form[1] == "RP_ID"]
@@ -150,13 +167,16 @@ def markdown(head, rows):
 def time_cells(times, peer, key):
     def cell(robot):
         x = times.get(robot, peer, key)
-        return "-" if x is None else f"{nanoseconds(x)} ({nanoseconds(times.get(robot, peer, key + '_min'))})"
+        if x is None:
+            return "-"
+        least = "" if times.is_short else f" ({nanoseconds(times.get(robot, peer, key + '_min'))})"
+        return nanoseconds(x) + least
 
     return [bold(peer), *map(cell, times.robots)]
 
 
 def time_table(times, peers, key):
-    rows = [time_cells(times, peer, key) for peer in peers]
+    rows = [time_cells(times, peer, key) for peer in peers if times.is_shown(peer)]
     return markdown(["competitor", *times.robots], [row for row in rows if any(c != "-" for c in row[1:])])
 
 
@@ -179,71 +199,67 @@ def ratio(times, measure, robot, peer):
     return None if rival is None or own is None else rival / own
 
 
+def marked(ratio, required):
+    """A ratio, with a mark if it is below what is required."""
+    return f"{ratio:.2f}" + (" ✗" if required is not None and ratio < required else "")
+
+
+def counted(reached, total):
+    return f"{reached} of {total} required ratios are reached; ✗ marks a ratio below the required one."
+
+
 def ratios(times):
-    rows = []
-    for measure in REQUIRED:
-        for peer in times.ours(batch=measure.startswith("batch")):
-            values = [ratio(times, measure, robot, peer) for robot in times.robots]
-            rows.append([measure, peer, *("-" if x is None else f"{x:.2f}" for x in values)])
-    return markdown(["ratio", "our row", *times.robots], rows)
-
-
-def required(times):
     rows, reached, total = [], 0, 0
-    robots = [robot for robot in REQUIRED_ROBOTS if robot in times.robots]
     for measure, limits in REQUIRED.items():
-        rows.append([f"**{measure}**", *(f"≥ {limits[REQUIRED_ROBOTS.index(robot)]:g}" for robot in robots)])
-        peers = times.ours(batch=measure.startswith("batch"))
-        if not peers:
-            rows.append(["(no such row of ours in this run)", *("-" for _ in robots)])
-        for peer in peers:
+        required = dict(zip(REQUIRED_ROBOTS, limits))
+        heads = (f"≥ {required[robot]:g}" if robot in required else "" for robot in times.robots)
+        rows.append([f"**{measure}**", *heads])
+        for peer in times.ours(batch=measure.startswith("batch")):
             cells = []
-            for robot in robots:
-                x = ratio(times, measure, robot, peer)
-                if x is None:
-                    cells.append("-")
-                    continue
-                is_reached = x >= limits[REQUIRED_ROBOTS.index(robot)]
-                reached, total = reached + is_reached, total + 1
-                cells.append(f"{x:.2f} {'reached' if is_reached else 'not reached'}")
-            rows.append([peer, *cells])
-    if not total:
-        return "Nothing is required of what this run measured."
-    return markdown(["required", *robots], rows) + f"\n\n{reached} of {total} reached."
+            for robot in times.robots:
+                x, limit = ratio(times, measure, robot, peer), required.get(robot)
+                cells.append("-" if x is None else marked(x, limit))
+                if x is not None and limit is not None:
+                    reached, total = reached + (x >= limit), total + 1
+            if times.is_shown(peer):
+                rows.append([peer, *cells])
+    return markdown(["our row; required", *times.robots], rows) + "\n\n" + counted(reached, total)
+
+
+def deviation(times, peer):
+    """The cell of the largest deviation on any robot; the short tables have none."""
+    if times.is_short:
+        return []
+    errors = [x for robot in times.robots if (x := times.get(robot, peer, "error")) is not None]
+    return [f"{max(errors):.1e}" if errors else "-"]
 
 
 def function_times(times):
-    peers = []
-    for name, (other, own, _) in FUNCTIONS.items():
-        if name != "torques":
-            peers += [other, *(own + target for target in times.targets())]
-    rows = []
-    for peer in dict.fromkeys(peers):
-        errors = [x for robot in times.robots if (x := times.get(robot, peer, "error")) is not None]
-        rows.append([*time_cells(times, peer, "independent"), f"{max(errors):.1e}" if errors else "-"])
-    return markdown(["competitor", *times.robots, "deviation"], rows)
-
-
-def function_ratios(times):
-    robots = [robot for robot in REQUIRED_ROBOTS if robot in times.robots]
-    rows, reached, total = [], 0, 0
+    """Times of the other functions; in brackets how many times faster than Pinocchio's ours are, or the minimum."""
+    rows, reached, total = {}, 0, 0
     for name, (other, own, limits) in FUNCTIONS.items():
-        head = [f"≥ {limits[robot]:g}" if robot in limits else "" for robot in robots]
-        rows.append([f"**{name}**, against {other}", *head])
-        for target in times.targets():
-            cells = []
-            for robot in robots:
-                time, rival = (times.get(robot, peer, "independent") for peer in (own + target, other))
-                if time is None or rival is None:
-                    cells.append("-")
-                elif robot not in limits:
-                    cells.append(f"{rival / time:.2f}")
-                else:
-                    is_reached = rival / time >= limits[robot]
-                    reached, total = reached + is_reached, total + 1
-                    cells.append(f"{rival / time:.2f} {'reached' if is_reached else 'not reached'}")
-            rows.append([own + target, *cells])
-    return markdown(["ratio of medians", *robots], rows) + f"\n\n{reached} of {total} reached."
+        for peer in [other, *(own + target for target in times.targets())]:
+            cells = time_cells(times, peer, "independent")
+            for at, robot in enumerate(times.robots, 1):
+                time, rival = (times.get(robot, of, "independent") for of in (peer, other))
+                if peer == other or robot not in REQUIRED_ROBOTS or time is None or rival is None:
+                    continue
+                limit = limits.get(robot)
+                cells[at] = f"{nanoseconds(time)} ({marked(rival / time, limit)})"
+                if limit is not None:
+                    reached, total = reached + (rival / time >= limit), total + 1
+            if name != "torques" and times.is_shown(peer):
+                rows[peer] = [*cells, *deviation(times, peer)]
+    head = ["competitor", *times.robots, *([] if times.is_short else ["deviation"])]
+    return markdown(head, rows.values()) + "\n\n" + counted(reached, total)
+
+
+DEVIATION = (
+    "The column `deviation` shows the largest deviation from the results of Pinocchio's Python package, divided by the "
+    "largest value of the robot, at 1024 states of each robot. For forward dynamics it is the deviation from the "
+    "accelerations of the states. For `rne_derivatives` both matrices are compared, and for `rne_derivatives_tau_m` "
+    "also the torques and the mass matrix."
+)
 
 
 def functions(times):
@@ -251,14 +267,9 @@ def functions(times):
     if not times.targets():
         return []
     return [
-        "### Other functions, beside Pinocchio's, independent calls: median ns (minimum ns)",
+        "### Other functions, independent calls: median ns (how many times faster than Pinocchio's)",
         function_times(times),
-        "The column `deviation` shows the largest deviation from the results of Pinocchio's Python package, divided by "
-        "the largest value of the robot, at 1024 states of each robot. For forward dynamics it is the deviation from "
-        "the accelerations of the states. For `rne_derivatives` both matrices are compared, and for "
-        "`rne_derivatives_tau_m` also the torques and the mass matrix.",
-        "### Other functions: how many times faster than Pinocchio's, and what is required",
-        function_ratios(times),
+        "" if times.is_short else DEVIATION,
     ]
 
 
@@ -334,43 +345,44 @@ def trees(times):
     single, batch, ratios, reached, total = [], [], [], 0, 0
     for function, calls, required, own, rivals in rows_of_trees(times):
         own = [name for name in own if name in times.peers]
-        for peer in [*rivals, *own] if calls == "single" else own:
-            errors = [x for robot in times.robots if (x := times.get(robot, peer, "error")) is not None]
-            name, *cells = time_cells(times, peer, "independent")
-            row = [function, name, *cells, f"{max(errors):.1e}" if errors else "-"]
+        for peer in filter(times.is_shown, [*rivals, *own] if calls == "single" else own):
+            row = [function, *time_cells(times, peer, "independent"), *deviation(times, peer)]
             (single if calls == "single" else batch).append(row)
         for peer in own:
             cells = []
             for robot in times.robots:
                 time = times.get(robot, peer, "independent")
                 best = min((x, rival) for rival in rivals if (x := times.get(robot, rival, "independent")) is not None)
-                is_reached = best[0] / time >= required
-                reached, total = reached + is_reached, total + 1
-                name = f" ({best[1]})" if calls == "single" else ""
-                cells.append(f"{best[0] / time:.2f}{name} {'reached' if is_reached else 'not reached'}")
+                reached, total = reached + (best[0] / time >= required), total + 1
+                cells.append(marked(best[0] / time, required) + (f" ({best[1]})" if calls == "single" else ""))
             against = f"{calls}, against {'the best' if calls == 'single' else rivals[0]}"
             ratios.append([function, against, peer, f"≥ {required}", *cells])
-    times_head = ["function", "competitor", *times.robots, "deviation"]
+    times_head = ["function", "competitor", *times.robots, *([] if times.is_short else ["deviation"])]
     return [
-        "### Independent calls, one state per call: median ns (minimum ns)",
+        f"### Independent calls, one state per call: {unit(times)}",
         markdown(times_head, single),
-        "### Batch of 1024 states: median ns (minimum ns) per state",
+        f"### Batch of 1024 states: {unit(times)} per state",
         markdown(times_head, batch),
         "### Ratios of medians, and what is required",
         markdown(["function", "calls", "our row", "required", *times.robots], ratios),
-        f"{reached} of {total} reached.",
+        counted(reached, total),
     ]
 
 
 OTHER_FUNCTIONS = "gravity_torques", "bias_torques", "mass_matrix", "forward_dynamics", "inverse_dynamics_derivatives"
 
 
-def operations(casadi, ours):
+def unit(times):
+    return "median ns" if times.is_short else "median ns (minimum ns)"
+
+
+def operations(casadi, ours, is_short):
     """Operations of CasADi's functions (a CSV file) and of ours (the JSON of `rne ops`)."""
     counts = {}  # (function, robot): cell
 
     def count(function, robot, mul, add, angles):
-        counts[function, robot] = f"{mul} + {add} = {int(mul) + int(add)}, {angles}"
+        parts = "" if is_short else f"{mul} + {add} = "
+        counts[function, robot] = f"{parts}{int(mul) + int(add)}, {angles}"
 
     for row in csv.DictReader(casadi.open()):
         count(FORMS[row["form"]][0], row["robot"], row["mul"], row["add"], row["sin"])
@@ -387,31 +399,33 @@ def operations(casadi, ours):
     return markdown(["function", *robots], [[f, *(counts.get((f, robot), "-") for robot in robots)] for f in functions])
 
 
-def report(work):
-    times = Times(work / "rounds")
+def report(work, is_short=False):
+    times = Times(work / "rounds", is_short)
     own = times.ours(batch=False)
     single = [peer for peer in times.peers if not times.is_batch(peer) and (peer in own or not is_ours(peer))]
     batch = [peer for peer in times.peers if times.is_batch(peer)]
     head = [(work / "conditions.md").read_text().strip(), correctness(times), spread(times)]
     counts = [
-        "### Operations: products + sums = both, angles",
-        operations(work / "build/generated/operations.csv", work / "build/operations.json"),
+        "### Operations: products and sums, angles" if is_short else "### Operations: products + sums = both, angles",
+        operations(work / "build/generated/operations.csv", work / "build/operations.json", is_short),
     ]
     if set(times.robots) <= set(TREES):
         return "\n\n".join([*head, *trees(times), *counts]) + "\n", times
-    parts = [
-        *head,
-        "### Independent calls, one state per call: median ns (minimum ns)",
-        time_table(times, single, "independent"),
+    elsewhere = {other for other, own, _ in FUNCTIONS.values() if own != "rne" and times.targets()}
+    chained = [
         "### Chained calls, each needs the result before: median ns (minimum ns)",
         time_table(times, single, "chained"),
-        "### Batch of 1024 states: median ns (minimum ns) per state",
+    ]
+    parts = [
+        *head,
+        f"### Independent calls, one state per call: {unit(times)}",
+        time_table(times, [peer for peer in single if not is_short or peer not in elsewhere], "independent"),
+        *([] if is_short else chained),
+        f"### Batch of 1024 states: {unit(times)} per state",
         time_table(times, batch, "independent"),
-        "### Ratios of medians: how many times faster our rows are",
+        "### Ratios of medians: how many times faster our rows are, and what is required",
         ratios(times),
         "The best CasADi row of a robot is its fastest row `casadi_*` or `pin_casadi*` with one state per call.",
-        "### What is required",
-        required(times),
         "### Where our code loses",
         losses(times),
         *functions(times),
@@ -449,7 +463,8 @@ def main():
     (work / "tables.md").write_text(tables)
     write_csv(times, work / "times.csv")
     if sys.argv[2:3] == ["--readme"]:
-        write_readme(Path(sys.argv[3]), tables, "trees" if set(times.robots) <= set(TREES) else "measured")
+        short, _ = report(work, is_short=True)
+        write_readme(Path(sys.argv[3]), short, "trees" if set(times.robots) <= set(TREES) else "measured")
     print(tables)
     if "**Wrong results**" in tables:
         sys.exit(1)

@@ -36,8 +36,8 @@ operations. The note gives the reason.
 The exit status is 1 if a file has errors, or if an arm violates a law of
 mechanics by more than rounding. Warnings and notes do not change the status 0,
 except with --deny-warnings, which makes every warning count as an error.
-docs/robot-file.md explains every key of a robot file. If a URDF or an MJCF file
-does not say which arm is meant, rne checks the whole robot.")]
+docs/reference/robot-file-keys.md explains every key of a robot file. If a URDF
+or an MJCF file does not say which arm is meant, rne checks the whole robot.")]
 pub(crate) struct Arguments {
     /// Robot files, URDFs, names from `rne list`, or plan files of `rne search` (NAME.plan.yaml: choices that save
     /// operations in the code); - is standard input

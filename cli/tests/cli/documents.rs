@@ -11,7 +11,7 @@ use std::process::{Command, Output, Stdio};
 use crate::call::{ROOT, folder};
 
 /// The documents whose commands a reader types.
-const DOCUMENTS: [&str; 31] = [
+const DOCUMENTS: [&str; 32] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/firmware/c-library.md",
@@ -37,6 +37,7 @@ const DOCUMENTS: [&str; 31] = [
     "docs/control/operational-space.md",
     "docs/control/optimal-control.md",
     "docs/control/python.md",
+    "docs/reference/robot-file-keys.md",
     "docs/robot-file.md",
     "docs/control/run-time.md",
     "docs/teaching/for-teachers.md",

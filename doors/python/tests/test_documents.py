@@ -9,11 +9,11 @@ from pages import EXAMPLE, run_examples
 ROOT = Path(__file__).parents[3]
 
 
-@pytest.mark.parametrize(("name", "least"), [("python", 6), ("operational-space", 6)])
+@pytest.mark.parametrize(("name", "least"), [("python", 6), ("operational-space", 5)])
 def test_the_examples_run(name, least, tmp_path, monkeypatch):
     if name == "python":
         pytest.importorskip("polars")
-    page = ROOT / f"docs/{name}.md"
+    page = ROOT / f"docs/control/{name}.md"
     # what an example writes is no file of the repository
     (tmp_path / "docs").mkdir()
     for path in ROOT.glob("docs/desk_arm*"):

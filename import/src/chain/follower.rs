@@ -2,7 +2,9 @@
 
 use rne_model::{Coupling, Motor, Report, one_line};
 
-use super::{Chain, Walk, lock};
+use super::Chain;
+use super::refusals::lock;
+use super::walk::Walk;
 use crate::source::{quoted, some};
 use crate::urdf::{Gear, Joint, Mimic};
 

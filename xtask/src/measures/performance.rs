@@ -42,7 +42,7 @@ enum Block {
     SingleCalls,
     /// Instructions of a call (callgrind)
     Instructions,
-    /// Errors and times of sine and cosine
+    /// Times of sine and cosine
     SinCos,
     /// Nanoseconds of a state of a batch
     Batch,
@@ -50,13 +50,13 @@ enum Block {
     BatchProfile,
     /// Measures of generated code by the number of joints
     Growth,
-    /// Nanoseconds of an arm at run time
+    /// Nanoseconds of an arm at run time; of the table of functions the rows of one arm
     RunTime,
     /// Torques from Python beside Pinocchio and the Robotics Toolbox, which are fetched
     FromPython,
-    /// Microseconds of every function of one state from Python, beside Pinocchio, which is fetched
+    /// Microseconds of functions of one state from Python that Pinocchio, which is fetched, has too, or that take long
     PythonCalls,
-    /// A plain build beside one for x86-64-v3
+    /// A plain build beside one for x86-64-v3: two arms, and where the builds differ
     PlainBuild,
 }
 
@@ -107,9 +107,7 @@ impl Block {
             }
             Self::SinCos => {
                 let package = ["--quiet", "--release", "-p", "rne-runtime"];
-                let accuracy = cmd!(shell, "cargo run {package...} --features batch --example sin_cos_accuracy");
-                let speed = cmd!(shell, "cargo run {package...} --example sin_cos_speed");
-                format!("{}{}\n{}", here(&shell)?, listing(accuracy)?, listing(speed)?)
+                here(&shell)? + &listing(cmd!(shell, "cargo run {package...} --example sin_cos_speed"))?
             }
             Self::Batch => here(&shell)? + &listing(cmd!(shell, "cargo run --quiet --release --example batch_speed"))?,
             Self::BatchProfile => {
@@ -119,15 +117,21 @@ impl Block {
             Self::RunTime => {
                 let options = ["--quiet", "--release", "--no-default-features", "--features", "run_time", "--locked"];
                 let bench = cmd!(shell, "cargo run --manifest-path benches/Cargo.toml {options...} --bin run_time");
-                here(&shell)? + &listing(bench)?
+                here(&shell)? + &kept(&listing(bench)?, is_of_one_arm)
             }
-            Self::FromPython | Self::PythonCalls => {
+            Self::FromPython => {
+                format!("{}```text\n{}\n```\n", here(&shell)?, python::beside_peers("from_python.py")?)
+            }
+            Self::PythonCalls => {
                 let head = here(&shell)?;
-                let script = if self == Self::FromPython { "from_python.py" } else { "one_state.py" };
-                format!("{head}```text\n{}\n```\n", python::beside_peers(script)?)
+                let calls = kept(&python::beside_peers("one_state.py")?, is_compared_or_long);
+                format!("{head}```text\n{calls}```\n")
             }
             Self::PlainBuild => here(&shell)? + &plain_build::table()?,
-            Self::Growth => without_load(&here(&shell)?) + &without_empty_lines(&growth::measured(&[])?),
+            Self::Growth => {
+                let tables = without_empty_lines(&growth::measured(&[])?);
+                without_load(&here(&shell)?) + &without_increments(&tables)
+            }
         })
     }
 }
@@ -168,6 +172,34 @@ fn without_empty_lines(text: &str) -> String {
     lines.join("\n") + "\n"
 }
 
+/// The lines of a text that the page has.
+fn kept(text: &str, is_kept: impl Fn(&str) -> bool) -> String {
+    text.lines().filter(|line| is_kept(line)).flat_map(|line| [line, "\n"]).collect()
+}
+
+/// Whether a line is no row of a function on a vector unit, or one of the arm that is shown.
+fn is_of_one_arm(line: &str) -> bool {
+    let unit = line.split_whitespace().nth(1).unwrap_or_default();
+    !["SSE2", "AVX2", "AVX-512"].contains(&unit) || line.starts_with("panda ")
+}
+
+/// Whether a line is a call from Python that Pinocchio has too or that takes more than ten microseconds, or the titles.
+fn is_compared_or_long(line: &str) -> bool {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let [_, _, time, _] = words[..] else { return true };
+    time.parse::<f64>().is_ok_and(|microseconds| microseconds > 10.0)
+}
+
+/// Tables without the increments beside each column: the lines below the tables have the growth.
+fn without_increments(text: &str) -> String {
+    let row = |line: &str| {
+        let cells = line.trim_matches('|').split('|').enumerate();
+        let kept: Vec<&str> = cells.filter(|(at, _)| *at == 0 || at % 2 == 1).map(|(_, cell)| cell).collect();
+        format!("|{}|\n", kept.join("|"))
+    };
+    text.lines().map(|line| if line.starts_with('|') { row(line) } else { format!("{line}\n") }).collect()
+}
+
 /// The output of a command, as a block of text.
 fn listing(command: Cmd<'_>) -> Result<String> {
     Ok(format!("```text\n{}\n```\n", command.quiet().read()?))
@@ -197,7 +229,8 @@ pub(crate) fn replaced(page: &str, name: &str, text: &str) -> Result<String> {
 mod tests {
     use clap::ValueEnum;
 
-    use super::{Block, PAGE, replaced, without_empty_lines, without_load};
+    use super::{Block, PAGE, is_compared_or_long, is_of_one_arm, kept, replaced};
+    use super::{without_empty_lines, without_increments, without_load};
     use crate::machine;
 
     #[test]
@@ -223,5 +256,17 @@ mod tests {
     fn words_that_do_not_belong_are_left_out() {
         assert_eq!(without_load("2 cores, load average 1.61 before the measurement; rustc"), "2 cores; rustc");
         assert_eq!(without_empty_lines("a\n\n\n\nb\n\n\n"), "a\n\nb\n");
+        let table =
+            "| n | ops | per joint | ms | per joint |\n|---:|---:|---:|---:|---:|\n| 1 | 22 |  | 3.1 |  |\n\n- a\n";
+        assert_eq!(without_increments(table), "| n | ops | ms |\n|---:|---:|---:|\n| 1 | 22 | 3.1 |\n\n- a\n");
+    }
+
+    #[test]
+    fn rows_that_no_decision_needs_are_left_out() {
+        let units = "ur5   5.6 11.4\n\nrobot unit function\nur5   SSE2 f 1.0\npanda SSE2 f 1.0\n";
+        assert_eq!(kept(units, is_of_one_arm), "ur5   5.6 11.4\n\nrobot unit function\npanda SSE2 f 1.0\n");
+        let calls = "robot function rne pinocchio / inverse_dynamics\na f 1.0 2.0 0.5\na g 9.9 4.4\na h 10.1 4.5\n";
+        let expected = "robot function rne pinocchio / inverse_dynamics\na f 1.0 2.0 0.5\na h 10.1 4.5\n";
+        assert_eq!(kept(calls, is_compared_or_long), expected);
     }
 }

@@ -65,6 +65,7 @@ const DOCUMENTS: &[&str] = &[
     "docs/measured/performance.md",
     "docs/control/python.md",
     "docs/teaching/reduced-form.md",
+    "docs/reference/robot-file-keys.md",
     "docs/robot-file.md",
     "docs/control/ros2.md",
     "docs/control/run-time.md",

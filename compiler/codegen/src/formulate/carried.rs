@@ -1,4 +1,4 @@
-//! What a link carries: joints with their links, and tips. The lecture's chain has one of them on each link.
+//! Joints and tips on a link. The lecture's chain has one of them on each link.
 
 use crate::formulate::{Arm, Mount, Wrench};
 use crate::ir::{JointLines, Matrix, Quantity, Vector};

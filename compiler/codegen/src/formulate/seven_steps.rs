@@ -137,7 +137,7 @@ fn motion<'s>(joint: &Joint<'_, 's>, parent: &Motion<'s>) -> Motion<'s> {
     Motion { turning, d, c_dot, c_ddot, gravity }
 }
 
-/// What step 6 takes for one link: its body and motion, what it carries and the rotors that turn on it.
+/// The arguments of step 6 for one link: its body and motion, what it carries and the rotors that turn on it.
 struct Balance<'a, 's> {
     body: &'a Body<'s>,
     motion: &'a Motion<'s>,
