@@ -1,10 +1,10 @@
 //! From the text of a robot file to a validated robot, or to a report of everything that is wrong with it.
 
+use crate::readers::robot::{Takes, robot};
 use crate::text::decode::Context;
 use crate::text::diagnostic::{Problems, Report};
 use crate::text::identifier::{JointIdentifier, identifiers};
-use crate::text::schema::Takes;
-use crate::{Robot, text::document, text::schema, text::source, text::urdf};
+use crate::{Robot, text::document, text::source, text::urdf};
 
 /// A valid robot file: the robot, and what is remarkable about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -154,7 +154,7 @@ impl<'a> Reader<'a> {
             .flatten()
             .and_then(|root| {
                 let context = Context::new(text, &problems, &self.run_time).with_settings(&self.settings);
-                let robot = schema::robot(&context, &root, self.takes)?;
+                let robot = robot(&context, &root, self.takes)?;
                 let identifiers = identifiers((self.name, text), &root, &robot.joints);
                 Some((robot, identifiers))
             });

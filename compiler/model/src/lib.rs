@@ -37,76 +37,30 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "std"), no_std)]
 
-#[cfg(feature = "std")]
-mod lints;
-#[cfg(feature = "std")]
-mod parts;
-#[cfg(feature = "std")]
-mod text;
-#[cfg(feature = "std")]
-pub use text::document;
 mod angle;
-mod table;
-
-pub use angle::{Angle, LARGEST_ANGLE, QuarterTurns};
-pub use table::{
-    Convention, Dh, FixedFrame, INERTIAL_PARAMETERS, Inertia, JointKind, Link, Model, Motor, PER_LINK, Row, Transform,
-};
-
 #[cfg(feature = "std")]
 mod check;
 mod contact;
 #[cfg(feature = "std")]
+mod exports;
+#[cfg(feature = "std")]
+mod lints;
+#[cfg(feature = "std")]
 mod loops;
 #[cfg(feature = "std")]
-mod robot;
-
+mod parts;
 #[cfg(feature = "std")]
-pub use check::{Checked, Reader};
+mod readers;
+#[cfg(feature = "std")]
+mod robot;
+mod table;
+#[cfg(feature = "std")]
+mod text;
+
+pub use angle::{Angle, LARGEST_ANGLE, QuarterTurns};
 pub use contact::{Contact, ContactKind};
 #[cfg(feature = "std")]
-pub use loops::closed_loop::{ClosedLoop, ClosedLoops, Cut, Pivot};
-#[cfg(feature = "std")]
-pub use loops::dependents::{Actuation, NoDependents, choose_dependents};
-#[cfg(feature = "std")]
-pub use parts::body::{Bodies, Body, UnknownBody};
-#[cfg(feature = "std")]
-pub use parts::coupling::Coupling;
-#[cfg(feature = "std")]
-pub use parts::double::{Double, decimal_digits};
-#[cfg(feature = "std")]
-pub use parts::drive::{Drive, Rotor};
-#[cfg(feature = "std")]
-pub use parts::floating_base::FloatingBase;
-#[cfg(feature = "std")]
-pub use parts::formula::Formula;
-#[cfg(feature = "std")]
-pub use parts::frame::{Frame, FrameId, UnknownFrame};
-#[cfg(feature = "std")]
-pub use parts::friction::{Friction, FrictionTransition, TransitionSign};
-#[cfg(feature = "std")]
-pub use parts::golden::{GoldenFile, GoldenState};
-#[cfg(feature = "std")]
-pub use parts::inertia::NegativeMoment;
-#[cfg(feature = "std")]
-pub use parts::run_time::{Entry, InertiaElement, RunTime};
-#[cfg(feature = "std")]
-pub use robot::{InertiaReference, Joint, Limits, Robot};
-#[cfg(feature = "std")]
-pub use text::data_file::{
-    MAX_BYTES, golden_of, misnamed_golden_of, open_file, plan_of, read_file, read_limited, robot_of,
+pub use exports::*;
+pub use table::{
+    Convention, Dh, FixedFrame, INERTIAL_PARAMETERS, Inertia, JointKind, Link, Model, Motor, PER_LINK, Row, Transform,
 };
-#[cfg(feature = "std")]
-pub use text::diagnostic::{Diagnostic, Remedy, Report, Severity};
-#[cfg(feature = "std")]
-pub use text::expression::number;
-#[cfg(feature = "std")]
-pub use text::identifier::JointIdentifier;
-#[cfg(feature = "std")]
-pub use text::keys::{Key, Mapping, mappings};
-#[cfg(feature = "std")]
-pub use text::source::{exact_digits, half_of_last_digit, is_control, one_line, six_digits};
-#[cfg(feature = "std")]
-pub use text::spelling::{did_you_mean, nearest_name, no_shipped_robot};
-#[cfg(feature = "std")]
-pub use text::urdf::is_urdf;

@@ -9,7 +9,7 @@ use crate::parts::inertia::principal_moments;
 use crate::robot::parent;
 use crate::text::decode::Context;
 use crate::text::diagnostic::Diagnostic;
-use crate::text::document::{Content, Node};
+use crate::text::document::Node;
 use crate::text::expression::Names as _;
 use crate::text::source::{quoted, six_digits};
 use crate::{Joint, Link};
@@ -30,7 +30,7 @@ const SIDES: [[&str; 2]; 5] = [["left", "right"], ["Left", "Right"], ["LEFT", "R
 
 /// Reports links of the two sides whose masses or principal moments of inertia differ.
 pub(crate) fn twins(cx: &Context, root: &Node, joints: &[Joint]) {
-    let Some(Content::Sequence(items)) = root.get("joints").map(|node| &node.content) else { return };
+    let items = root.list("joints");
     cx.count(joints.len() * joints.len());
     let mut differing = pairs(joints).into_iter().filter_map(|pair| Some((pair, difference(joints, pair)?)));
     let Some(([one, other], Difference { key, what })) = differing.next() else { return };

@@ -97,23 +97,59 @@ pub(crate) fn solved(
     if steps.len() < passive.len() {
         return Err(Fault::NoOrder);
     }
+    let closures: Vec<Vec<f64>> = regular.into_iter().map(|index| closures[index].clone()).collect();
+    let equations = &found.equations;
+    let at = |positions: &[f64]| of_passive(&equations.jacobian(positions));
+    let Nearness { singular_values, smallest_pivot, singular, pivot, undetermined } =
+        nearness(equations, (&closures, &matrices), at, &steps, &passive);
+    let is_rigid = |group: &Vec<usize>| {
+        let mut joints = group.iter().flat_map(|&index| moving(joints, &loops[index]));
+        joints.all(|joint| passive.contains(&joint))
+    };
+    let rigid = found.groups().into_iter().filter(is_rigid).flatten().collect();
+    let few = (closures.len() < CLOSURES).then_some((closures.len(), CLOSURES));
+    let beyond = !closures.iter().any(|positions| equations.is_within(positions));
+    let remarks = Remarks { few, singular, pivot, undetermined, beyond, rigid, joints: equations.variables.clone() };
+    let elimination = steps.iter().map(|&(equation, passive, _)| Pivot { equation, passive }).collect();
+    Ok((ClosedLoops { loops, passive, elimination, closures, singular_values, smallest_pivot }, remarks))
+}
+
+/// How near the equations that determine the dependent joints come to singular ones.
+struct Nearness {
+    /// The least and the largest singular value.
+    singular_values: [f64; 2],
+    smallest_pivot: f64,
+    /// The least ratio of singular values, where it is small, and the positions there.
+    singular: Option<(f64, Vec<f64>)>,
+    /// The least pivot, as a part of the largest singular value, where it is small and no such ratio is.
+    pivot: Option<(f64, Vec<f64>)>,
+    /// The joints that are hardly determined there.
+    undetermined: Vec<usize>,
+}
+
+/// Looks for the positions where the equations of the joints `passive` come nearest to singular ones, from closures
+/// and the equations there. `at` gives the equations at positions, and `steps` are those of their elimination.
+fn nearness(
+    equations: &Equations,
+    (closures, matrices): (&[Vec<f64>], &[Matrix]),
+    at: impl Fn(&[f64]) -> Matrix,
+    steps: &[(usize, usize, f64)],
+    passive: &[usize],
+) -> Nearness {
     let kept: Vec<(usize, f64)> = steps.iter().map(|step| (step.0, 1.0)).collect();
     let every: Vec<(usize, f64)> = (0..passive.len()).map(|column| (column, 1.0)).collect();
     let of_kept = |matrix: &Matrix| {
         let values = matrix.part(&kept, &every).singular();
         [values.last(), values.first()].map(|value| value.map_or(0.0, |(value, _)| *value))
     };
-    let closures: Vec<Vec<f64>> = regular.into_iter().map(|index| closures[index].clone()).collect();
-    let equations = &found.equations;
-    let at = |positions: &[f64]| of_passive(&equations.jacobian(positions));
     let least_pivot =
-        |positions: &[f64]| pivots(&at(positions), &steps).into_iter().map(f64::abs).fold(f64::INFINITY, f64::min);
+        |positions: &[f64]| pivots(&at(positions), steps).into_iter().map(f64::abs).fold(f64::INFINITY, f64::min);
     let ratio = |positions: &[f64]| {
         let [least, largest] = of_kept(&at(positions));
         least / largest
     };
-    let singular = equations.least(&closures, ratio);
-    let pivot = equations.least(&closures, least_pivot);
+    let singular = equations.least(closures, ratio);
+    let pivot = equations.least(closures, least_pivot);
     let worst = singular.iter().map(|(_, positions)| of_kept(&at(positions)));
     let singular_values = matrices
         .iter()
@@ -128,19 +164,10 @@ pub(crate) fn solved(
         .filter(|(ratio, _)| *ratio < NEARLY_SINGULAR && singular.is_none());
     let undetermined = singular.iter().flat_map(|(_, positions)| {
         let values = at(positions).part(&kept, &every).singular();
-        moved(&passive, values.last().map_or(&[], |(_, direction)| direction), 0.3)
+        moved(passive, values.last().map_or(&[], |(_, direction)| direction), 0.3)
     });
     let undetermined = undetermined.collect();
-    let is_rigid = |group: &Vec<usize>| {
-        let mut joints = group.iter().flat_map(|&index| moving(joints, &loops[index]));
-        joints.all(|joint| passive.contains(&joint))
-    };
-    let rigid = found.groups().into_iter().filter(is_rigid).flatten().collect();
-    let few = (closures.len() < CLOSURES).then_some((closures.len(), CLOSURES));
-    let beyond = !closures.iter().any(|positions| equations.is_within(positions));
-    let remarks = Remarks { few, singular, pivot, undetermined, beyond, rigid, joints: equations.variables.clone() };
-    let elimination = steps.iter().map(|&(equation, passive, _)| Pivot { equation, passive }).collect();
-    Ok((ClosedLoops { loops, passive, elimination, closures, singular_values, smallest_pivot }, remarks))
+    Nearness { singular_values, smallest_pivot, singular, pivot, undetermined }
 }
 
 /// How many singular values, the largest first, are not zero.

@@ -22,90 +22,13 @@ pub(crate) fn couplings(
     convention: Convention,
     joints: &[Joint],
 ) -> Result<[(usize, Coupling); 2], String> {
-    let ways = own_joints(joints, between);
-    let name = |joint: usize| quoted(&joints[joint].name);
-    let (mut first, mut other) = (&ways[0][..], &ways[1][..]);
-    let mut ends = *between;
-    if other.len() > first.len() {
-        (first, other, ends) = (other, first, [ends[1], ends[0]]);
-    }
-    let (&[a, b], (c, d)) = (
-        match first {
-            [a, b] => &[*a, *b],
-            _ => return Err(wrong_count(first.len(), other.len())),
-        },
-        match other {
-            [d] => (None, *d),
-            [c, d] => (Some(*c), *d),
-            _ => return Err(wrong_count(first.len(), other.len())),
-        },
-    );
-    let all: Vec<usize> = first.iter().chain(other).copied().collect();
-    if let Some(&slides) = all.iter().find(|&&joint| joints[joint].row.kind == JointKind::Prismatic) {
-        return Err(format!(
-            "the joint {} of the loop is prismatic; a parallelogram has revolute joints",
-            name(slides)
-        ));
-    }
-    let axis = |joint: usize| axis_at_zero(joints, convention, joint);
-    let z = axis(a).axis(2);
-    let mut signs = Vec::new();
-    for &joint in &all {
-        let cosine = dot(axis(joint).axis(2), z);
-        if 1.0 - cosine.abs() > TOLERANCE * TOLERANCE {
-            return Err(format!("the axes of the joints {} and {} are not parallel", name(a), name(joint)));
-        }
-        signs.push((joint, cosine.signum()));
-    }
-    let cut = ends.map(|end| link_at_zero(joints, convention, end.on).then(&Pose::of(&end.placement)));
-    if cut.iter().any(|cut| 1.0 - dot(cut.axis(2), z).abs() > TOLERANCE * TOLERANCE) {
-        return Err(format!(
-            "the axis of the cut joint, z of `between`, is not parallel to that of the joint {}",
-            name(a)
-        ));
-    }
-    // sides from axis to axis, each on its link, where all positions are 0: V0 V1, V1 V2; V3 V2, V0 V3
-    let side = |from: [f64; 3], to: [f64; 3]| difference(to, from);
-    let [first_end, other_end] = cut.map(|cut| cut.translation);
-    let sides = [
-        side(axis(a).translation, axis(b).translation),
-        side(axis(b).translation, first_end),
-        side(axis(d).translation, other_end),
-        side(axis(a).translation, axis(d).translation),
-    ];
-    if let Some(c) = c {
-        let apart = in_plane(side(axis(a).translation, axis(c).translation), z);
-        if length(apart) > TOLERANCE * length(sides[0]) {
-            return Err(format!(
-                "the axes of the joints {} and {} must be one line, because both ways to the cut joint have two joints",
-                name(a),
-                name(c)
-            ));
-        }
-    }
-    let lengths = sides.map(|side| length(in_plane(side, z)));
-    for (one, opposite) in [(0, 2), (1, 3)] {
-        let [one, opposite] = [lengths[one], lengths[opposite]];
-        if (one - opposite).abs() > TOLERANCE * one.max(opposite) || one == 0.0 {
-            return Err(format!(
-                "opposite sides of the loop are {} m and {} m long; they must be equal and not 0",
-                six_digits(one),
-                six_digits(opposite)
-            ));
-        }
-    }
-    // along the axes the ways must end at one height
-    let heights = [[sides[0], sides[1]], [sides[3], sides[2]]].map(|way| dot(way[0], z) + dot(way[1], z));
-    let apart = (heights[0] - heights[1]).abs();
-    if apart > TOLERANCE * lengths[0].max(lengths[1]) {
-        return Err(format!(
-            "the two places of `between` are {} m apart along the axis of the cut joint",
-            six_digits(apart)
-        ));
-    }
+    let quadrangle = Quadrangle::of(between, convention, joints)?;
+    let signs = quadrangle.signs()?;
+    let sides = quadrangle.sides()?;
+    let ([a, b], (c, d)) = (quadrangle.first, quadrangle.other);
     let sign = |joint: usize| signs.iter().find(|(other, _)| *other == joint).map_or(0.0, |(_, sign)| *sign);
     // the angle of V1 V2 less that of V0 V3, and of V3 V2 less that of V0 V1: factors of the joints, and a constant
-    let angle = |side: usize, than: usize| turn(sides[than], sides[side], z);
+    let angle = |side: usize, than: usize| turn(sides[than], sides[side], quadrangle.z);
     let mut terms = [vec![(a, sign(a)), (b, sign(b))], vec![(d, sign(d)), (a, -sign(a))]];
     if let Some(c) = c {
         terms[0].push((c, -sign(c)));
@@ -114,16 +37,130 @@ pub(crate) fn couplings(
     solved(dependent, &terms, [angle(1, 3), angle(2, 0)])
         .map(|solutions| solutions.map(|(joint, coupling)| (joint, without_followers(coupling, joints))))
         .ok_or_else(|| {
-            let listed = all.iter().map(|&joint| name(joint)).collect::<Vec<_>>().join(", ");
+            let listed = quadrangle.all().map(|joint| quadrangle.name(joint)).collect::<Vec<_>>().join(", ");
             format!("the joints of the loop are {listed}; `dependent` must name two of them that the others determine")
         })
 }
 
-fn wrong_count(first: usize, other: usize) -> String {
-    format!(
-        "the ways to the cut joint have {first} and {other} joints of their own; a parallelogram has 2 and 1, or 2 and \
-         2"
-    )
+/// A loop of four axes, and the joints that turn about them.
+struct Quadrangle<'a> {
+    joints: &'a [Joint],
+    convention: Convention,
+    /// The joints of the first way, at V0 and V1.
+    first: [usize; 2],
+    /// The joint of the other way at V0, if that way has two, and the joint at V3.
+    other: (Option<usize>, usize),
+    /// The places of the cut joint at the ends of the two ways.
+    ends: [FixedFrame; 2],
+    /// The direction of the axis at V0.
+    z: [f64; 3],
+}
+
+impl<'a> Quadrangle<'a> {
+    /// The quadrangle of a loop with two joints on one way and one or two joints on the other, all of them revolute.
+    fn of(between: &[FixedFrame; 2], convention: Convention, joints: &'a [Joint]) -> Result<Self, String> {
+        let ways = own_joints(joints, between);
+        let (mut ways, mut ends) = ([&ways[0][..], &ways[1][..]], *between);
+        if ways[1].len() > ways[0].len() {
+            ways.reverse();
+            ends.reverse();
+        }
+        let (first, other) = match ways {
+            [&[a, b], &[d]] => ([a, b], (None, d)),
+            [&[a, b], &[c, d]] => ([a, b], (Some(c), d)),
+            [first, other] => {
+                return Err(format!(
+                    "the ways to the cut joint have {} and {} joints of their own; a parallelogram has 2 and 1, or 2 \
+                     and 2",
+                    first.len(),
+                    other.len()
+                ));
+            }
+        };
+        let z = axis_at_zero(joints, convention, first[0]).axis(2);
+        let quadrangle = Self { joints, convention, first, other, ends, z };
+        let slides = quadrangle.all().find(|&joint| joints[joint].row.kind == JointKind::Prismatic);
+        slides.map_or(Ok(quadrangle), |slides| {
+            let name = quoted(&joints[slides].name);
+            Err(format!("the joint {name} of the loop is prismatic; a parallelogram has revolute joints"))
+        })
+    }
+
+    /// The joints of the first way and then those of the other.
+    fn all(&self) -> impl Iterator<Item = usize> + use<> {
+        self.first.into_iter().chain(self.other.0).chain([self.other.1])
+    }
+
+    fn name(&self, joint: usize) -> String {
+        quoted(&self.joints[joint].name)
+    }
+
+    fn axis(&self, joint: usize) -> Pose {
+        axis_at_zero(self.joints, self.convention, joint)
+    }
+
+    /// Of each joint, whether its axis has the direction of the first one (1) or the opposite one (-1).
+    fn signs(&self) -> Result<Vec<(usize, f64)>, String> {
+        let sign = |joint: usize| {
+            let cosine = dot(self.axis(joint).axis(2), self.z);
+            if 1.0 - cosine.abs() > TOLERANCE * TOLERANCE {
+                let [first, joint] = [self.first[0], joint].map(|joint| self.name(joint));
+                return Err(format!("the axes of the joints {first} and {joint} are not parallel"));
+            }
+            Ok((joint, cosine.signum()))
+        };
+        self.all().map(sign).collect()
+    }
+
+    /// The sides from axis to axis, each on its link, where all positions are 0: V0 V1, V1 V2; V3 V2, V0 V3. Opposite
+    /// sides have equal lengths.
+    fn sides(&self) -> Result<[[f64; 3]; 4], String> {
+        let (z, [a, b], (c, d)) = (self.z, self.first, self.other);
+        let cut =
+            self.ends.map(|end| link_at_zero(self.joints, self.convention, end.on).then(&Pose::of(&end.placement)));
+        if cut.iter().any(|cut| 1.0 - dot(cut.axis(2), z).abs() > TOLERANCE * TOLERANCE) {
+            return Err(format!(
+                "the axis of the cut joint, z of `between`, is not parallel to that of the joint {}",
+                self.name(a)
+            ));
+        }
+        let [first_end, other_end] = cut.map(|cut| cut.translation);
+        let [at_a, at_b, at_d] = [a, b, d].map(|joint| self.axis(joint).translation);
+        let side = |from: [f64; 3], to: [f64; 3]| difference(to, from);
+        let sides = [side(at_a, at_b), side(at_b, first_end), side(at_d, other_end), side(at_a, at_d)];
+        if let Some(c) = c {
+            let apart = in_plane(side(at_a, self.axis(c).translation), z);
+            if length(apart) > TOLERANCE * length(sides[0]) {
+                return Err(format!(
+                    "the axes of the joints {} and {} must be one line, because both ways to the cut joint have two \
+                     joints",
+                    self.name(a),
+                    self.name(c)
+                ));
+            }
+        }
+        let lengths = sides.map(|side| length(in_plane(side, z)));
+        for (one, opposite) in [(0, 2), (1, 3)] {
+            let [one, opposite] = [lengths[one], lengths[opposite]];
+            if (one - opposite).abs() > TOLERANCE * one.max(opposite) || one == 0.0 {
+                return Err(format!(
+                    "opposite sides of the loop are {} m and {} m long; they must be equal and not 0",
+                    six_digits(one),
+                    six_digits(opposite)
+                ));
+            }
+        }
+        // along the axes the ways must end at one height
+        let heights = [[sides[0], sides[1]], [sides[3], sides[2]]].map(|way| dot(way[0], z) + dot(way[1], z));
+        let apart = (heights[0] - heights[1]).abs();
+        if apart > TOLERANCE * lengths[0].max(lengths[1]) {
+            return Err(format!(
+                "the two places of `between` are {} m apart along the axis of the cut joint",
+                six_digits(apart)
+            ));
+        }
+        Ok(sides)
+    }
 }
 
 /// The two dependent joints from Σ coefficient · q + constant = 0, twice.

@@ -2,22 +2,10 @@
 
 use std::fmt;
 
-use crate::parts::frame::{carrier, joint_names};
-use crate::parts::tree::items;
-use crate::parts::varying::leave_out;
-use crate::text::decode::{Context, read_mapping, text};
-use crate::text::diagnostic::Diagnostic;
-use crate::text::document::Node;
-use crate::text::schema::fixed_transform;
+use crate::parts::inertia::principal_moments;
 use crate::text::source::quoted;
 use crate::text::spelling::nearest_name;
-use crate::{
-    Entry, FixedFrame, FloatingBase, Inertia, InertiaReference, Joint, Link, Robot, Transform, parts::inertia,
-    parts::matter,
-};
-
-/// Bodies of a file.
-const MAX_BODIES: usize = 256;
+use crate::{FixedFrame, FloatingBase, Inertia, InertiaReference, Joint, Link, Robot, Transform};
 
 /// A body that is fixed to a link: an entry of the list `bodies` of a robot file.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,9 +25,9 @@ pub struct Bodies {
     /// The bodies that are parts of links, in the order of the file.
     pub list: Vec<Body>,
     /// Each link that a body was added to, counted from 0: the link without bodies, and its inertia as written.
-    bare: Vec<(usize, Link, (Inertia, InertiaReference))>,
+    pub(crate) bare: Vec<(usize, Link, (Inertia, InertiaReference))>,
     /// The floating base without bodies.
-    bare_base: Option<Link>,
+    pub(crate) bare_base: Option<Link>,
 }
 
 /// A name that no body of a robot has.
@@ -179,50 +167,8 @@ fn together(one: &Link, other: &Link) -> Link {
     Link { mass, com, inertia, first_moment: [0.0; 3] }
 }
 
-/// Reads the list `bodies` of a file whose root is `root`. [`Bodies::add_to`] makes them parts of their links.
-pub(crate) fn bodies(cx: &Context, root: &Node, format: u32, joints: &[Joint]) -> Option<Bodies> {
-    let help = "begin each body with a dash, such as `- {name: camera, on: joint6, mass: 0.3}`";
-    let items = items(cx, root, ("bodies", format), "bodies", help)?;
-    if let Some(excess) = items.get(MAX_BODIES) {
-        let message = format!("{} bodies; at most {MAX_BODIES} bodies are allowed", items.len());
-        return cx.refuse(Diagnostic::error(excess.head(), message).label(format!("body {}", MAX_BODIES + 1)));
-    }
-    let names = joint_names(root);
-    let read: Vec<Option<Body>> = items.iter().map(|item| body(cx, item, &names)).collect();
-    let mut valid = true;
-    for (index, (item, body)) in items.iter().zip(&read).enumerate() {
-        let Some(body) = body else { continue };
-        let place = |key: &str| item.get(key).map_or(item.head(), |value| value.span.clone());
-        let mistake = if read[..index].iter().flatten().any(|other| other.name == body.name) {
-            let message = format!("{} is already the name of another body; names must differ", quoted(&body.name));
-            Some(Diagnostic::error(place("name"), message).label("name taken"))
-        } else {
-            body.fixed.on.and_then(|on| unfit(cx, joints.get(on)?, on, &place("on")))
-        };
-        if let Some(mistake) = mistake {
-            valid = false;
-            cx.report(mistake);
-        } else if body.fixed.on.is_none() && root.get("floating_base").is_none() {
-            let message =
-                format!("the body {} has no effect: it is on `base`, which does not move", quoted(&body.name));
-            cx.report(Diagnostic::note(place("on"), message).label("on the base"));
-        }
-    }
-    let list = read.into_iter().collect::<Option<Vec<_>>>()?;
-    if valid && let Some((index, on)) = overflow(&list, joints) {
-        let message = format!(
-            "the link of {} with its bodies is too heavy: its mass or its inertia is more than a 64-bit number holds",
-            quoted(&joints[on].name)
-        );
-        let place = items[index].get("mass").unwrap_or(&items[index]).span.clone();
-        let help = "masses are in kg, lengths in m and inertias in kg m²; check the numbers of the bodies of this link";
-        return cx.refuse(Diagnostic::error(place, message).label("too large with this body").help(help));
-    }
-    valid.then_some(Bodies { list, ..Bodies::default() })
-}
-
 /// The first body, counted from 0, with which its link is not finite any more, and the joint of that link.
-fn overflow(list: &[Body], joints: &[Joint]) -> Option<(usize, usize)> {
+pub(crate) fn overflow(list: &[Body], joints: &[Joint]) -> Option<(usize, usize)> {
     let mut links: Vec<Link> = joints.iter().map(|joint| joint.row.link).collect();
     list.iter().enumerate().find_map(|(index, body)| {
         let on = body.fixed.on?;
@@ -230,58 +176,6 @@ fn overflow(list: &[Body], joints: &[Joint]) -> Option<(usize, usize)> {
         *link = together(link, &seen_from_link(&body.matter, &body.fixed.placement));
         let numbers = [link.mass].into_iter().chain(link.com);
         let is_finite = numbers.chain(link.com.map(|c| link.mass * c)).all(f64::is_finite);
-        (!is_finite || inertia::principal_moments(&link.inertia).is_none()).then_some((index, on))
+        (!is_finite || principal_moments(&link.inertia).is_none()).then_some((index, on))
     })
-}
-
-/// Why a link cannot carry a body.
-fn unfit(cx: &Context, joint: &Joint, index: usize, place: &std::ops::Range<usize>) -> Option<Diagnostic> {
-    if joint.row.link.has_first_moment() {
-        let message =
-            format!("the link of {} has a first moment without mass, so it can have no body", quoted(&joint.name));
-        let help = "such a link is a set of base parameters; change its numbers instead";
-        return Some(Diagnostic::error(place.clone(), message).label("not a body").help(help));
-    }
-    let run_time = cx.run_time.borrow();
-    let (_, formula) = run_time.entries.iter().find(|(entry, _)| match entry {
-        Entry::Mass(of) | Entry::Com(of, _) | Entry::Inertia(of, _) => *of == index,
-        _ => false,
-    })?;
-    let parameter = (0..run_time.names.len()).find(|&parameter| formula.depends_on(parameter));
-    let name = cx.parameter_name(parameter);
-    let message = format!(
-        "the link of {} depends on the run-time parameter {}, so it can have no body",
-        quoted(&joint.name),
-        quoted(&name)
-    );
-    Some(Diagnostic::error(place.clone(), message).label("this link varies at run time").help(leave_out(&name)))
-}
-
-fn body(cx: &Context, node: &Node, joints: &[String]) -> Option<Body> {
-    read_mapping!(cx, node, "a body", {
-        name: required "name" body_name,
-        on: required "on" |cx, node| carrier(cx, node, joints, "on"),
-        at: or(Transform::IDENTITY) "at" fixed_transform,
-        mass: required "mass" matter::mass,
-        com: or([0.0; 3]) "com" matter::com,
-        written: or(matter::NO_INERTIA) "inertia" matter::tensor,
-        about: or(matter::ABOUT_COM) "inertia_about" matter::reference,
-    });
-    let matter = matter::link(cx, node, (mass, com), (written, about), true)?;
-    Some(Body { name, fixed: FixedFrame { on, placement: at }, matter })
-}
-
-fn body_name(cx: &Context, node: &Node) -> Option<String> {
-    let name = text(cx, node)?;
-    let is_identifier = name.starts_with(|c: char| c.is_ascii_alphabetic())
-        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-    if is_identifier {
-        return Some(name);
-    }
-    let message = format!(
-        "the body name {} is not an identifier; it must be a letter from a to z or A to Z, then letters, digits and \
-         `_`",
-        quoted(&name)
-    );
-    cx.refuse(Diagnostic::error(node.span.clone(), message).label("choose another name"))
 }

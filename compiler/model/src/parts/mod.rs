@@ -1,7 +1,6 @@
-//! The parts of a robot: each file has the data of a key of the robot file and reads it.
+//! The parts of a robot: each file has the data of a key of the robot file, or numbers that these need.
 
 pub(crate) mod body;
-pub(crate) mod contacts;
 pub(crate) mod coupling;
 pub(crate) mod double;
 pub(crate) mod drive;
@@ -11,11 +10,7 @@ pub(crate) mod frame;
 pub(crate) mod friction;
 pub(crate) mod golden;
 pub(crate) mod inertia;
-pub(crate) mod link;
-pub(crate) mod matter;
 pub(crate) mod pose;
 pub(crate) mod quantity;
 pub(crate) mod run_time;
 pub(crate) mod tips;
-pub(crate) mod tree;
-pub(crate) mod varying;

@@ -106,6 +106,14 @@ impl Node {
         entries.iter().find(|entry| entry.key == key).map(|entry| &*entry.value)
     }
 
+    /// The items of the list under a key of this mapping; none where it has no such list.
+    pub(crate) fn list(&self, key: &str) -> &[Rc<Self>] {
+        match self.get(key).map(|node| &node.content) {
+            Some(Content::Sequence(items)) => items,
+            _ => &[],
+        }
+    }
+
     /// Whether this is a mapping that has the key, with another value than an empty list.
     pub(crate) fn has_entries(&self, key: &str) -> bool {
         self.get(key).is_some_and(|node| !matches!(&node.content, Content::Sequence(items) if items.is_empty()))

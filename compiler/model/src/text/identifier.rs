@@ -2,7 +2,7 @@
 
 use crate::Joint;
 use crate::text::diagnostic::{Diagnostic, Problems, Report};
-use crate::text::document::{Content, Node};
+use crate::text::document::Node;
 use crate::text::source::quoted;
 
 /// The identifiers of a joint in generated code.
@@ -76,10 +76,7 @@ pub(crate) fn identifiers(
     root: &Node,
     joints: &[Joint],
 ) -> Result<Vec<JointIdentifier>, Report> {
-    let items = match root.get("joints").map(|joints| &joints.content) {
-        Some(Content::Sequence(items)) => items.as_slice(),
-        _ => &[],
-    };
+    let items = root.list("joints");
     let (mut known, mut mistakes): (Vec<JointIdentifier>, _) = (Vec::new(), Vec::new());
     for (index, (item, joint)) in items.iter().zip(joints).enumerate() {
         let own = JointIdentifier::of(&joint.name, index);

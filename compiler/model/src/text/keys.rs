@@ -1,8 +1,9 @@
 //! The keys of the format as data, for those who document or complete them.
 
+use crate::readers::robot::{Takes, robot};
 use crate::text::decode::Context;
 use crate::text::diagnostic::Problems;
-use crate::{text::document, text::schema, text::source};
+use crate::{text::document, text::source};
 
 /// A mapping of the format, such as a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +43,7 @@ pub fn mappings(text: &str) -> Vec<Mapping> {
         && let Some(root) = document::parse(text, document::ROBOT_FILE, &problems)
     {
         let cx = Context::new(text, &problems, &[]);
-        let _ = schema::robot(&cx, &root, schema::Takes { trees: true, couplings: true, loops: true });
+        let _ = robot(&cx, &root, Takes { trees: true, couplings: true, loops: true });
         mappings = cx.mappings.take();
     }
     let _ = problems.finish("", text);

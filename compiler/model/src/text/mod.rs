@@ -8,7 +8,6 @@ pub(crate) mod expression;
 pub(crate) mod identifier;
 pub(crate) mod keys;
 pub(crate) mod render;
-pub(crate) mod schema;
 pub(crate) mod source;
 pub(crate) mod spelling;
 pub(crate) mod unit;

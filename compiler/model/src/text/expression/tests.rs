@@ -1,5 +1,8 @@
+use std::f64::consts::PI;
+
 use super::*;
 use crate::Formula;
+use crate::text::spelling::did_you_mean;
 
 /// `a` is 3, `m` is 0.5, `p` is 0.7 and a run-time parameter, `later` and `faulty` are what they say.
 struct Known;

@@ -1,10 +1,10 @@
 //! The link of a robot file: its mass, centre of mass and inertia, and whether they are those of a body.
 
-use crate::parts::varying::{com_of_first_moment, entry, inertia_about_com, inertia_element};
+use crate::readers::varying::{com_of_first_moment, entry, inertia_about_com, inertia_element};
 use crate::text::decode::{Context, choice, list, not_negative, read_mapping};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::document::Node;
-use crate::{Entry, Inertia, InertiaElement, InertiaReference, Link, lints::lint, parts::matter};
+use crate::{Entry, Inertia, InertiaReference, Link, lints, lints::lint, readers::matter};
 
 /// The link with its inertia about the centre of mass, and the inertia as written.
 pub(crate) fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, InertiaReference))> {
@@ -12,7 +12,7 @@ pub(crate) fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (In
         mass: or(0.0) "mass" |cx, node| mass(cx, node, joint),
         com: or([0.0; 3]) "com" |cx, node| com(cx, node, joint),
         _moment: optional "first_moment" |_, _| Some(()),
-        written: or(Inertia::default()) "inertia" |cx, node| tensor(cx, node, joint),
+        written: or(Inertia::default()) "inertia" |cx, node| matter::tensor(cx, node, |element| inertia_element(joint, element)),
         about: or(InertiaReference::Com) "inertia_about" inertia_reference,
         physical: or(true) "physical" matter::physical,
     });
@@ -64,7 +64,7 @@ fn no_body(
                     link frame";
         return cx.refuse(Diagnostic::error(node.head(), message).help(help));
     }
-    lint::first_moment_without_mass(cx, moment);
+    lints::inertia::first_moment_without_mass(cx, moment);
     Some(InertiaReference::Origin)
 }
 
@@ -80,19 +80,6 @@ fn mass(cx: &Context, node: &Node, joint: usize) -> Option<f64> {
     let mass = not_negative("mass", entry(Entry::Mass(joint)))(cx, node)?;
     lint::mass(cx, node, mass);
     Some(mass)
-}
-
-fn tensor(cx: &Context, node: &Node, joint: usize) -> Option<Inertia> {
-    let element = |element| inertia_element(joint, element);
-    read_mapping!(cx, node, "an inertia", {
-        xx: or(0.0) "xx" element(InertiaElement::Xx),
-        yy: or(0.0) "yy" element(InertiaElement::Yy),
-        zz: or(0.0) "zz" element(InertiaElement::Zz),
-        xy: or(0.0) "xy" element(InertiaElement::Xy),
-        xz: or(0.0) "xz" element(InertiaElement::Xz),
-        yz: or(0.0) "yz" element(InertiaElement::Yz),
-    });
-    Some(Inertia { xx, yy, zz, xy, xz, yz })
 }
 
 pub(crate) fn inertia_reference(cx: &Context, node: &Node) -> Option<InertiaReference> {

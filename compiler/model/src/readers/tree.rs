@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use crate::parts::frame::{carrier, joint_names};
+use crate::readers::names::{carrier, joint_names};
 use crate::robot::parent;
 use crate::text::decode::Context;
 use crate::text::diagnostic::Diagnostic;
@@ -20,10 +20,7 @@ pub(crate) fn branches(
     joints: &mut [Joint],
 ) -> Option<Option<usize>> {
     let names = joint_names(root);
-    let items = match root.get("joints").map(|joints| &joints.content) {
-        Some(Content::Sequence(items)) => items.as_slice(),
-        _ => &[],
-    };
+    let items = root.list("joints");
     let mut valid = true;
     for (index, (item, joint)) in items.iter().zip(joints.iter_mut()).enumerate() {
         let keys = keys(item);
@@ -169,10 +166,7 @@ fn tip(cx: &Context, root: &Node, format: u32, names: &[String], joints: &[Joint
 /// Refuses a tree for a function that takes serial arms only: at the first row that is not on the link of the row
 /// before, or at the tip, or else at the first row that begins at a place of its own.
 pub(crate) fn refuse(cx: &Context, root: &Node, joints: &[Joint], tip_on: Option<usize>) {
-    let items = match root.get("joints").map(|joints| &joints.content) {
-        Some(Content::Sequence(items)) => items.as_slice(),
-        _ => &[],
-    };
+    let items = root.list("joints");
     let branches = || items.iter().zip(joints).enumerate().filter(|(_, (_, joint))| joint.branch.is_some());
     let named = |index: usize, joint: &Joint| format!("joint {} ({})", index + 1, quoted(&joint.name));
     let fork = branches().find(|(index, _)| parent(joints, *index) != index.checked_sub(1));

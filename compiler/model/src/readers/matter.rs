@@ -3,19 +3,12 @@
 
 use std::ops::Range;
 
-use crate::parts::varying::fixed;
+use crate::readers::varying::fixed;
 use crate::text::decode::{Context, choice, list, not_negative, read_mapping};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::document::Node;
 use crate::text::source::six_digits;
-use crate::{Inertia, InertiaReference, Link, lints::lint, parts::inertia};
-
-/// The inertia of a file that gives none.
-pub(crate) const NO_INERTIA: Inertia = Inertia { xx: 0.0, yy: 0.0, zz: 0.0, xy: 0.0, xz: 0.0, yz: 0.0 };
-/// The point that an inertia refers to where the file does not say.
-pub(crate) const ABOUT_COM: InertiaReference = InertiaReference::Com;
-
-pub(crate) use crate::parts::link::inertia_reference as reference;
+use crate::{Inertia, InertiaElement, InertiaReference, Link, lints, lints::lint, parts::inertia};
 
 pub(crate) fn mass(cx: &Context, node: &Node) -> Option<f64> {
     let mass = not_negative("mass", fixed("the mass"))(cx, node)?;
@@ -31,15 +24,23 @@ pub(crate) fn com(cx: &Context, node: &Node) -> Option<[f64; 3]> {
     })
 }
 
-pub(crate) fn tensor(cx: &Context, node: &Node) -> Option<Inertia> {
-    let element = |cx: &Context<'_>, node: &Node| fixed("the inertia")(cx, node);
+pub(crate) fn fixed_tensor(cx: &Context, node: &Node) -> Option<Inertia> {
+    tensor(cx, node, |_| fixed("the inertia"))
+}
+
+/// An inertia, each of whose elements `element` reads.
+pub(crate) fn tensor<R: Fn(&Context, &Node) -> Option<f64>>(
+    cx: &Context,
+    node: &Node,
+    element: impl Fn(InertiaElement) -> R,
+) -> Option<Inertia> {
     read_mapping!(cx, node, "an inertia", {
-        xx: or(0.0) "xx" element,
-        yy: or(0.0) "yy" element,
-        zz: or(0.0) "zz" element,
-        xy: or(0.0) "xy" element,
-        xz: or(0.0) "xz" element,
-        yz: or(0.0) "yz" element,
+        xx: or(0.0) "xx" element(InertiaElement::Xx),
+        yy: or(0.0) "yy" element(InertiaElement::Yy),
+        zz: or(0.0) "zz" element(InertiaElement::Zz),
+        xy: or(0.0) "xy" element(InertiaElement::Xy),
+        xz: or(0.0) "xz" element(InertiaElement::Xz),
+        yz: or(0.0) "yz" element(InertiaElement::Yz),
     });
     Some(Inertia { xx, yy, zz, xy, xz, yz })
 }
@@ -88,7 +89,7 @@ pub(crate) fn checked(
         return Some(link);
     }
     if !is_body && !physical {
-        lint::unphysical(cx, place, moments);
+        lints::inertia::unphysical(cx, place, moments);
         return Some(link);
     }
     if !is_body {
@@ -107,7 +108,7 @@ pub(crate) fn checked(
             }
         }));
     }
-    lint::triangle_inequality(cx, place.clone(), link.impossible_moments(&written), physical);
-    lint::radius_of_gyration(cx, place, link.mass, moments);
+    lints::inertia::triangle_inequality(cx, place.clone(), link.impossible_moments(&written), physical);
+    lints::inertia::radius_of_gyration(cx, place, link.mass, moments);
     Some(link)
 }

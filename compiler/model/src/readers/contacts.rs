@@ -1,6 +1,6 @@
 //! The list `contacts` of a robot file.
 
-use crate::parts::tree::items;
+use crate::readers::tree::items;
 use crate::text::decode::{Context, choice, read_mapping, text};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::document::Node;

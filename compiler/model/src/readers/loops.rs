@@ -1,26 +1,20 @@
 //! The list `loops` of a robot file: parallelograms, which become couplings, and other closed loops.
 
-pub(crate) mod closed_loop;
-pub(crate) mod closure;
-pub(crate) mod dependents;
-pub(crate) mod matrix;
-pub(crate) mod mobility;
-pub(crate) mod parallelogram;
-
 use std::rc::Rc;
 
 use crate::loops::closure::moving;
 use crate::loops::mobility::{Count, Fault};
-use crate::parts::coupling::named;
-use crate::parts::frame::joint_names;
 use crate::parts::pose::way;
-use crate::parts::tree::items;
+use crate::readers::names::joint_names;
+use crate::readers::names::named;
+use crate::readers::placement::end_of_loop;
+use crate::readers::texts::text_of_one_line;
+use crate::readers::tree::items;
 use crate::text::decode::{Context, choice, read_mapping, text};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::document::{Content, Node};
-use crate::text::schema::{end_of_loop, text_of_one_line};
 use crate::text::source::{quoted, six_digits};
-use crate::{ClosedLoop, ClosedLoops, Convention, Cut, Entry, FixedFrame, Joint, lints::lint};
+use crate::{ClosedLoop, ClosedLoops, Convention, Cut, Entry, FixedFrame, Joint, lints};
 
 /// A loop of a file.
 struct Written {
@@ -79,14 +73,14 @@ pub(crate) fn loops(
         dependents(cx, item, closed, joints, &taken)?;
         taken.extend(&closed.dependent);
     }
-    match mobility::solved(joints, convention, loops.clone()) {
+    match crate::loops::mobility::solved(joints, convention, loops.clone()) {
         Ok(_) if joints.iter().enumerate().all(|(joint, it)| it.coupling.is_some() || taken.contains(&joint)) => {
             let message = "the loops leave no joint that moves: the robot is rigid";
             let help = "check the lengths and the axes; an arm of one link needs no loop";
             cx.refuse(at(items[0], "dependent", message.to_owned()).help(help))
         }
         Ok((closed, remarks)) => {
-            lint::closed_loops(cx, items[0], joints, &closed.loops, &remarks);
+            lints::closed_loops::closed_loops(cx, items[0], joints, &closed.loops, &remarks);
             Some((closed, remarks.joints))
         }
         Err(fault) => cx.refuse(refusal(&fault, &loops, &items, joints)),
@@ -155,7 +149,7 @@ fn parallelogram_of(
         let message = format!("found a list of {} where a list of two joints is needed", it.dependent.len());
         return cx.refuse(at(item, "dependent", message).label("two joints"));
     };
-    let couplings = match parallelogram::couplings(&it.between, dependent, convention, joints) {
+    let couplings = match crate::loops::parallelogram::couplings(&it.between, dependent, convention, joints) {
         Ok(couplings) => couplings,
         Err(message) => {
             let help = "the section Parallelograms of docs/robot-file.md says what a loop must be";

@@ -1,0 +1,22 @@
+//! Readers of a robot file: each reads a key with what is below it, or what several keys share.
+
+pub(crate) mod bodies;
+pub(crate) mod contacts;
+pub(crate) mod couplings;
+pub(crate) mod drives;
+pub(crate) mod floating_base;
+pub(crate) mod frames;
+pub(crate) mod joints;
+pub(crate) mod limits;
+pub(crate) mod link;
+pub(crate) mod loops;
+pub(crate) mod matter;
+pub(crate) mod motor;
+pub(crate) mod names;
+pub(crate) mod parameters;
+pub(crate) mod placement;
+pub(crate) mod robot;
+pub(crate) mod texts;
+pub(crate) mod tips;
+pub(crate) mod tree;
+pub(crate) mod varying;

@@ -1,0 +1,37 @@
+//! Texts of a robot file.
+
+use crate::lints::lint;
+use crate::text::decode::{Context, text};
+use crate::text::diagnostic::Diagnostic;
+use crate::text::document::Node;
+use crate::text::source::{is_control, is_line_break, quoted};
+
+/// A text of one line: it stands in headings and in comments of generated code.
+pub(crate) fn text_of_one_line(cx: &Context, node: &Node, what: &str) -> Option<String> {
+    let text = printable(cx, node, &format!("the {what}"), is_line_break)?;
+    if !text.contains(is_line_break) {
+        return Some(text);
+    }
+    let message = format!("the {what} {} has a line break; a {what} is one line", quoted(&text));
+    cx.refuse(Diagnostic::error(node.span.clone(), message).label("more than one line"))
+}
+
+/// A text that may have several lines.
+pub(crate) fn lines(cx: &Context, node: &Node) -> Option<String> {
+    printable(cx, node, "the text", |c| is_line_break(c) || c == '\t')
+}
+
+/// A text without control characters but those allowed.
+fn printable(cx: &Context, node: &Node, what: &str, is_allowed: impl Fn(char) -> bool) -> Option<String> {
+    let text = text(cx, node)?;
+    let Some(control) = text.chars().find(|&c| is_control(c) && !is_allowed(c)) else {
+        lint::invisible(cx, node, &text);
+        return Some(text);
+    };
+    let message = format!(
+        "{what} {} has the control character U+{:04X}; it must be readable text",
+        quoted(&text),
+        u32::from(control)
+    );
+    cx.refuse(Diagnostic::error(node.span.clone(), message).label("control character"))
+}
