@@ -1,8 +1,12 @@
 //! Why a robot cannot be compiled, in words for people.
 
+mod suspect;
+
 use std::fmt;
 
 use rne_model::Robot;
+
+pub use suspect::{Extreme, Suspect};
 
 use crate::function::{Axes, Capability, Function, Load};
 use crate::ir::Name;
@@ -157,72 +161,6 @@ pub enum Remedy {
     CountAnew,
 }
 
-/// The probable cause of the refusal of a form.
-#[derive(Clone, Debug, PartialEq, Default)]
-#[non_exhaustive]
-pub struct Suspect {
-    /// The plan of a plan file was used.
-    pub planned: bool,
-    /// A number of the robot whose products leave the range of double precision.
-    pub number: Option<Extreme>,
-}
-
-/// A number of a robot that is very large or very small.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Extreme {
-    what: &'static str,
-    link: usize,
-    value: f64,
-}
-
-impl Extreme {
-    /// The number of a robot that is farthest from one, if its powers leave the range of double precision or the
-    /// precision of twice that, in which constants are computed.
-    #[must_use]
-    pub fn of(robot: &Robot) -> Option<Self> {
-        const LARGEST: f64 = 1e75;
-        let far = |value: f64| value.abs().log2().abs();
-        let mut numbers = Vec::new();
-        for (index, joint) in robot.joints.iter().enumerate() {
-            let mut put = |what, values: &[f64]| {
-                numbers.extend(values.iter().map(|&value| Self { what, link: index + 1, value }));
-            };
-            put("the length d", &[joint.row.dh.d]);
-            put("the length a", &[joint.row.dh.a]);
-            put("the angle theta", &[joint.row.dh.theta.radians]);
-            put("the angle alpha", &[joint.row.dh.alpha.radians]);
-            put("the mass", &[joint.row.link.mass]);
-            put("a coordinate of the centre of mass,", &joint.row.link.com);
-            put("a coordinate of the first moment,", &joint.row.link.first_moment);
-            put("an inertia,", joint.written_inertia.0.rows().as_flattened());
-        }
-        numbers.retain(|number| number.value != 0.0 && far(number.value) > LARGEST.log2());
-        numbers.into_iter().max_by(|a, b| far(a.value).total_cmp(&far(b.value)))
-    }
-}
-
-impl fmt::Display for Extreme {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { what, link, value } = self;
-        let (size, beyond) = if value.abs() > 1.0 { ("large", "overflow") } else { ("small", "vanish") };
-        write!(
-            f,
-            "{what} {value:e} of link {link} is too {size} for this form: products of such numbers {beyond} in double \
-             precision. Use other units, or `form = \"seven_steps\"`, which needs fewer products"
-        )
-    }
-}
-
-impl Suspect {
-    /// Says what helps: about the number, where one is the cause, else by who made the plan.
-    fn advise(&self, f: &mut fmt::Formatter<'_>, of_plan_file: &str, of_build: &str) -> fmt::Result {
-        match &self.number {
-            Some(number) => write!(f, "{number}"),
-            None => f.write_str(if self.planned { of_plan_file } else { of_build }),
-        }
-    }
-}
-
 impl CompileError {
     /// Whether a form was written and refused, for it is another function than the seven steps or a worse one.
     #[must_use]
@@ -321,32 +259,8 @@ impl fmt::Display for CompileError {
                 name.quantity.meaning(),
                 name.joint
             ),
-            Self::NotIdentical { function, output, suspect } => {
-                let what = if function.returns_torques() { "the torque of joint" } else { "the returned number" };
-                write!(
-                    f,
-                    "this form of `{function}` does not compute the same as the seven steps: {what} {output} differs. \
-                     No code is written. "
-                )?;
-                suspect.advise(
-                    f,
-                    "The cause may be that somebody has edited the graph in the plan file",
-                    "Please report this robot",
-                )
-            }
-            Self::Imprecise { function, rounding, suspect } => {
-                let what = match function {
-                    _ if function.returns_torques() => "torque",
-                    _ if function.returns_accelerations() => "acceleration",
-                    _ => "returned number",
-                };
-                write!(
-                    f,
-                    "this form of `{function}` rounds too much: it differs from the seven steps by {rounding:.1e} of \
-                     the largest {what}. "
-                )?;
-                suspect.advise(f, "Use `form = \"seven_steps\"`, which needs no plan", "Use `form = \"seven_steps\"`")
-            }
+            Self::NotIdentical { function, output, suspect } => not_identical(f, *function, *output, suspect),
+            Self::Imprecise { function, rounding, suspect } => imprecise(f, *function, *rounding, suspect),
             Self::TwoOfOneName { function, name } => write!(
                 f,
                 "the code of `{function}` has two variables called `{name}`: the second would replace the first. No \
@@ -357,19 +271,7 @@ impl fmt::Display for CompileError {
                 "`{function}` of {dof} joints is straight-line code of more than {most} operations, which no compiler \
                  can compile in reasonable time. Compute it at run time by `rne::DynArm` instead, which has loops"
             ),
-            Self::HasClosedLoops { function, name } => {
-                write!(
-                    f,
-                    "`{function}` is not computed for robots with closed loops, and the robot has the loop `{name}`: \
-                     the positions of its dependent joints are arguments, too. "
-                )?;
-                let axes = function.axes().of_loops();
-                let load = if axes.load == Load::Wrench { Load::Wrenches } else { axes.load };
-                match Function::find(Axes { load, ..axes }) {
-                    Some(of_loops) => write!(f, "Use `{of_loops}`"),
-                    None => f.write_str("docs/control/closed-loops.md lists the functions of closed loops"),
-                }
-            }
+            Self::HasClosedLoops { function, name } => has_closed_loops(f, *function, name),
             Self::NoClosedLoops { function } => write!(
                 f,
                 "`{function}` is of robots with closed loops; this robot file has no `loops` with a cut joint that is \
@@ -405,3 +307,42 @@ impl fmt::Display for CompileError {
 }
 
 impl std::error::Error for CompileError {}
+
+fn not_identical(f: &mut fmt::Formatter<'_>, function: Function, output: usize, suspect: &Suspect) -> fmt::Result {
+    let what = if function.returns_torques() { "the torque of joint" } else { "the returned number" };
+    write!(
+        f,
+        "this form of `{function}` does not compute the same as the seven steps: {what} {output} differs. No code is \
+         written. "
+    )?;
+    let of_plan_file = "The cause may be that somebody has edited the graph in the plan file";
+    suspect.advise(f, of_plan_file, "Please report this robot")
+}
+
+fn imprecise(f: &mut fmt::Formatter<'_>, function: Function, rounding: f64, suspect: &Suspect) -> fmt::Result {
+    let what = match function {
+        _ if function.returns_torques() => "torque",
+        _ if function.returns_accelerations() => "acceleration",
+        _ => "returned number",
+    };
+    write!(
+        f,
+        "this form of `{function}` rounds too much: it differs from the seven steps by {rounding:.1e} of the largest \
+         {what}. "
+    )?;
+    suspect.advise(f, "Use `form = \"seven_steps\"`, which needs no plan", "Use `form = \"seven_steps\"`")
+}
+
+fn has_closed_loops(f: &mut fmt::Formatter<'_>, function: Function, name: &str) -> fmt::Result {
+    write!(
+        f,
+        "`{function}` is not computed for robots with closed loops, and the robot has the loop `{name}`: the positions \
+         of its dependent joints are arguments, too. "
+    )?;
+    let axes = function.axes().of_loops();
+    let load = if axes.load == Load::Wrench { Load::Wrenches } else { axes.load };
+    match Function::find(Axes { load, ..axes }) {
+        Some(of_loops) => write!(f, "Use `{of_loops}`"),
+        None => f.write_str("docs/control/closed-loops.md lists the functions of closed loops"),
+    }
+}

@@ -24,7 +24,7 @@ impl ExactFunction {
     /// Writes a function whose constants are read in the fields as told.
     pub(crate) fn with(robot: &Robot, function: Function, embedding: Embedding) -> Self {
         let builder = Builder::untraced(Policy::Structure, embedding, function);
-        let outputs = formulate::outputs(&builder, robot, function).into_iter().map(|(_, at)| at).collect();
+        let outputs = formulate::outputs(&builder, robot).into_iter().map(|(_, at)| at).collect();
         Self { graph: builder.finish(outputs).graph }
     }
 

@@ -38,7 +38,7 @@ impl Formulation {
         if builder.moves_origins && !function.entry().is_of_table_points {
             builder.origins = near_origins(robot);
         }
-        let (names, outputs) = formulate::outputs(&builder, robot, function).into_iter().unzip();
+        let (names, outputs) = formulate::outputs(&builder, robot).into_iter().unzip();
         Self { names, traced: builder.finish(outputs), scales: Vec::new() }
     }
 

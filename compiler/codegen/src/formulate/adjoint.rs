@@ -5,8 +5,9 @@
 //! is derived here is the virtual power of the forces that move the robot.
 
 use crate::coordinates::Coordinates;
+use crate::formulate::equations::inverse_by;
 use crate::formulate::ldlt::{Factors, System};
-use crate::formulate::{Outputs, integrator, inverse_by, square};
+use crate::formulate::{Outputs, integrator, square};
 use crate::function::Function;
 use crate::ir::{Builder, Name, Quantity, Symbol, WithRespectTo};
 

@@ -15,7 +15,9 @@
 use std::array::from_fn;
 
 use crate::coordinates::Coordinates;
-use crate::formulate::{Frame, Outputs, components, pose_of_base, square, vector};
+use crate::formulate::arguments::vector;
+use crate::formulate::layout::components;
+use crate::formulate::{Frame, Outputs, pose_of_base, square};
 use crate::ir::{Axis, Builder, Cause, Matrix, Name, Quantity, Symbol, Vector, WithRespectTo};
 
 /// The duration h.

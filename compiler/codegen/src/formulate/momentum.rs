@@ -29,7 +29,8 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::formulate::carried::plus_sum;
-use crate::formulate::{Arm, AtTip, Body, Joint, JointState, Motion, Outputs, Payload, centroid};
+use crate::formulate::floating::centroid;
+use crate::formulate::{Arm, AtTip, Body, Joint, JointState, Motion, Outputs, Payload};
 use crate::ir::{Cause, JointLines, Quantity, Symbol, Vector};
 
 /// A link and everything that it carries as one body, about its joint, in its axes or in the axes of its parent.

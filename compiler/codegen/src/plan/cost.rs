@@ -11,7 +11,7 @@ use crate::plan::branches::{self, BaseBranch};
 use crate::plan::{OriginShift, Plan, Scale};
 use crate::program::Scales;
 use crate::reduced::regrouping::{is_parallel, parameters};
-use crate::reduced::{Algorithm, Arm, FrameChoice, JointFrames, Offers, Parameters, algorithm};
+use crate::reduced::{Algorithm, Arm, FrameChoice, JointFrames, Offers, Parameters, results};
 
 /// Counted plans that are remembered, per branch of the base.
 const MOST_KNOWN: usize = 100_000;
@@ -144,7 +144,7 @@ fn outputs<'s>(
     algorithm: Algorithm,
 ) -> Option<Outputs<'s>> {
     let expressed_in = algorithm.expressed_in();
-    algorithm::write(&Arm { builder, expressed_in, joint_frames, plan, parameters }, robot, algorithm)
+    results::write(Arm { builder, expressed_in, joint_frames, plan, parameters }, robot, algorithm)
 }
 
 impl Formulation {

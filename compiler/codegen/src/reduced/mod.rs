@@ -4,8 +4,8 @@
 //! of the base, and choices per joint that a search makes. Only the torques keep a physical meaning.
 //!
 //! `joint_frames`, `link_parameters` and `regrouping` prepare the numbers under a plan; `forward` and `backward` write
-//! the recursion with them (RNEA), `crba`, `aba`, `momentum` and `rnea_derivatives` what else there is; `algorithm`
-//! names the ways in which a function can be written.
+//! the recursion with them (RNEA); `crba`, `aba`, `momentum`, `rnea_derivatives` and `hessian` write other recursions.
+//! `algorithm` names the ways in which a function can be written, and `results` writes it in one of them.
 
 pub(crate) mod aba;
 pub(crate) mod algorithm;
@@ -24,6 +24,7 @@ pub(crate) mod link_parameters;
 pub(crate) mod momentum;
 pub(crate) mod payload;
 pub(crate) mod regrouping;
+pub(crate) mod results;
 pub(crate) mod rnea_derivatives;
 pub(crate) mod siblings;
 pub(crate) mod wrench;

@@ -15,10 +15,11 @@
 
 use std::array::from_fn;
 
+use crate::formulate::arguments::vector;
 use crate::formulate::floating::floating_rest;
 use crate::formulate::integrator::{Turn, duration};
 use crate::formulate::ldlt::{Factors, System};
-use crate::formulate::{Outputs, pose_of_base, vector};
+use crate::formulate::{Outputs, pose_of_base};
 use crate::function::Length;
 use crate::ir::{Builder, Matrix, Name, Quantity, Symbol, Vector, WithRespectTo};
 

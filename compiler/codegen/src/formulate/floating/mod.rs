@@ -1,8 +1,14 @@
 //! Results of a robot with a floating base: the rows of the base stand before those of the joints.
 
+pub(crate) mod centroid;
+pub(crate) mod contact;
+pub(crate) mod step;
+pub(crate) mod tips;
+
 use crate::coordinates::Coordinates;
+use crate::formulate::layout::components;
 use crate::formulate::ldlt::{self, System};
-use crate::formulate::{Frame, Outputs, components, square};
+use crate::formulate::{Frame, Outputs, square};
 use crate::ir::{Axis, Builder, Matrix, Name, Quantity, Symbol, Vector, WithRespectTo, all_names_of};
 
 /// The rotation of the base: an argument.

@@ -10,9 +10,10 @@
 //!
 //! D. E. Orin, A. Goswami, S.-H. Lee, "Centroidal dynamics of a humanoid robot", 2013.
 
+use crate::formulate::Outputs;
+use crate::formulate::layout::components;
 use crate::formulate::ldlt::System;
 use crate::formulate::mass_matrix::OfBase;
-use crate::formulate::{Outputs, components};
 use crate::ir::{Builder, Name, Quantity, Symbol, Vector};
 
 /// Moments about the centre of mass of a robot.

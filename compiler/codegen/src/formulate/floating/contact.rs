@@ -16,9 +16,12 @@
 use rne_model::{Contact, Robot};
 
 use crate::formulate::arm::identity;
+use crate::formulate::derivation::Derivation;
 use crate::formulate::floating::floating_rest;
+use crate::formulate::floating::tips::Tips;
+use crate::formulate::layout::components;
 use crate::formulate::ldlt::{Factors, System};
-use crate::formulate::{Derivation, Outputs, Tips, base_rotation, components};
+use crate::formulate::{Outputs, base_rotation};
 use crate::ir::{Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
 
 /// The accelerations that contacts keep zero.
@@ -34,10 +37,10 @@ pub(crate) struct Contacts<'s> {
 impl<'s> Contacts<'s> {
     /// The contacts of a robot, for the function of the builder.
     pub(crate) fn new(builder: &'s Builder, robot: &Robot) -> Self {
-        builder.unnamed(|| Self::of(&Derivation::new(builder, robot, builder.function)))
+        builder.unnamed(|| Self::of(&Derivation::new(builder, robot)))
     }
 
-    pub(super) fn of(derivation: &Derivation<'s, '_>) -> Self {
+    pub(in crate::formulate) fn of(derivation: &Derivation<'s, '_>) -> Self {
         let (builder, arm) = (derivation.builder, &derivation.arm);
         builder.unnamed(|| {
             let tips = Tips::of(arm, &derivation.states, identity(builder));
