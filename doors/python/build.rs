@@ -24,12 +24,7 @@ fn main() -> io::Result<()> {
 
 /// Writes a method.
 fn write(methods: &mut String, function: Function, name: &str) {
-    let mut documentation = format!("{}\n\n", function.summary());
-    if !function.details().is_empty() {
-        let is_pose = matches!(function.shape(), Shape::Record(Record::Pose, _));
-        let of_pose = "The columns of its rotation are the axes of the tip frame, in world axes; its origin is in m.";
-        let _ = writeln!(documentation, "{}\n", if is_pose { of_pose } else { function.details() });
-    }
+    let mut documentation = summary(function);
     // those that must be given, those that may be left out, and those that are given by name alone
     let (mut needed, mut optional, mut named) = (Vec::new(), Vec::new(), Vec::new());
     let mut given = String::new();
@@ -87,6 +82,17 @@ fn write(methods: &mut String, function: Function, name: &str) {
          self.compute_at(py, {frame}, function, given, parameters, out)\n    }}",
         named.join(", ")
     );
+}
+
+/// What a function computes.
+fn summary(function: Function) -> String {
+    let mut documentation = format!("{}\n\n", function.summary());
+    if !function.details().is_empty() {
+        let is_pose = matches!(function.shape(), Shape::Record(Record::Pose, _));
+        let of_pose = "The columns of its rotation are the axes of the tip frame, in world axes; its origin is in m.";
+        let _ = writeln!(documentation, "{}\n", if is_pose { of_pose } else { function.details() });
+    }
+    documentation
 }
 
 /// What an argument is, where its name does not say it.

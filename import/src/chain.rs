@@ -2,21 +2,22 @@
 //! it.
 
 mod follower;
+mod refusals;
+mod remarks;
+mod walk;
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 use std::ops::Range;
 
-use rne_model::{Coupling, Limits, Motor, Remedy, Report, Transform, one_line, six_digits};
+use rne_model::{Coupling, Limits, Motor, Report};
 
-use self::follower::Coupled;
+use self::walk::Walk;
 use crate::body::Body;
-use crate::frames::transform;
-use crate::geometry::{Pose, Rotation, Vector, decimal};
-use crate::remark::{Remark, Remarks};
-use crate::selection::{End, Selection, link, locks, path, refuse_value, tip};
-use crate::snap::{Snapped, Snapping};
-use crate::source::{names, quoted, some};
-use crate::urdf::{Joint, Urdf};
+use crate::geometry::{Pose, Vector};
+use crate::remark::Remarks;
+use crate::selection::{End, Selection, link, path, tip};
+use crate::snap::Snapped;
+use crate::urdf::Urdf;
 
 /// More joints than a robot file may have.
 const MAX_JOINTS: usize = 64;
@@ -50,6 +51,11 @@ impl Chain {
         self.joints.iter().enumerate().all(follows_the_last)
             && self.tip_on + 1 == self.joints.len()
             && self.loops.is_empty()
+    }
+
+    /// Whether it is a serial arm on a base that stands still: a serial arm on a floating base keeps the frame of that.
+    pub(crate) fn is_arm(&self) -> bool {
+        self.is_serial() && self.floating_base.is_none()
     }
 }
 
@@ -166,8 +172,8 @@ pub(crate) fn extract(
     walk.refuse_loose()?;
     walk.refuse_followers_outside()?;
     walk.remark_on_standing_base();
-    (chain.loops, chain.frames) = (walk.loops(base)?, walk.frames);
-    walk.told.snapped = walk.snapping.found;
+    chain.loops = walk.loops(base)?;
     walk.remark_on_other_ends(&others);
-    Ok((chain, walk.told))
+    chain.frames = walk.frames;
+    Ok((chain, Extracted { snapped: walk.snapping.found, ..walk.told }))
 }

@@ -58,15 +58,9 @@ impl Urdf {
             };
             let mut ends = [(0, Pose::identity()); 2];
             for (end, of) in ends.iter_mut().zip(["predecessor", "successor"]) {
-                let Some(link) = seen.text(of, "link") else {
-                    let help = "write both into it: <predecessor link=\"NAME\"><origin xyz=\"0 0 0\"/></predecessor>";
-                    return error(format!("the loop {} has no element `{of}`", quoted(&name)), help);
-                };
-                let Some(known) = self.links.iter().position(|known| known.name == link) else {
-                    let (name, link) = (quoted(&name), quoted(link));
-                    let message = format!("the loop {name} refers to the link {link}, which does not exist");
-                    return error(message, "there is no such link in the file");
-                };
+                let help = "write both into it: <predecessor link=\"NAME\"><origin xyz=\"0 0 0\"/></predecessor>";
+                let find = |name: &str| self.links.iter().position(|link| link.name == name);
+                let known = self.named_link(seen, of, &format!("the loop {}", quoted(&name)), help, find)?;
                 let [xyz, rpy] = ["xyz", "rpy"].map(|part| seen.vector(of, part).unwrap_or_default());
                 let turned = Pose { rotation: turned, translation: Vector::ZERO };
                 *end = (known, Pose::new(xyz, rpy) * turned);

@@ -8,7 +8,8 @@ use crate::comparison::Difference;
 use crate::dynamics::Dynamics;
 use crate::frames::named_frames;
 use crate::geometry::{Pose, Rotation, Vector, decimal};
-use crate::import::{remarks, robot as robot_of};
+use crate::import::remarks::remarks;
+use crate::import::robot::robot as robot_of;
 use crate::robot_file;
 use crate::table::table;
 

@@ -1,14 +1,20 @@
 //! From a table to a URDF, so that any reader of URDF can be compared with rne.
 
+mod elements;
+mod friction;
+mod remarks;
+
 use std::error::Error;
 use std::fmt::{self, Write as _};
 
-use rne_model::{Coupling, Frame, Joint, Motor, Robot, exact_digits, one_line};
+use rne_model::{Coupling, Frame, Robot, exact_digits, one_line};
 
+use self::elements::{Names, comment, fixed, link, movable};
+use self::friction::Friction;
+use self::remarks::remarks;
 use crate::body::Body;
 use crate::chain::{Chain, ChainFrame, ChainJoint};
 use crate::conventions::of_robot;
-use crate::geometry::{Pose, rounded};
 use crate::scan::LARGEST;
 
 /// A robot as a URDF.
@@ -99,39 +105,10 @@ pub fn export(robot: &Robot) -> Result<Exported, NoUrdf> {
     let gravity = (chain.base.rotation * chain.gravity).to_f64().map(|g| if g.abs() < 1e-14 { 0.0 } else { g });
     let base = name_of_base(bare);
     let root = if chain.floating_base.is_some() { base } else { "world" };
-    let mut remarks = Vec::new();
-    let [x, y, z] = gravity;
-    if x != 0.0 || y != 0.0 || (z + 9.81).abs() > 1e-14 {
-        let [x, y, z] = gravity.map(exact_digits);
-        remarks.push(format!(
-            "gravity is [{x}, {y}, {z}] m/s² in the axes of `{root}`; if your program has another default, set this \
-             gravity: model.gravity.linear = np.array([{x}, {y}, {z}])"
-        ));
-    }
-    remarks.extend(of_motors(robot));
-    if !robot.contacts.is_empty() {
-        let names = robot.tip_names();
-        let contacts: Vec<&str> = robot.contacts.iter().map(|contact| names[contact.tip]).collect();
-        remarks.push(format!(
-            "the contacts at {} are left out: a URDF has no place for them, and has these tips as links",
-            contacts.join(", ")
-        ));
-    }
-    let without = chain.joints.iter().filter(|joint| joint.limits.effort.is_none() || joint.limits.velocity.is_none());
-    let without: Vec<&str> = without.map(|joint| joint.name.as_str()).collect();
-    if !without.is_empty() {
-        let joints = if without.len() == chain.joints.len() { "all joints".to_owned() } else { without.join(", ") };
-        remarks.push(format!(
-            "the robot file has no limit of effort or velocity for {joints}; a URDF must have both, so the missing \
-             ones are 0, which some programs take for a joint that cannot move"
-        ));
-    }
+    let remarks = remarks(robot, &chain, gravity, root);
     let mut text = String::from("<?xml version=\"1.0\"?>\n");
-    if let Some(title) = &robot.title {
-        let _ = writeln!(text, "<!-- {} -->", comment(title));
-    }
-    for remark in &remarks {
-        let _ = writeln!(text, "<!-- {} -->", comment(remark));
+    for words in robot.title.iter().chain(&remarks) {
+        let _ = writeln!(text, "<!-- {} -->", comment(words));
     }
     let _ = writeln!(text, "<robot name=\"{}\">", robot.name);
     if let Some(body) = &chain.floating_base {
@@ -239,163 +216,4 @@ fn refuse_too_large(chain: &Chain) -> Result<(), NoUrdf> {
         }
     }
     Ok(())
-}
-
-/// The numbers of motors that a URDF cannot hold.
-fn of_motors(robot: &Robot) -> Vec<String> {
-    let mut remarks = Vec::new();
-    let motors = || robot.joints.iter().filter_map(|joint| Some((one_line(&joint.name), joint.motor?)));
-    if motors().any(|(_, motor)| motor.inertia != 0.0 || motor.gear_ratio != 1.0) {
-        let and =
-            if motors().any(|(_, motor)| Friction::of(&motor).is_some()) { ", except their friction" } else { "" };
-        remarks.push(format!("motors are left out{and}: a URDF has no place for gears and rotors"));
-    }
-    if !robot.drives.is_empty() {
-        let names: Vec<String> = robot.drives.iter().map(|drive| one_line(&drive.name)).collect();
-        remarks.push(format!(
-            "these motors of the list `motors` are left out, with their rotors: {}; a URDF has no place for motors \
-             that turn with several joints, and for rotors that spin on a link",
-            names.join(", ")
-        ));
-    }
-    let named = |is_so: fn(&Motor) -> bool| {
-        let names: Vec<String> = motors().filter(|(_, motor)| is_so(motor)).map(|(name, _)| name).collect();
-        (!names.is_empty()).then(|| names.join(", "))
-    };
-    if let Some(names) = named(|motor| motor.coulomb[0] != -motor.coulomb[1]) {
-        remarks.push(format!(
-            "Coulomb friction that differs with the direction is written as its mean, because a URDF has only one \
-             value: {names}"
-        ));
-    }
-    let has_transition = |joint: &&Joint| joint.coulomb_width.is_some() || joint.coulomb_displacement.is_some();
-    let transitions: Vec<String> =
-        robot.joints.iter().filter(has_transition).map(|joint| one_line(&joint.name)).collect();
-    if !transitions.is_empty() {
-        remarks.push(format!(
-            "how Coulomb friction changes its sign, `coulomb_width` and `coulomb_displacement`, is left out, because \
-             in a URDF the friction jumps: {}",
-            transitions.join(", ")
-        ));
-    }
-    if let Some(names) = named(|motor| Friction::at_joint(motor).is_none()) {
-        remarks.push(format!(
-            "the friction of these joints is left out, because it is too large for a 64-bit float: {names}"
-        ));
-    }
-    remarks
-}
-
-/// The friction of a joint as a URDF has it.
-struct Friction {
-    /// N m s/rad or N s/m.
-    damping: f64,
-    /// N m or N.
-    friction: f64,
-}
-
-impl Friction {
-    /// Through the gear: G² B and |G| Tc, of the mean Tc of both directions; `None` where that overflows.
-    fn at_joint(motor: &Motor) -> Option<Self> {
-        let Motor { gear_ratio, viscous, coulomb: [positive, negative], .. } = *motor;
-        let mean = 0.5 * positive - 0.5 * negative;
-        let (damping, friction) = (gear_ratio * gear_ratio * viscous, gear_ratio.abs() * mean);
-        (damping.is_finite() && friction.is_finite()).then_some(Self { damping, friction })
-    }
-
-    /// The value, where it exists.
-    fn of(motor: &Motor) -> Option<Self> {
-        Self::at_joint(motor).filter(|at_joint| at_joint.damping != 0.0 || at_joint.friction != 0.0)
-    }
-}
-
-/// The names of joints that are taken.
-#[derive(Default)]
-struct Names(Vec<String>);
-
-impl Names {
-    /// The name of a joint as an attribute; that of another fixed joint gets a stroke.
-    fn unique(&mut self, name: &str) -> String {
-        let mut name = one_line(name);
-        while matches!(name.as_str(), "world_to_base" | "to_tip") || self.0.contains(&name) {
-            name.push('\'');
-        }
-        self.0.push(name.clone());
-        quick_xml::escape::escape(name.as_str()).into_owned()
-    }
-}
-
-/// Text for a comment of XML, which must not contain `--`.
-fn comment(text: &str) -> String {
-    let mut text = one_line(text);
-    while text.contains("--") {
-        text = text.replace("--", "- -");
-    }
-    let end = if text.ends_with('-') { " " } else { "" };
-    text + end
-}
-
-fn vector(values: [f64; 3]) -> String {
-    values.map(exact_digits).join(" ")
-}
-
-fn origin(pose: Pose) -> String {
-    let size = pose.translation.to_f64().into_iter().map(f64::abs).fold(1.0, f64::max);
-    format!("<origin xyz=\"{}\" rpy=\"{}\"/>", vector(pose.translation.rounded(size)), vector(pose.rotation.to_rpy()))
-}
-
-fn fixed(text: &mut String, name: &str, (parent, child): (&str, &str), pose: Pose) {
-    let _ = writeln!(
-        text,
-        "  <joint name=\"{name}\" type=\"fixed\">\n    <parent link=\"{parent}\"/>\n    <child link=\"{child}\"/>\n    \
-         {}\n  </joint>",
-        origin(pose)
-    );
-}
-
-fn movable(text: &mut String, name: &str, joint: &ChainJoint, (parent, child): (&str, &str), mimic: &str) {
-    let limits = joint.limits;
-    let kind = match (joint.is_prismatic, limits.position) {
-        (true, _) => "prismatic",
-        (false, Some(_)) => "revolute",
-        (false, None) => "continuous",
-    };
-    let (lower, upper) = limits.position.unwrap_or(if joint.is_prismatic { (-1e9, 1e9) } else { (0.0, 0.0) });
-    let position = if kind == "continuous" {
-        String::new()
-    } else {
-        format!("lower=\"{}\" upper=\"{}\" ", exact_digits(lower), exact_digits(upper))
-    };
-    let dynamics = joint.motor.as_ref().and_then(Friction::of).map_or_else(String::new, |at_joint| {
-        let [damping, friction] = [at_joint.damping, at_joint.friction].map(exact_digits);
-        format!("    <dynamics damping=\"{damping}\" friction=\"{friction}\"/>\n")
-    });
-    let _ = writeln!(
-        text,
-        "  <joint name=\"{name}\" type=\"{kind}\">\n    <parent link=\"{parent}\"/>\n    \
-         <child link=\"{child}\"/>\n    {}\n    <axis xyz=\"0 0 1\"/>\n    \
-         <limit {position}effort=\"{}\" velocity=\"{}\"/>\n{dynamics}{mimic}  </joint>",
-        origin(joint.place),
-        exact_digits(limits.effort.unwrap_or(0.0)),
-        exact_digits(limits.velocity.unwrap_or(0.0))
-    );
-}
-
-fn link(text: &mut String, name: &str, body: &Body) {
-    let link = body.to_link();
-    let i = link.inertia;
-    let _ = writeln!(
-        text,
-        "  <link name=\"{name}\">\n    <inertial>\n      <origin xyz=\"{}\" rpy=\"0 0 0\"/>\n      \
-         <mass value=\"{}\"/>\n      <inertia ixx=\"{}\" ixy=\"{}\" ixz=\"{}\" \
-         iyy=\"{}\" iyz=\"{}\" izz=\"{}\"/>\n    </inertial>\n  </link>",
-        vector(link.com),
-        exact_digits(rounded(body.mass, 1.0)),
-        exact_digits(i.xx),
-        exact_digits(i.xy),
-        exact_digits(i.xz),
-        exact_digits(i.yy),
-        exact_digits(i.yz),
-        exact_digits(i.zz)
-    );
 }

@@ -53,15 +53,7 @@ impl Urdf {
             root.get(key).map_or(Ok(Vec::new()), |node| self.words(node, start, key))
         };
         let whole = start..start;
-        if let Content::Mapping(entries) = &root.content {
-            for entry in entries.iter().filter(|entry| !KEYS.contains(&entry.key.as_str())) {
-                let span = start + entry.key_span.start..start + entry.key_span.end;
-                if let Some(meant) = did_you_mean(&entry.key, KEYS) {
-                    let message = format!("there is no key {}", quoted(&entry.key));
-                    return Err(self.source.error(&span, message, format!("did you mean `{meant}`?")));
-                }
-            }
-        }
+        self.refuse_slips(&root, start)?;
         let Some(pairs) = root.get(LOOPS) else {
             let help = format!("write the two ends of each loop: `{LOOPS}: [[A, B]]`");
             return Err(self.source.error(&whole, format!("the file has no key `{LOOPS}`"), help));
@@ -73,11 +65,33 @@ impl Urdf {
         self.equally_long(("joint_name", changed.len()), ("joint_type", changes.len()), &span_of(&changes, &whole))?;
 
         // the types of joints first: the ends of loops may be links that these joints move
-        let mut remarked = Vec::new();
-        for (joint, kind) in changed.iter().zip(&changes) {
+        self.change_types(&changed, &changes)?;
+        self.choose_motors(&motors)?;
+        for (index, (ends, kind)) in pairs.iter().zip(&types).enumerate() {
+            self.close_loop(format!("loop{}", index + 1), ends, kind)?;
+        }
+        self.remarks.push(format!("the closed loops are those of {}", quoted(file_name(name))));
+        Ok(())
+    }
+
+    /// Refuses a key that looks like a slip of one that is read.
+    fn refuse_slips(&self, root: &Node, start: usize) -> Result<(), Report> {
+        let Content::Mapping(entries) = &root.content else { return Ok(()) };
+        for entry in entries.iter().filter(|entry| !KEYS.contains(&entry.key.as_str())) {
+            let span = start + entry.key_span.start..start + entry.key_span.end;
+            if let Some(meant) = did_you_mean(&entry.key, KEYS) {
+                let message = format!("there is no key {}", quoted(&entry.key));
+                return Err(self.source.error(&span, message, format!("did you mean `{meant}`?")));
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes revolute joints of joints that are really spherical or universal, as their types say.
+    fn change_types(&mut self, joints: &[Word], types: &[Word]) -> Result<(), Report> {
+        for (joint, kind) in joints.iter().zip(types) {
             let axes = self.axes(kind)?;
             let index = self.named_joint(joint)?;
-            remarked.push(joint.text.clone());
             let of = &self.joints[index];
             if !of.kind.has_one_freedom() {
                 let message = format!("the joint {} is {} in the URDF", quoted(&of.name), of.kind.name());
@@ -87,43 +101,49 @@ impl Urdf {
             let source = self.source.clone();
             self.split(index, &axes, (&source, &joint.span))?;
         }
-        if !remarked.is_empty() {
-            let joints = names(remarked);
+        if !joints.is_empty() {
+            let joints = names(joints.iter().map(|joint| &joint.text));
             self.remarks.push(format!(
                 "these joints become one revolute joint for each axis, without limits, as `joint_type` says: {joints}"
             ));
         }
+        Ok(())
+    }
+
+    /// Says of every joint whether it has a motor, where the file names motors.
+    fn choose_motors(&mut self, motors: &[Word]) -> Result<(), Report> {
         let with_motors: Vec<usize> = motors.iter().map(|motor| self.named_joint(motor)).collect::<Result<_, _>>()?;
         if !motors.is_empty() {
             for (index, joint) in self.joints.iter_mut().enumerate() {
                 joint.has_motor = Some(with_motors.contains(&index));
             }
         }
-        for (index, ([one, other], kind)) in pairs.iter().zip(&types).enumerate() {
-            let cut = match kind.text.to_ascii_lowercase().as_str() {
-                "6d" => Cut::Weld,
-                "3d" => Cut::Spherical,
-                _ => {
-                    let message = format!("the type of a loop is {}; it must be `6d` or `3d`", quoted(&kind.text));
-                    let help = "6d: the two frames are one; 3d: their origins are one";
-                    return Err(self.source.error(&kind.span, message, help));
-                }
-            };
-            let end = |word: &Word| {
-                let link = self.link_or_moved(&word.text).ok_or_else(|| {
-                    let message =
-                        format!("the loop names {}, which is no link and no joint of the URDF", quoted(&word.text));
-                    self.source.error(&word.span, message, None)
-                })?;
-                Ok((link, Pose::identity()))
-            };
-            let ends = [end(one)?, end(other)?];
-            let span = one.span.start..other.span.end.max(one.span.end);
-            let source = self.source.clone();
-            self.add_loop(Loop { name: format!("loop{}", index + 1), span, cut, ends }, &source)?;
-        }
-        self.remarks.push(format!("the closed loops are those of {}", quoted(file_name(name))));
         Ok(())
+    }
+
+    /// Closes a loop between two links, each of which is named by itself or by the joint that moves it.
+    fn close_loop(&mut self, name: String, [one, other]: &[Word; 2], kind: &Word) -> Result<(), Report> {
+        let cut = match kind.text.to_ascii_lowercase().as_str() {
+            "6d" => Cut::Weld,
+            "3d" => Cut::Spherical,
+            _ => {
+                let message = format!("the type of a loop is {}; it must be `6d` or `3d`", quoted(&kind.text));
+                let help = "6d: the two frames are one; 3d: their origins are one";
+                return Err(self.source.error(&kind.span, message, help));
+            }
+        };
+        let end = |word: &Word| {
+            let link = self.link_or_moved(&word.text).ok_or_else(|| {
+                let message =
+                    format!("the loop names {}, which is no link and no joint of the URDF", quoted(&word.text));
+                self.source.error(&word.span, message, None)
+            })?;
+            Ok((link, Pose::identity()))
+        };
+        let ends = [end(one)?, end(other)?];
+        let span = one.span.start..other.span.end.max(one.span.end);
+        let source = self.source.clone();
+        self.add_loop(Loop { name, span, cut, ends }, &source)
     }
 
     fn equally_long(

@@ -25,10 +25,7 @@ pub(crate) fn as_identifiers(frames: Vec<ChainFrame>, robot: &Robot) -> Vec<Chai
     let is_reserved = |name: &str| is_base(name) || robot.joints.iter().any(|joint| joint.name == name);
     let mut taken = BTreeSet::new();
     let named = |frame: ChainFrame| {
-        let mut name: String = frame.name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-        if !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
-            name.insert_str(0, "frame_");
-        }
+        let mut name = as_identifier(&frame.name, "frame_");
         if is_reserved(&name) {
             name.push_str("_frame");
         }
@@ -41,6 +38,12 @@ pub(crate) fn as_identifiers(frames: Vec<ChainFrame>, robot: &Robot) -> Vec<Chai
         ChainFrame { name, ..frame }
     };
     frames.into_iter().map(named).collect()
+}
+
+/// The name of a link as an identifier; `prefix` stands before one that begins with no letter.
+pub(crate) fn as_identifier(name: &str, prefix: &str) -> String {
+    let name: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    if name.starts_with(|c: char| c.is_ascii_alphabetic()) { name } else { format!("{prefix}{name}") }
 }
 
 /// A placement of the robot file.

@@ -1,24 +1,24 @@
 //! From a URDF to a robot file, with an account of what was done.
 
-use std::collections::BTreeSet;
+pub(crate) mod remarks;
+pub(crate) mod robot;
+
 use std::ops::Range;
 
-use rne_model::{
-    Angle, Bodies, ClosedLoops, Convention, FixedFrame, FloatingBase, Inertia, InertiaReference, Joint, JointKind,
-    Link, Reader, Remedy, Report, Robot, Row, RunTime, Transform,
-};
+use rne_model::{Convention, FloatingBase, Inertia, Link, Reader, Remedy, Report, Robot, one_line};
 
+use self::remarks::{SNAPPED, base_remark, notes, snapping};
+use self::robot::{identifier, robot, title};
 use crate::chain::{Chain, Extracted, extract};
 use crate::comparison::Difference;
 use crate::dynamics::Dynamics;
-use crate::frames::{as_identifiers, named_frames, transform};
-use crate::geometry::Pose;
+use crate::frames::{as_identifier, as_identifiers, named_frames, transform};
 use crate::remark::Remark;
 use crate::robot_file;
 use crate::selection::Selection;
 use crate::snap::Snapped;
-use crate::source::{names, quoted, some};
-use crate::table::{FAR, NEARLY_PARALLEL, Table, table, tree_table};
+use crate::source::{names, quoted};
+use crate::table::{Table, table, tree_table};
 use crate::urdf::Urdf;
 
 /// Options of the conversion from a URDF to a table.
@@ -118,14 +118,6 @@ impl Account {
     }
 }
 
-/// The words before the number of snapped angles in the notes of a robot file.
-const SNAPPED: &str = "angles snapped to multiples of pi/12: ";
-
-fn snapping(snapped: &[Snapped], Difference { position, torque, .. }: &Difference) -> String {
-    let count = snapped.len();
-    format!("{SNAPPED}{count}; torques move by up to {torque:.1e} of the largest, the tip by {position:.1e} m")
-}
-
 /// The note on snapped angles in the notes of a robot file that was imported; `None` where no angle was snapped.
 #[must_use]
 pub fn snapping_in(notes: &str) -> Option<&str> {
@@ -169,57 +161,17 @@ impl Urdf {
             return self.import(&options);
         }
         let gravity = self.gravity.unwrap_or(options.gravity);
-        let (chain, mut told) = extract(self, &options.selection, gravity, options.snap)?;
+        let (mut chain, mut told) = extract(self, &options.selection, gravity, options.snap)?;
         told.remarks.0.splice(0..0, self.remarks.0.iter().cloned());
-        // a serial arm on a floating base keeps the frame of that
-        let is_tree = !chain.is_serial() || chain.floating_base.is_some();
-        if is_tree && options.convention == Convention::Standard {
-            let message = "a tree is written with modified rows, which may begin at gamma and b";
-            let help = "choose the convention `modified`";
-            return Err(self.source.error(&(0..0), message, help));
-        }
-        if options.selection.whole && !is_tree && options.more_tips.is_empty() {
+        let table = self.table(options, &chain)?;
+        if options.selection.whole && chain.is_arm() && options.more_tips.is_empty() {
             let remark = "no link carries two joints, so the robot is a serial arm and its file has `format: 1`";
             told.remarks.push(remark.to_owned());
         }
-        let table = if is_tree { tree_table(&chain) } else { table(&chain, options.convention) };
         let mut robot = robot(&chain, &table, options.convention);
         self.close((&chain, &mut told), &table, &mut robot)?;
-        robot.name = options.name.clone().unwrap_or_else(|| identifier(&self.name));
-        robot.title = title(&self.name);
-        if let Some(base) = &mut robot.floating_base {
-            base.name = as_identifier(&told.base);
-            while robot.joints.iter().any(|joint| joint.name == base.name) {
-                base.name.push_str("_base");
-            }
-        }
-        let links: Vec<String> = chain.frames.iter().map(|frame| frame.name.clone()).collect();
-        let mut chain = Chain { frames: as_identifiers(chain.frames, &robot), ..chain };
-        let frames: Vec<_> = links.into_iter().zip(chain.frames.iter().map(|frame| frame.name.clone())).collect();
-        if options.frames {
-            robot.frames = named_frames(&chain, &table);
-            told.remarks.0.extend(base_remark(&told.base, &frames, transform(table.start)).map(Remark::from));
-        }
-        if !options.more_tips.is_empty() {
-            let tips = self.tips(options, &told.tip, &frames)?;
-            let all = named_frames(&chain, &table);
-            robot.frames = all.into_iter().filter(|frame| options.frames || tips.contains(&frame.name)).collect();
-            let place = |name: &String| robot.frames.iter().position(|frame| frame.name == *name);
-            robot.tips = tips.iter().filter_map(place).collect();
-            self.refuse_tips_on_base(&robot)?;
-            // those that the robot has are compared
-            chain.frames.retain(|frame| robot.frames.iter().any(|kept| kept.name == frame.name));
-        }
-        robot.source = format!(
-            "{}, {}; imported by rne {}",
-            printable(self.source.file_name()),
-            if options.selection.whole {
-                format!("everything after {}", printable(&told.base))
-            } else {
-                format!("from {} to {}", printable(&told.base), printable(&told.tip))
-            },
-            env!("CARGO_PKG_VERSION")
-        );
+        self.name_robot(&mut robot, options, &told);
+        let frames = self.take_frames((&mut chain, &mut told), &table, options, &mut robot)?;
         if !options.keep_unphysical {
             self.refuse_unphysical(&robot, &told)?;
         }
@@ -235,15 +187,9 @@ impl Urdf {
         let file = format!("{}, imported", self.source.file);
         let checked = Reader::new(&file).trees().couplings().loops().read(&text);
         let checked = checked.map_err(|report| self.joint_called_base().unwrap_or(report))?;
-        let rounding = Difference::of_table(&exact, &checked.robot);
         let joints = chain.joints.iter().map(|joint| joint.name.clone());
-        let mut all: Vec<Remark> = self.ignored(&told).into_iter().map(Remark::from).collect();
-        let numbers = [self.suspicious_numbers(), self.impossible_parts(&told)].concat();
-        all.append(&mut told.remarks.0);
-        all.extend(numbers.into_iter().map(Remark::warning));
-        all.extend(remarks(&robot, &table).into_iter().map(Remark::from).chain(rotors(&robot)));
         let account = Account {
-            remarks: all,
+            remarks: self.remarks_on(&mut told, &robot, &table),
             is_mjcf: self.gravity.is_some(),
             lumped: joints.zip(told.lumped).filter(|(_, links)| links.len() > 1).collect(),
             base: told.base,
@@ -254,10 +200,40 @@ impl Urdf {
             aside: told.aside,
             snapped: told.snapped,
             change,
-            rounding,
+            rounding: Difference::of_table(&exact, &checked.robot),
             lints: checked.lints,
         };
         Ok(Imported { robot: checked.robot, text, account })
+    }
+
+    /// The table of a chain. Only the modified convention has rows for a tree.
+    fn table(&self, options: &Options, chain: &Chain) -> Result<Table, Report> {
+        if chain.is_arm() {
+            return Ok(table(chain, options.convention));
+        }
+        if options.convention == Convention::Standard {
+            let message = "a tree is written with modified rows, which may begin at gamma and b";
+            let help = "choose the convention `modified`";
+            return Err(self.source.error(&(0..0), message, help));
+        }
+        Ok(tree_table(chain))
+    }
+
+    /// Gives the robot its name, its title and its source, and its floating base a name that no joint has.
+    fn name_robot(&self, robot: &mut Robot, options: &Options, told: &Extracted) {
+        robot.name = options.name.clone().unwrap_or_else(|| identifier(&self.name));
+        robot.title = title(&self.name);
+        if let Some(base) = &mut robot.floating_base {
+            base.name = as_identifier(&told.base, "base_");
+            while robot.joints.iter().any(|joint| joint.name == base.name) {
+                base.name.push_str("_base");
+            }
+        }
+        let [base, tip] = [&told.base, &told.tip].map(|link| one_line(link));
+        let links =
+            if options.selection.whole { format!("everything after {base}") } else { format!("from {base} to {tip}") };
+        let (file, version) = (one_line(self.source.file_name()), env!("CARGO_PKG_VERSION"));
+        robot.source = format!("{file}, {links}; imported by rne {version}");
     }
 
     /// The error for a joint with the name of frame 0, which other rows and frames of a robot file refer to.
@@ -265,6 +241,36 @@ impl Urdf {
         let joint = self.joints.iter().find(|joint| joint.name == "base")?;
         let message = "the joint `base` has the name that a robot file gives to frame 0";
         Some(self.source.error(&joint.span, message, "rename the joint, for instance `base_joint`"))
+    }
+
+    /// Gives the robot its named frames and its tips, and leaves the chain those that the robot has. Returns the links
+    /// and their names as frames.
+    fn take_frames(
+        &self,
+        (chain, told): (&mut Chain, &mut Extracted),
+        table: &Table,
+        options: &Options,
+        robot: &mut Robot,
+    ) -> Result<Vec<(String, String)>, Report> {
+        let links: Vec<String> = chain.frames.iter().map(|frame| frame.name.clone()).collect();
+        chain.frames = as_identifiers(std::mem::take(&mut chain.frames), robot);
+        let frames: Vec<_> = links.into_iter().zip(chain.frames.iter().map(|frame| frame.name.clone())).collect();
+        let all = named_frames(chain, table);
+        if !options.more_tips.is_empty() {
+            let tips = self.tips(options, &told.tip, &frames)?;
+            robot.frames = all.into_iter().filter(|frame| options.frames || tips.contains(&frame.name)).collect();
+            let place = |name: &String| robot.frames.iter().position(|frame| frame.name == *name);
+            robot.tips = tips.iter().filter_map(place).collect();
+            self.refuse_tips_on_base(robot)?;
+            // those that the robot has are compared
+            chain.frames.retain(|frame| robot.frames.iter().any(|kept| kept.name == frame.name));
+        } else if options.frames {
+            robot.frames = all;
+        }
+        if options.frames {
+            told.remarks.0.extend(base_remark(&told.base, &frames, transform(table.start)).map(Remark::from));
+        }
+        Ok(frames)
     }
 
     /// The frames of the tip `first` and of the other tips; `frames` has the links and their names as frames.
@@ -330,232 +336,4 @@ impl Urdf {
         let help = format!("correct the inertia{several}, or keep it");
         Err(self.source.error_with(span, message, help, &Remedy::KeepUnphysical))
     }
-}
-
-/// The robot of a chain and its table, without texts.
-pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Robot {
-    let start = chain.base * table.start;
-    let gravity = start.rotation.transpose() * (chain.base.rotation * chain.gravity);
-    let parts = chain.joints.iter().zip(&table.rows).zip(table.frames.iter().zip(&table.branches)).enumerate();
-    let joints = parts.map(|(index, ((joint, dh), (frame, &[gamma, b])))| {
-        let branch = (joint.parent != index.checked_sub(1) || [gamma, b] != [0.0; 2]).then(|| {
-            let rpy = [0.0, 0.0, gamma].map(Angle::new);
-            FixedFrame { on: joint.parent, placement: Transform { xyz: [0.0, 0.0, b], rpy } }
-        });
-        let link = joint.body.to_link_at(frame.inverse());
-        let kind = if joint.is_prismatic { JointKind::Prismatic } else { JointKind::Revolute };
-        Joint {
-            name: printable(&joint.name),
-            row: Row { kind, dh: *dh, link },
-            branch,
-            written_inertia: (
-                link.inertia,
-                if link.has_first_moment() { InertiaReference::Origin } else { InertiaReference::Com },
-            ),
-            limits: joint.limits,
-            motor: joint.motor,
-            coupling: joint.coupling.clone(),
-            coulomb_width: joint.coulomb_width,
-            coulomb_displacement: joint.coulomb_displacement,
-        }
-    });
-    Robot {
-        name: String::new(),
-        title: None,
-        source: String::new(),
-        notes: None,
-        convention,
-        gravity: gravity.rounded(10.0),
-        base: transform(start),
-        tool: transform(table.tool),
-        // the importer names it
-        floating_base: chain
-            .floating_base
-            .map(|body| FloatingBase { name: String::new(), link: body.to_link_at(Pose::identity()) }),
-        tip_on: Some(chain.tip_on).filter(|on| on + 1 != chain.joints.len()),
-        parameters: Vec::new(),
-        joints: joints.collect(),
-        drives: Vec::new(),
-        frames: Vec::new(),
-        tips: Vec::new(),
-        contacts: Vec::new(),
-        bodies: Bodies::default(),
-        at: None,
-        run_time: RunTime::default(),
-        closed: ClosedLoops::default(),
-        rotors: false,
-    }
-}
-
-/// The name of a link as that of a floating base.
-fn as_identifier(name: &str) -> String {
-    let name: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-    if name.starts_with(|c: char| c.is_ascii_alphabetic()) { name } else { format!("base_{name}") }
-}
-
-/// A name for a robot file.
-pub(crate) fn identifier(name: &str) -> String {
-    let mut identifier = String::new();
-    for c in name.chars().take(60) {
-        let c = c.to_ascii_lowercase();
-        if c.is_ascii_lowercase() || (c.is_ascii_digit() && !identifier.is_empty()) {
-            identifier.push(c);
-        } else if !identifier.is_empty() && !identifier.ends_with('_') {
-            identifier.push('_');
-        }
-    }
-    let identifier = identifier.trim_end_matches('_');
-    if identifier.is_empty() { "arm".to_owned() } else { identifier.to_owned() }
-}
-
-fn title(name: &str) -> Option<String> {
-    let title = printable(name).trim().to_owned();
-    (!title.is_empty()).then_some(title)
-}
-
-/// A text of the URDF in one of a robot file: one line, without control characters.
-fn printable(text: &str) -> String {
-    rne_model::one_line(text)
-}
-
-/// Notes for the reader of the robot file.
-fn notes(told: &Extracted, change: Option<&Difference>) -> Option<String> {
-    let mut notes = Vec::new();
-    for (joint, value) in &told.held {
-        notes.push(format!("- the joint {} is locked at {}", printable(joint), rne_model::exact_digits(*value)));
-    }
-    notes.extend(told.remarks.0.iter().map(|remark| format!("- {remark}")));
-    notes.extend(change.map(|change| format!("- {}", snapping(&told.snapped, change))));
-    (!notes.is_empty()).then(|| notes.join("\n"))
-}
-
-impl Urdf {
-    /// Unknown names in the chain, and beside the links and joints.
-    fn ignored(&self, told: &Extracted) -> Vec<String> {
-        let links = told.links.iter().map(|&link| &self.links[link].unknown);
-        let joints = told.joints.iter().map(|&joint| &self.joints[joint].unknown);
-        let kinds: BTreeSet<usize> = links.chain(joints).chain([&self.beside]).flatten().copied().collect();
-        if kinds.is_empty() {
-            return Vec::new();
-        }
-        let kinds = some(kinds.into_iter().map(|kind| self.unknown[kind].clone()));
-        vec![format!("the import ignores these parts, which it does not know: {kinds}")]
-    }
-
-    /// Origins that were probably meant in other units.
-    fn suspicious_numbers(&self) -> Vec<String> {
-        let joints = self.joints.iter().map(|joint| ("joint", &joint.name, joint.xyz, joint.rpy));
-        let links = self.links.iter().map(|link| ("the inertia of", &link.name, link.xyz, link.rpy));
-        let mut remarks = Vec::new();
-        for (what, name, xyz, rpy) in joints.chain(links) {
-            let name = printable(name);
-            if let Some(angle) = rpy.into_iter().find(|angle| angle.abs() > 2.0 * std::f64::consts::PI + 1e-6) {
-                let radians = angle.to_radians();
-                remarks.push(format!(
-                    "{what} {name} has the angle {angle} rad in its rpy, more than a turn: {angle}° is {radians:.4} rad"
-                ));
-            }
-            if let Some(length) = xyz.into_iter().find(|length| length.abs() > FAR) {
-                remarks.push(format!("{what} {name} has an origin that is {length} m away: lengths are in metres"));
-            }
-        }
-        remarks
-    }
-
-    /// Links with inertias that no body has, with the place of each. The robot file may hide them: it has one body of
-    /// links that are fixed to each other.
-    fn impossible_parts(&self, told: &Extracted) -> Vec<String> {
-        let links = told.lumped.iter().flatten().chain([&told.base]);
-        let links = links.filter_map(|name| self.links.iter().find(|link| link.name == *name));
-        let remark = |link: &crate::urdf::Link, [a, b, c]: [f64; 3]| {
-            let report = self.source.error(&link.span_of_inertia, "", None);
-            let place = report.diagnostics.first().map(|found| format!("line {}, column {}", found.line, found.column));
-            format!(
-                "no body can have the inertia of {} ({}): its largest principal moment is {c:.3e} kg m², the sum of \
-                 the two others is {:.3e} kg m²; is one number wrong by a power of ten?",
-                quoted(&link.name),
-                place.unwrap_or_default(),
-                a + b
-            )
-        };
-        links.filter_map(|link| Some(remark(link, link.inertia.impossible_moments()?))).collect()
-    }
-}
-
-/// Says which frame of the robot file is the base link, `link`, where it is not frame 0 by name and place. `start` is
-/// frame 0 in the axes of this link; `frames` has the links and their names as frames.
-fn base_remark(link: &str, frames: &[(String, String)], start: Transform) -> Option<String> {
-    let (_, name) = frames.iter().find(|(known, _)| known == link)?;
-    let is_frame_0 = start == Transform::IDENTITY;
-    if is_frame_0 && name == link {
-        return None;
-    }
-    let place = if is_frame_0 {
-        "which is at the same place".to_owned()
-    } else {
-        let [x, y, z] = start.xyz.map(|x| format!("{x:.6}").trim_end_matches('0').trim_end_matches('.').to_owned());
-        let turned = if start.rpy == Transform::IDENTITY.rpy { "" } else { " and is turned against it" };
-        format!("which is at [{x}, {y}, {z}] m in the axes of this link{turned}")
-    };
-    Some(format!(
-        "the base link {} of the file is the frame {}; `base` in a robot file is frame 0 of the table, {place}",
-        quoted(link),
-        quoted(name)
-    ))
-}
-
-/// A remark on the rotors, which belong to the arm only on request.
-fn rotors(robot: &Robot) -> Option<Remark> {
-    let has_rotor = |joint: &&Joint| joint.motor.is_some_and(|motor| motor.inertia != 0.0);
-    let joints: Vec<&str> = robot.joints.iter().filter(has_rotor).map(|joint| joint.name.as_str()).collect();
-    let (count, s) = (joints.len(), if joints.len() == 1 { " has" } else { "s have" });
-    let text = || format!("{count} joint{s} the inertia of a rotor (`armature` of MJCF): {}", names(&joints));
-    (count > 0).then(|| Remark::from(text()).remedy(Remedy::Rotors))
-}
-
-/// Remarks on a table.
-pub(crate) fn remarks(robot: &Robot, table: &Table) -> Vec<String> {
-    let mut remarks = Vec::new();
-    for ([first, second], tilt) in &table.levelled {
-        let pair = if *first > robot.dof() {
-            format!("z of the base and the axis of joint {second}")
-        } else {
-            format!("the axes of joints {first} and {second}")
-        };
-        remarks.push(format!(
-            "{pair} are {tilt:.1e} rad off parallel, and rne takes them as parallel: their common normal is too far \
-             away for a table"
-        ));
-    }
-    for (index, row) in robot.rows().enumerate() {
-        if row.dh.d.abs() > FAR || row.dh.a.abs() > FAR {
-            let (row, d, a, tilt) = (index + 1, row.dh.d, row.dh.a, row.dh.alpha.sin.abs());
-            let is_nearly_parallel = tilt != 0.0 && tilt < NEARLY_PARALLEL;
-            let why = if is_nearly_parallel {
-                ", because two axes are nearly parallel; so large numbers lose digits"
-            } else {
-                ""
-            };
-            remarks.push(format!("row {row} has d = {d:.0} m and a = {a:.0} m{why}"));
-        }
-    }
-    for (row, joint) in robot.joints.iter().enumerate() {
-        let distance = joint.row.link.com.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if distance > FAR {
-            remarks.push(format!(
-                "the centre of mass of link {} is {distance:.0} m from the origin of its link frame: single precision \
-                 loses digits there, most of all in code of the form `seven_steps`; a joint with the key `at` (format \
-                 2) needs no such frame",
-                row + 1
-            ));
-        }
-    }
-    let has_mass = |joint: &Joint| {
-        let link = joint.row.link;
-        link.mass != 0.0 || link.inertia != Inertia::default() || link.has_first_moment()
-    };
-    if !robot.joints.iter().any(has_mass) {
-        remarks.push("no link has mass: the file has no inertial data".to_owned());
-    }
-    remarks
 }

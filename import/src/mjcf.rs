@@ -12,6 +12,7 @@ mod element;
 mod equality;
 mod geom;
 mod inertial;
+mod joint;
 mod settings;
 
 use std::collections::BTreeMap;

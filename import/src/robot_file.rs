@@ -56,28 +56,52 @@ pub fn write(robot: &Robot) -> String {
     if robot.base != Transform::IDENTITY {
         noted(&mut text, &format!("base: {}", transform(&robot.base)), "m, rad");
     }
-    if let Some(FloatingBase { name, link: link @ Link { mass, com, inertia: tensor, .. } }) = &robot.floating_base {
-        let _ = writeln!(text, "floating_base:\n  name: {name}\n  link:");
-        noted(&mut text, &format!("    mass: {}", exact_digits(*mass)), "kg");
-        noted(&mut text, &format!("    com: {}", list(com)), "m");
-        if *tensor != Inertia::default() {
-            noted(&mut text, &format!("    inertia: {}", inertia(tensor)), "kg m²");
-        }
-        if !link.is_physical(tensor) {
-            text.push_str("    physical: false\n");
-        }
+    if let Some(base) = &robot.floating_base {
+        write_floating_base(&mut text, base);
     }
+    write_frames(&mut text, robot);
+    for Body { name, .. } in &robot.bodies.list {
+        let _ = writeln!(text, "# the body {name} is a part of its link");
+    }
+    text.push_str("joints:\n");
+    for index in 0..robot.joints.len() {
+        if index > 0 {
+            text.push('\n');
+        }
+        write_joint(&mut text, robot, index);
+    }
+    write_couplings(&mut text, robot);
+    write_loops(&mut text, robot);
+    write_drives(&mut text, robot);
+    text
+}
+
+fn write_floating_base(text: &mut String, FloatingBase { name, link }: &FloatingBase) {
+    let Link { mass, com, inertia: tensor, .. } = link;
+    let _ = writeln!(text, "floating_base:\n  name: {name}\n  link:");
+    noted(text, &format!("    mass: {}", exact_digits(*mass)), "kg");
+    noted(text, &format!("    com: {}", list(com)), "m");
+    if *tensor != Inertia::default() {
+        noted(text, &format!("    inertia: {}", inertia(tensor)), "kg m²");
+    }
+    if !link.is_physical(tensor) {
+        text.push_str("    physical: false\n");
+    }
+}
+
+/// The tip frame, the other frames, and those that carry wrenches or touch something.
+fn write_frames(text: &mut String, robot: &Robot) {
     if let (false, Some(on)) = (robot.is_serial(), robot.tip().on) {
         let on = scalar(&robot.joints[on].name);
-        noted(&mut text, &format!("tool: {{on: {on}{}}}", place(&robot.tool)), "m, rad");
+        noted(text, &format!("tool: {{on: {on}{}}}", place(&robot.tool)), "m, rad");
     } else if robot.tool != Transform::IDENTITY {
-        noted(&mut text, &format!("tool: {}", transform(&robot.tool)), "m, rad");
+        noted(text, &format!("tool: {}", transform(&robot.tool)), "m, rad");
     }
     if !robot.frames.is_empty() {
-        noted(&mut text, "frames:", "m, rad");
+        noted(text, "frames:", "m, rad");
     }
     for Frame { name, fixed: FixedFrame { on, placement } } in &robot.frames {
-        let on = on.map_or_else(|| "base".to_owned(), |joint| scalar(&robot.joints[joint].name));
+        let on = carrier(robot, *on);
         let _ = writeln!(text, "  - {{name: {name}, on: {on}{}}}", place(placement));
     }
     if !robot.tips.is_empty() {
@@ -89,52 +113,57 @@ pub fn write(robot: &Robot) -> String {
         let contacts = robot.contacts.iter().map(contact).collect::<Vec<_>>();
         let _ = writeln!(text, "contacts: [{}]", contacts.join(", "));
     }
-    for Body { name, .. } in &robot.bodies.list {
-        let _ = writeln!(text, "# the body {name} is a part of its link");
-    }
-    text.push_str("joints:\n");
-    for index in 0..robot.joints.len() {
-        if index > 0 {
-            text.push('\n');
-        }
-        write_joint(&mut text, robot, index);
-    }
-    let ratio =
-        |&(joint, ratio): &(usize, f64)| format!("{}: {}", scalar(&robot.joints[joint].name), exact_digits(ratio));
-    let ratios = |of_joints: &[(usize, f64)]| of_joints.iter().map(ratio).collect::<Vec<_>>().join(", ");
+}
+
+fn write_couplings(text: &mut String, robot: &Robot) {
     if robot.has_couplings() {
         text.push_str("\ncouplings:\n");
     }
     for Joint { name, coupling, .. } in &robot.joints {
         let Some(Coupling { follows, offset }) = coupling else { continue };
-        let follows = ratios(follows);
+        let follows = ratios(robot, follows);
         let offset = if *offset == 0.0 { String::new() } else { format!(", offset: {}", exact_digits(*offset)) };
         let _ = writeln!(text, "  - {{joint: {}, follows: {{{follows}}}{offset}}}", scalar(name));
     }
+}
+
+fn write_loops(text: &mut String, robot: &Robot) {
     if !robot.closed.is_empty() {
         text.push_str("\nloops:\n");
     }
     for ClosedLoop { name, cut, between, dependent } in &robot.closed.loops {
-        let [one, other] = between.map(|FixedFrame { on, placement }| {
-            let on = on.map_or_else(|| "base".to_owned(), |joint| scalar(&robot.joints[joint].name));
-            format!("{{on: {on}{}}}", place(&placement))
-        });
+        let [one, other] =
+            between.map(|FixedFrame { on, placement }| format!("{{on: {}{}}}", carrier(robot, on), place(&placement)));
         let dependent = dependent.iter().map(|&joint| scalar(&robot.joints[joint].name)).collect::<Vec<_>>();
         let _ = writeln!(text, "  - name: {}\n    cut: {}", scalar(name), cut.name());
-        noted(&mut text, &format!("    between: [{one}, {other}]"), "m, rad");
+        noted(text, &format!("    between: [{one}, {other}]"), "m, rad");
         let _ = writeln!(text, "    dependent: [{}]", dependent.join(", "));
     }
+}
+
+fn write_drives(text: &mut String, robot: &Robot) {
     if !robot.drives.is_empty() {
         text.push_str("\nmotors:\n");
     }
     for Drive { name, turns, rotor } in &robot.drives {
         let rotor = rotor.map_or_else(String::new, |Rotor { axis, on, inertia }| {
-            let on = on.map_or_else(|| "base".to_owned(), |joint| scalar(&robot.joints[joint].name));
+            let on = carrier(robot, on);
             format!(", rotor: {{axis: {}, on: {on}, inertia: {}}}", list(&axis), exact_digits(inertia))
         });
-        let _ = writeln!(text, "  - {{name: {}, turns: {{{}}}{rotor}}}", scalar(name), ratios(turns));
+        let _ = writeln!(text, "  - {{name: {}, turns: {{{}}}{rotor}}}", scalar(name), ratios(robot, turns));
     }
-    text
+}
+
+/// The name of the joint whose link carries something; `base` where frame 0 does.
+fn carrier(robot: &Robot, on: Option<usize>) -> String {
+    on.map_or_else(|| "base".to_owned(), |joint| scalar(&robot.joints[joint].name))
+}
+
+/// The entries of a mapping from joints to ratios.
+fn ratios(robot: &Robot, of_joints: &[(usize, f64)]) -> String {
+    let ratio =
+        |&(joint, ratio): &(usize, f64)| format!("{}: {}", scalar(&robot.joints[joint].name), exact_digits(ratio));
+    of_joints.iter().map(ratio).collect::<Vec<_>>().join(", ")
 }
 
 /// Writes a line with its units after it.
@@ -142,24 +171,21 @@ fn noted(text: &mut String, line: &str, units: &str) {
     let _ = writeln!(text, "{line}   # {units}");
 }
 
+/// Writes a line without its units, which the first joint has.
+fn unnoted(text: &mut String, line: &str, _units: &str) {
+    let _ = writeln!(text, "{line}");
+}
+
 /// One block of the list; the first one with units.
 fn write_joint(text: &mut String, robot: &Robot, index: usize) {
-    let (joint, is_first) = (&robot.joints[index], index == 0);
+    let joint = &robot.joints[index];
     let Joint { name, row, limits, motor, .. } = joint;
     let is_revolute = row.kind == JointKind::Revolute;
-    let line = |text: &mut String, line: String, units: &str| {
-        if is_first {
-            noted(text, &line, units);
-        } else {
-            text.push_str(&line);
-            text.push('\n');
-        }
-    };
+    let line = if index == 0 { noted } else { unnoted };
     let kind = if is_revolute { "revolute" } else { "prismatic" };
     let _ = writeln!(text, "  - name: {}", scalar(name));
     if robot.parent(index) != index.checked_sub(1) {
-        let parent = robot.parent(index).map_or_else(|| "base".to_owned(), |parent| scalar(&robot.joints[parent].name));
-        let _ = writeln!(text, "    parent: {parent}");
+        let _ = writeln!(text, "    parent: {}", carrier(robot, robot.parent(index)));
     }
     let _ = writeln!(text, "    type: {kind}");
     let mut beginning = String::new();
@@ -179,20 +205,32 @@ fn write_joint(text: &mut String, robot: &Robot, index: usize) {
         exact_digits(dh.a),
         angle(dh.alpha.radians)
     );
-    line(text, dh, "rad, m");
+    line(text, &dh, "rad, m");
+    write_link(text, joint, line);
+    if *limits != Limits::default() {
+        let units = if is_revolute { "rad, rad/s, N m" } else { "m, m/s, N" };
+        line(text, &format!("    limits: {}", limited(limits, is_revolute)), units);
+    }
+    if let Some(motor) = motor {
+        let _ = writeln!(text, "    motor: {}", motor_text(motor, joint));
+    }
+}
+
+/// The link of a joint, if it is not empty.
+fn write_link(text: &mut String, joint: &Joint, line: fn(&mut String, &str, &str)) {
     let (written, about) = joint.written_inertia;
-    let Link { mass, com, first_moment, .. } = row.link;
-    if row.link != Link::default() || written != Inertia::default() || about != InertiaReference::Com {
+    let Link { mass, com, first_moment, .. } = joint.row.link;
+    if joint.row.link != Link::default() || written != Inertia::default() || about != InertiaReference::Com {
         text.push_str("    link:\n");
-        line(text, format!("      mass: {}", exact_digits(mass)), "kg");
+        line(text, &format!("      mass: {}", exact_digits(mass)), "kg");
         if com != [0.0; 3] {
-            line(text, format!("      com: {}", list(&com)), "m");
+            line(text, &format!("      com: {}", list(&com)), "m");
         }
-        if row.link.has_first_moment() {
-            line(text, format!("      first_moment: {}", list(&first_moment)), "kg m");
+        if joint.row.link.has_first_moment() {
+            line(text, &format!("      first_moment: {}", list(&first_moment)), "kg m");
         }
         if written != Inertia::default() {
-            line(text, format!("      inertia: {}", inertia(&written)), "kg m²");
+            line(text, &format!("      inertia: {}", inertia(&written)), "kg m²");
         }
         if about == InertiaReference::Origin {
             text.push_str("      inertia_about: origin\n");
@@ -200,13 +238,6 @@ fn write_joint(text: &mut String, robot: &Robot, index: usize) {
         if !joint.is_physical() {
             text.push_str("      physical: false\n");
         }
-    }
-    if *limits != Limits::default() {
-        let units = if is_revolute { "rad, rad/s, N m" } else { "m, m/s, N" };
-        line(text, format!("    limits: {}", limited(limits, is_revolute)), units);
-    }
-    if let Some(motor) = motor {
-        let _ = writeln!(text, "    motor: {}", motor_text(motor, joint));
     }
 }
 

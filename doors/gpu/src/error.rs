@@ -113,16 +113,7 @@ impl fmt::Display for GpuError {
                  The driver says: {log}"
             ),
             Self::Call { call, number, name, meaning } => {
-                write!(f, "the driver's call {call} failed with error {number}, {name}: {meaning}")?;
-                if name == "CUDA_ERROR_ILLEGAL_ADDRESS" {
-                    f.write_str(
-                        ". A kernel that was launched before read or wrote outside of its arrays; the context can no \
-                         longer be used, start the program again",
-                    )?;
-                } else if name.contains("STREAM_CAPTURE") {
-                    f.write_str(". Prepare the function before the capture of a graph begins")?;
-                }
-                Ok(())
+                write!(f, "the driver's call {call} failed with error {number}, {name}: {meaning}{}", advice(name))
             }
             Self::Function(error) => error.fmt(f),
             Self::Constant(words) => f.write_str(words),
@@ -158,5 +149,17 @@ impl Error for GpuError {
             Self::Function(error) => Some(error),
             _ => None,
         }
+    }
+}
+
+/// What to do about an error of a call of the driver.
+fn advice(name: &str) -> &'static str {
+    match name {
+        "CUDA_ERROR_ILLEGAL_ADDRESS" => {
+            ". A kernel that was launched before read or wrote outside of its arrays; the context can no \
+             longer be used, start the program again"
+        }
+        name if name.contains("STREAM_CAPTURE") => ". Prepare the function before the capture of a graph begins",
+        _ => "",
     }
 }

@@ -1,148 +1,26 @@
 //! numpy's arrays as the arguments and results of the machine.
 
+mod given;
+mod memory;
+
 use std::ops::Range;
 
-use numpy::{BorrowError, Element, PyArray1, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods};
-use numpy::{PyReadonlyArrayDyn, PyReadwriteArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use numpy::{Element, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
-use pyo3::types::{PyDict, PyFloat, PyList, PyTuple, PyType};
+use pyo3::types::PyTuple;
 use rne::Pose;
 use rne::compiled::{Array, Number};
 
+pub(crate) use self::given::{Axes, Given, Value, are_single};
+use self::memory::is_arrow;
+pub(crate) use self::memory::{
+    array_of, in_order, is_array, memory, readable, refuse_masked, room, shape_of, taken, writable,
+};
 use crate::pose::pose_of;
-
-/// An argument: its name, the arrays of three that it is made of if it is no array of its own, how many elements it has
-/// for a state, how they stand in an array, and what was given.
-pub(crate) struct Given<'py> {
-    pub(crate) name: &'static str,
-    pub(crate) parts: &'static [&'static str],
-    pub(crate) elements: usize,
-    pub(crate) axes: Axes,
-    pub(crate) value: Value<'py>,
-}
-
-impl<'py> Given<'py> {
-    /// Numbers side by side.
-    pub(crate) fn vector(name: &'static str, elements: usize, value: Bound<'py, PyAny>) -> Self {
-        Self { name, parts: &[], elements, axes: Axes::Vector, value: Value::Of(value) }
-    }
-
-    /// What stands for numbers side by side that were left out.
-    pub(crate) fn own(name: &'static str, numbers: Vec<f64>) -> Self {
-        Self { name, parts: &[], elements: numbers.len(), axes: Axes::Vector, value: Value::Own(numbers) }
-    }
-
-    /// A number, or an array of shape (N,).
-    pub(crate) fn number(name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Self> {
-        let is_number = match value.cast::<PyUntypedArray>() {
-            Ok(array) => array.ndim() == 0,
-            Err(_) => value.is_instance_of::<PyFloat>() || value.len().is_err(),
-        };
-        refuse_masked(name, value)?;
-        // a number follows the precision of the arrays
-        let number = if is_number { value.extract().ok() } else { None };
-        let value = match number {
-            Some(number) => Value::Own(vec![number]),
-            None => Value::Of(with_type(value)?),
-        };
-        Ok(Self { name, parts: &[], elements: 1, axes: Axes::Number, value })
-    }
-
-    /// Rows of numbers; the refusal of another shape ends with what is `known`.
-    pub(crate) fn matrix(
-        name: &'static str,
-        axes: Axes,
-        elements: usize,
-        value: Bound<'py, PyAny>,
-        known: impl FnOnce() -> String,
-    ) -> PyResult<Self> {
-        let value = with_type(&value)?;
-        if let Axes::Rows(row) = axes {
-            let of_state = [elements / row, row];
-            let wrong = shape_of(&value)?.filter(|shape| !(matches!(shape.len(), 2 | 3) && shape.ends_with(&of_state)));
-            if let Some(shape) = wrong {
-                let ([rows, row], shape, known) = (of_state, shape_in_words(&shape), known());
-                return Err(PyValueError::new_err(format!(
-                    "`{name}` has the shape {shape}, not ({rows}, {row}) or (N, {rows}, {row}){known}"
-                )));
-            }
-        }
-        Ok(Self { name, parts: &[], elements, axes, value: Value::Of(value) })
-    }
-}
-
-/// What has a type of numbers as an array; lists, which follow the arrays among the arguments, as they are.
-fn with_type<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-    if is_array(value) || !has(value, "dtype") {
-        return Ok(value.clone());
-    }
-    value.py().import("numpy")?.call_method1("asarray", (value,))
-}
-
-/// The shape of an argument of real numbers; `None` for another kind of value, which is refused later.
-pub(crate) fn shape_of(value: &Bound<'_, PyAny>) -> PyResult<Option<Vec<usize>>> {
-    let shape =
-        |array: &Bound<'_, PyUntypedArray>| b"fiub".contains(&array.dtype().kind()).then(|| array.shape().to_vec());
-    if let Ok(array) = value.cast::<PyUntypedArray>() {
-        return Ok(shape(array));
-    }
-    let array = value.py().import("numpy")?.call_method1("asarray", (value,));
-    Ok(array.ok().and_then(|array| shape(array.cast::<PyUntypedArray>().ok()?)))
-}
-
-/// How the elements of a state stand in an array.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Axes {
-    /// Without an axis.
-    Number,
-    Vector,
-    /// In rows of this length.
-    Rows(usize),
-    /// As a homogeneous matrix.
-    Pose,
-}
-
-/// What was given for an argument.
-pub(crate) enum Value<'py> {
-    Of(Bound<'py, PyAny>),
-    /// Numbers of one state, which follow the precision of the arrays: what stands for an argument that was left out.
-    Own(Vec<f64>),
-}
 
 /// Numbers of a payload without inertia: its mass, and its centre of mass.
 const POINT_MASS: usize = 4;
-
-/// Whether all arrays among the arguments are of single precision; lists and numbers follow them.
-pub(crate) fn are_single(given: &[Given<'_>]) -> bool {
-    let mut is_found = false;
-    for given in given {
-        let Value::Of(value) = &given.value else { continue };
-        // columns have doubles
-        let is_array = is_array(value);
-        if !is_array && is_arrow(value) {
-            return false;
-        }
-        if is_array || has(value, "dtype") {
-            is_found = true;
-            if value.cast::<PyArrayDyn<f32>>().is_err() {
-                return false;
-            }
-        }
-    }
-    is_found
-}
-
-pub(crate) fn is_array(value: &Bound<'_, PyAny>) -> bool {
-    value.cast::<PyUntypedArray>().is_ok()
-}
-
-/// Whether there is this attribute: it takes a microsecond to look for it in vain, so lists and tuples are not asked.
-pub(crate) fn has(value: &Bound<'_, PyAny>, attribute: &str) -> bool {
-    let is_list = value.is_exact_instance_of::<PyList>() || value.is_exact_instance_of::<PyTuple>();
-    !is_list && value.hasattr(attribute).unwrap_or(false)
-}
 
 /// An array that lives as long as it is computed with.
 pub(crate) struct Held<'py, T: Element> {
@@ -204,20 +82,7 @@ impl<'py, T: Element + Number> Held<'py, T> {
             return Ok(held(Layout::Own(bodies), states));
         }
         let Some(states) = states else {
-            let shape = shape_in_words(shape);
-            return Err(PyValueError::new_err(match axes {
-                Axes::Number => {
-                    format!("`{name}` has the shape {shape}; it is a number for all states or (N,) for many")
-                }
-                Axes::Pose => format!("`{name}`: a pose has the shape (4, 4) or (N, 4, 4), not {shape}"),
-                Axes::Vector | Axes::Rows(_) => {
-                    let point = if name == "payload" { "; 4 numbers in place of 10 are a point mass" } else { "" };
-                    format!(
-                        "`{name}` has the shape {shape}; it is ({elements},) for one state or (N, {elements}) for \
-                         many{point}"
-                    )
-                }
-            }));
+            return Err(wrong_shape(given, shape));
         };
         if axes == Axes::Pose {
             let matrices = readable(name, &in_order(array)?)?;
@@ -356,11 +221,6 @@ pub(crate) fn pose_of_twelve<T: Copy>(numbers: &[T]) -> Pose<T> {
     Pose { rotation: [three(0), three(3), three(6)], translation: three(9) }
 }
 
-/// Whether it may be a column or a table of Polars or PyArrow.
-fn is_arrow(value: &Bound<'_, PyAny>) -> bool {
-    ["__arrow_c_stream__", "__arrow_c_array__", "collect_schema"].iter().any(|name| has(value, name))
-}
-
 /// What `rne.columns` sees of a column or a table; `None` of all else.
 fn seen<'py>(name: &str, elements: usize, value: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
     if is_array(value) || !is_arrow(value) {
@@ -368,122 +228,6 @@ fn seen<'py>(name: &str, elements: usize, value: &Bound<'py, PyAny>) -> PyResult
     }
     let views = value.py().import("rne.columns")?.call_method1("views", (value, elements, name))?;
     Ok((!views.is_none()).then_some(views))
-}
-
-/// What is given as an array, whatever its layout: its own memory where it has the type already.
-pub(crate) fn taken<'py, T: Element>(
-    name: &'static str,
-    value: &Bound<'py, PyAny>,
-    written: &Range<usize>,
-) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
-    refuse_masked(name, value)?;
-    let array = match value.cast::<PyArrayDyn<T>>() {
-        Ok(array) => array.clone(),
-        Err(_) => converted(name, value)?,
-    };
-    // numpy compares the owners of arrays, and one memory may have several: memoryviews, files, shared memory
-    let read = if written.is_empty() { 0..0 } else { memory(&array) };
-    if read.start < written.end && written.start < read.end {
-        let message = format!("`out` and `{name}` share memory: give `out` memory of its own");
-        return Err(PyValueError::new_err(message));
-    }
-    Ok(array)
-}
-
-/// The addresses from the first byte of an array to its last one, gaps between its numbers included; none of an empty
-/// array.
-pub(crate) fn memory<T: Element>(array: &Bound<'_, PyArrayDyn<T>>) -> Range<usize> {
-    if array.is_empty() {
-        return 0..0;
-    }
-    let first = array.data().addr();
-    let (mut start, mut end) = (first, first.saturating_add(size_of::<T>()));
-    for (&length, &stride) in array.shape().iter().zip(array.strides()) {
-        let reach = stride.unsigned_abs().saturating_mul(length - 1);
-        if stride < 0 {
-            start = start.saturating_sub(reach);
-        } else {
-            end = end.saturating_add(reach);
-        }
-    }
-    start..end
-}
-
-/// Refuses what `numpy.ma` hides: a masked number is no number, as null of Polars and PyArrow is none.
-pub(crate) fn refuse_masked(name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-    // most arguments are plain arrays: nothing more is asked of them
-    if value.is_exact_instance_of::<PyUntypedArray>() {
-        return Ok(());
-    }
-    let has_masked = match (value.cast::<PyList>(), value.cast::<PyTuple>()) {
-        (Ok(list), _) => any(list.iter(), is_masked)?,
-        (_, Ok(tuple)) => any(tuple.iter(), is_masked)?,
-        _ => is_masked(value)?,
-    };
-    if has_masked {
-        let message = format!("`{name}`: there are masked elements, which are not numbers: drop or fill them before");
-        return Err(PyValueError::new_err(message));
-    }
-    Ok(())
-}
-
-fn any<'py>(
-    mut values: impl Iterator<Item = Bound<'py, PyAny>>,
-    is: impl Fn(&Bound<'py, PyAny>) -> PyResult<bool>,
-) -> PyResult<bool> {
-    values.try_fold(false, |found, value| Ok(found || is(&value)?))
-}
-
-fn is_masked(value: &Bound<'_, PyAny>) -> PyResult<bool> {
-    static MASKED_ARRAY: PyOnceLock<Py<PyType>> = PyOnceLock::new();
-    if value.is_exact_instance_of::<PyFloat>() {
-        return Ok(false);
-    }
-    let py = value.py();
-    if !value.is_instance(MASKED_ARRAY.import(py, "numpy.ma", "MaskedArray")?)? {
-        return Ok(false);
-    }
-    py.import("numpy.ma")?.call_method1("is_masked", (value,))?.extract()
-}
-
-/// An array in C order and aligned: itself, or a copy.
-pub(crate) fn in_order<T: Element>(array: Bound<'_, PyArrayDyn<T>>) -> PyResult<Bound<'_, PyArrayDyn<T>>> {
-    if array.is_c_contiguous() && array.is_aligned() {
-        return Ok(array);
-    }
-    let keywords = PyDict::new(array.py());
-    keywords.set_item("order", "C")?;
-    let copy = array.py().import("numpy")?.call_method("array", (array,), Some(&keywords))?;
-    Ok(copy.cast_into::<PyArrayDyn<T>>()?)
-}
-
-pub(crate) fn readable<'py, T: Element>(
-    name: &str,
-    array: &Bound<'py, PyArrayDyn<T>>,
-) -> PyResult<PyReadonlyArrayDyn<'py, T>> {
-    array.try_readonly().map_err(|_| {
-        PyValueError::new_err(format!("`{name}` is being written to: it is an `out` that is still in use"))
-    })
-}
-
-/// What numpy makes of lists, integers and other floats.
-fn converted<'py, T: Element>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
-    let py = value.py();
-    let keywords = PyDict::new(py);
-    keywords.set_item("dtype", T::get_dtype(py))?;
-    let numpy = py.import("numpy")?;
-    let kind = numpy.call_method1("asarray", (value,)).and_then(|array| array.getattr("dtype")?.getattr("kind"));
-    let kind: String = kind.and_then(|kind| kind.extract()).unwrap_or_default();
-    if !["f", "i", "u", "b"].contains(&kind.as_str()) {
-        let order = match name {
-            "parameters" => ": write them in the order of `arm.parameters`, or as a dict by their names",
-            "payload" => ": it has 10 numbers, which `rne.payload` makes, or the 4 numbers of a point mass",
-            _ => "",
-        };
-        let what = if name == "step" { "a real number" } else { "an array of real numbers" };
-        return Err(PyTypeError::new_err(format!("`{name}` is not {what}{order}")));
-    }
-    Ok(numpy.call_method("asarray", (value,), Some(&keywords))?.cast_into::<PyArrayDyn<T>>()?)
 }
 
 /// How many states the arguments have; `None` where all are one row.
@@ -502,45 +246,17 @@ pub(crate) fn states<T: Element + Number>(held: &[Held<'_, T>]) -> PyResult<Opti
     Ok(states)
 }
 
-/// A new array of numbers of one state, or of many, each of this shape.
-pub(crate) fn array_of<'py, T: Element>(
-    py: Python<'py>,
-    states: &[usize],
-    shape: &[usize],
-    numbers: Vec<T>,
-) -> PyResult<Bound<'py, PyAny>> {
-    Ok(PyArray1::from_vec(py, numbers).reshape([states, shape].concat())?.into_any())
-}
-
-/// Room for results of a shape: `out`, if it is that, or a new array.
-pub(crate) fn room<'py, T: Element>(
-    py: Python<'py>,
-    out: Option<&Bound<'py, PyAny>>,
-    shape: &[usize],
-) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
-    let Some(out) = out else { return Ok(PyArrayDyn::zeros(py, shape, false)) };
-    let wanted = || {
-        let (shape, dtype) = (shape_in_words(shape), T::get_dtype(py));
-        format!("`out` must be a writable array in C order of the shape {shape} and of {dtype}")
-    };
-    let array = out.cast::<PyArrayDyn<T>>().map_err(|_| PyValueError::new_err(wanted()))?;
-    if array.shape() != shape || !array.is_c_contiguous() {
-        return Err(PyValueError::new_err(wanted()));
-    }
-    if !array.is_aligned() {
-        let message = format!("`out` is not aligned: its address must be a multiple of {}", align_of::<T>());
-        return Err(PyValueError::new_err(message));
-    }
-    refuse_masked("out", out)?;
-    Ok(array.clone())
-}
-
-/// The room as memory that nobody else reads or writes.
-pub(crate) fn writable<'py, T: Element>(room: &Bound<'py, PyArrayDyn<T>>) -> PyResult<PyReadwriteArrayDyn<'py, T>> {
-    room.try_readwrite().map_err(|error| {
-        PyValueError::new_err(match error {
-            BorrowError::NotWriteable => "`out` must be a writable array: this one is read-only",
-            _ => "`out` is in use, by another call or as an argument: give it memory of its own",
-        })
+/// The error for an array of this shape.
+fn wrong_shape(&Given { name, elements, axes, .. }: &Given<'_>, shape: &[usize]) -> PyErr {
+    let shape = shape_in_words(shape);
+    PyValueError::new_err(match axes {
+        Axes::Number => format!("`{name}` has the shape {shape}; it is a number for all states or (N,) for many"),
+        Axes::Pose => format!("`{name}`: a pose has the shape (4, 4) or (N, 4, 4), not {shape}"),
+        Axes::Vector | Axes::Rows(_) => {
+            let point = if name == "payload" { "; 4 numbers in place of 10 are a point mass" } else { "" };
+            format!(
+                "`{name}` has the shape {shape}; it is ({elements},) for one state or (N, {elements}) for many{point}"
+            )
+        }
     })
 }

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rne_identify::{AskedLimits, ExcitationOptions, MotionLimits, excite};
+use rne_identify::{AskedLimits, BaseExcitation, ExcitationOptions, JointUse, MotionLimits, excite};
 use rne_model::Joint;
 
 use crate::arm::Arm;
@@ -87,6 +87,35 @@ struct OfBase {
     excited: bool,
 }
 
+impl OfJoint {
+    fn of((at, (joint, used)): (usize, (&Joint, &JointUse))) -> Self {
+        Self {
+            joint: at + 1,
+            name: joint.name.clone(),
+            start: used.start,
+            lower: used.bounds.lower,
+            upper: used.bounds.upper,
+            velocity: used.bounds.velocity,
+            acceleration: used.bounds.acceleration,
+            effort: used.effort,
+            unit: joint.row.kind.position_unit(),
+        }
+    }
+}
+
+impl OfBase {
+    fn of(base: &BaseExcitation) -> Self {
+        Self {
+            name: base.name.clone(),
+            combination: base.combination.clone(),
+            unit: base.unit,
+            deviation: base.deviation,
+            plausible: base.plausible,
+            excited: base.is_excited(),
+        }
+    }
+}
+
 /// A motion, sampled: what `rne excite` writes and prints.
 #[pyfunction]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 1 to half a million
@@ -128,25 +157,6 @@ pub(crate) fn exciting<'py>(py: Python<'py>, arm: PyRef<'_, Arm>, asked: Asked) 
             all.extend(numbers);
         }
     }
-    let of_joint = |(at, (joint, used)): (usize, (&Joint, &rne_identify::JointUse))| OfJoint {
-        joint: at + 1,
-        name: joint.name.clone(),
-        start: used.start,
-        lower: used.bounds.lower,
-        upper: used.bounds.upper,
-        velocity: used.bounds.velocity,
-        acceleration: used.bounds.acceleration,
-        effort: used.effort,
-        unit: joint.row.kind.position_unit(),
-    };
-    let of_base = |base: &rne_identify::BaseExcitation| OfBase {
-        name: base.name.clone(),
-        combination: base.combination.clone(),
-        unit: base.unit,
-        deviation: base.deviation,
-        plausible: base.plausible,
-        excited: base.is_excited(),
-    };
     let reply = PyDict::new(py);
     reply.set_item("time", numpy::PyArray1::from_vec(py, time))?;
     for (name, numbers) in ["q", "qd", "qdd"].into_iter().zip(states) {
@@ -157,8 +167,8 @@ pub(crate) fn exciting<'py>(py: Python<'py>, arm: PyRef<'_, Arm>, asked: Asked) 
     reply.set_item("evaluations", found.evaluations)?;
     reply.set_item(
         "joints",
-        robot.independent_joints().zip(&found.joints).enumerate().map(of_joint).collect::<Vec<_>>(),
+        robot.independent_joints().zip(&found.joints).enumerate().map(OfJoint::of).collect::<Vec<_>>(),
     )?;
-    reply.set_item("base_parameters", found.bases.iter().map(of_base).collect::<Vec<_>>())?;
+    reply.set_item("base_parameters", found.bases.iter().map(OfBase::of).collect::<Vec<_>>())?;
     Ok(reply)
 }

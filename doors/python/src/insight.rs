@@ -181,13 +181,7 @@ impl Arm {
                  robot's name. Give the robot another `name`",
             )));
         }
-        let precision = match precision {
-            "double" => Precision::Double,
-            "single" => Precision::Single,
-            other => {
-                return Err(PyValueError::new_err(format!("`{other}` is not a precision; write double or single")));
-            }
-        };
+        let precision = precision_named(precision)?;
         let additions = Additions { casadi, ..Additions::default() };
         match language {
             "rust" => Ok(rne_emit::rust_file_with_sin_cos(self.robot(), &programs)),
@@ -323,5 +317,13 @@ impl Arm {
     /// `report` makes, which moves, is too large for a cell.
     fn _repr_html_(&self) -> PyResult<String> {
         notebook::cell(self.robot(), self.rows(), |function, form| self.program(function, Some(form)))
+    }
+}
+
+fn precision_named(precision: &str) -> PyResult<Precision> {
+    match precision {
+        "double" => Ok(Precision::Double),
+        "single" => Ok(Precision::Single),
+        other => Err(PyValueError::new_err(format!("`{other}` is not a precision; write double or single"))),
     }
 }

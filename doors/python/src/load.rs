@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use pyo3::exceptions::{PyKeyError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use rne_convert::{Description, Options, Selection};
+use rne_convert::{Description, Imported, Options, Selection};
 use rne_model::{Checked, Convention, Diagnostic, Reader, Report};
 
 use crate::arm::{Arm, Origin};
@@ -99,14 +99,7 @@ pub(crate) fn load(
     rotors: Option<bool>,
 ) -> PyResult<Arm> {
     let form = form.parse().map_err(|error: rne_codegen::UnknownName| PyValueError::new_err(error.to_string()))?;
-    let convention = match convention {
-        None if whole => Convention::Modified,
-        None | Some("standard") => Convention::Standard,
-        Some("modified") => Convention::Modified,
-        Some(other) => {
-            return Err(PyValueError::new_err(format!("`{other}` is not a convention; write standard or modified")));
-        }
-    };
+    let convention = convention_named(convention, whole)?;
     let origin = Origin {
         form,
         rotors: rotors.unwrap_or(false),
@@ -115,27 +108,13 @@ pub(crate) fn load(
         ..Origin::default()
     };
     let given = Given::of(source)?;
-    let description = match &given {
-        Given::Text(text) => Description::of_text(text.clone()),
-        Given::File(path) => Description::open(path).map_err(of_opening)?,
-    };
-    let name = match &given {
-        Given::Text(_) => "<text>".to_owned(),
-        Given::File(path) => path.display().to_string(),
+    let (description, name) = match &given {
+        Given::Text(text) => (Description::of_text(text.clone()), "<text>".to_owned()),
+        Given::File(path) => (Description::open(path).map_err(of_opening)?, path.display().to_string()),
     };
     let bytes = match (description, given) {
         (Description::Shipped(file), _) => return Arm::of(py, origin.shipped(file)),
-        (Description::RobotFile(_), given) => {
-            let origin = match given {
-                // with the plan beside it
-                Given::File(path) => Origin { file: Some(path), ..origin },
-                Given::Text(text) => Origin { robot: text, ..origin },
-            };
-            let arm = Arm::of(py, origin)?;
-            let lints = arm.origin.read(&name, arm.origin.robot.as_bytes()).map_err(|report| of_report(py, &report))?;
-            warn_of(py, &lints.lints, |lint| Some(format!("{name}:{}:{}", lint.line, lint.column)))?;
-            return Ok(arm);
-        }
+        (Description::RobotFile(_), given) => return of_robot_file(py, origin, given, &name),
         (Description::Urdf(bytes), _) => bytes,
         _ => return Err(PyValueError::new_err("`source` is neither a robot file nor a URDF")),
     };
@@ -156,6 +135,34 @@ pub(crate) fn load(
         Options { selection, more_tips, convention, snap, keep_unphysical, frames: true, ..Options::default() };
     let imported = py.detach(|| rne_convert::import(&name, &text, &options));
     let imported = imported.map_err(|report| of_report(py, &report))?;
+    let rotors = rotors.unwrap_or(imported.account.is_mjcf);
+    of_import(py, Origin { rotors, ..origin }, &imported, &name, whole)
+}
+
+fn convention_named(convention: Option<&str>, whole: bool) -> PyResult<Convention> {
+    match convention {
+        None if whole => Ok(Convention::Modified),
+        None | Some("standard") => Ok(Convention::Standard),
+        Some("modified") => Ok(Convention::Modified),
+        Some(other) => Err(PyValueError::new_err(format!("`{other}` is not a convention; write standard or modified"))),
+    }
+}
+
+/// The arm of a robot file, with the warnings of its lints.
+fn of_robot_file(py: Python<'_>, origin: Origin, given: Given, name: &str) -> PyResult<Arm> {
+    let origin = match given {
+        // with the plan beside it
+        Given::File(path) => Origin { file: Some(path), ..origin },
+        Given::Text(text) => Origin { robot: text, ..origin },
+    };
+    let arm = Arm::of(py, origin)?;
+    let lints = arm.origin.read(name, arm.origin.robot.as_bytes()).map_err(|report| of_report(py, &report))?;
+    warn_of(py, &lints.lints, |lint| Some(format!("{name}:{}:{}", lint.line, lint.column)))?;
+    Ok(arm)
+}
+
+/// The arm of an import, with its warnings.
+fn of_import(py: Python<'_>, origin: Origin, imported: &Imported, name: &str, whole: bool) -> PyResult<Arm> {
     let held = imported.account.held.iter().cloned().collect();
     let snapping = imported.account.snapping().map(|told| format!("{told}; `snap=False` keeps the angles of the file"));
     let floats = imported.account.floats.map(|floats| match (floats, whole) {
@@ -166,13 +173,12 @@ pub(crate) fn load(
     let said = imported.account.remarks.iter().map(|remark| (remark.is_warning, remark.worded(in_keywords)));
     let (warnings, remarks): (Vec<_>, Vec<_>) = said.map(|(warns, text)| (warns.then(|| text.clone()), text)).unzip();
     let notes = snapping.into_iter().chain(floats).chain(remarks).collect();
-    let rotors = rotors.unwrap_or(imported.account.is_mjcf);
-    let arm = Arm::of(py, Origin { robot: imported.text.clone(), held, notes, rotors, ..origin })?;
+    let arm = Arm::of(py, Origin { robot: imported.text.clone(), held, notes, ..origin })?;
     // nobody has written the lines of this robot file, and `snap` has decided on its angles; of inertias, the lines of
     // the URDF say more
     let said = [Some("rounded?"), Some("violates the triangle inequality")];
-    warn_of(py, &imported.account.lints, |lint| (!said.contains(&lint.label.as_deref())).then(|| name.clone()))?;
-    warn(py, &name, warnings.into_iter().flatten().map(|text| format!("{name}: {text}")).collect())?;
+    warn_of(py, &imported.account.lints, |lint| (!said.contains(&lint.label.as_deref())).then(|| name.to_owned()))?;
+    warn(py, name, warnings.into_iter().flatten().map(|text| format!("{name}: {text}")).collect())?;
     Ok(arm)
 }
 

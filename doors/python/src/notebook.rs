@@ -21,7 +21,34 @@ const COUNTED: [Function; 6] = [
 /// The table, the counts of some functions, and the annotated torques of the seven steps, joint by joint. Some tens of
 /// kilobytes, and no script: it is kept in the notebook, and shown where notebooks are not trusted.
 pub(crate) fn cell(robot: &Robot, rows: &str, program: impl Fn(&str, &str) -> PyResult<Program>) -> PyResult<String> {
-    let escape = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
+    let mut html = table(robot, rows);
+    html += &counts(&program);
+    let torques = program(Function::InverseDynamics.name(), Form::SevenSteps.name())?;
+    for (index, joint) in robot.joints.iter().enumerate() {
+        let what = Selection { joint: Some(index + 1), explain: true, ..Selection::default() };
+        let listing = rne_emit::listing(robot, &torques, what).to_string();
+        // the table and the counts stand above
+        let code = listing.find("    //").map_or("", |start| &listing[start..]);
+        let code: Vec<&str> = code.lines().map(|line| line.strip_prefix("    ").unwrap_or(line)).collect();
+        let _ = write!(
+            html,
+            "<details><summary>the seven steps of joint {}, {}</summary><pre style=\"line-height:1.3\">{}</pre>\
+             </details>",
+            index + 1,
+            escape(&joint.name),
+            escape(code.join("\n").trim_end())
+        );
+    }
+    html += "<p><code>arm.report()</code> is a page of HTML in which the arm moves and every equation has its numbers.";
+    Ok(html)
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
+}
+
+/// The rows of the table.
+fn table(robot: &Robot, rows: &str) -> String {
     let title = escape(robot.title.as_deref().unwrap_or(&robot.name));
     let (on, places) = if robot.is_serial() {
         ("", String::new())
@@ -64,7 +91,12 @@ pub(crate) fn cell(robot: &Robot, rows: &str, program: impl Fn(&str, &str) -> Py
             joint.row.link.mass
         );
     }
-    html += "</table><table><tr><th>operations<th>form<th>mul<th>add<th>div<th>sin/cos</tr>";
+    html + "</table>"
+}
+
+/// How many operations some functions have.
+fn counts(program: impl Fn(&str, &str) -> PyResult<Program>) -> String {
+    let mut html = "<table><tr><th>operations<th>form<th>mul<th>add<th>div<th>sin/cos</tr>".to_owned();
     for function in COUNTED {
         for form in Form::ALL {
             // what cannot be compiled, for it divides by zero, has no row
@@ -77,23 +109,5 @@ pub(crate) fn cell(robot: &Robot, rows: &str, program: impl Fn(&str, &str) -> Py
             );
         }
     }
-    html += "</table>";
-    let torques = program(Function::InverseDynamics.name(), Form::SevenSteps.name())?;
-    for (index, joint) in robot.joints.iter().enumerate() {
-        let what = Selection { joint: Some(index + 1), explain: true, ..Selection::default() };
-        let listing = rne_emit::listing(robot, &torques, what).to_string();
-        // the table and the counts stand above
-        let code = listing.find("    //").map_or("", |start| &listing[start..]);
-        let code: Vec<&str> = code.lines().map(|line| line.strip_prefix("    ").unwrap_or(line)).collect();
-        let _ = write!(
-            html,
-            "<details><summary>the seven steps of joint {}, {}</summary><pre style=\"line-height:1.3\">{}</pre>\
-             </details>",
-            index + 1,
-            escape(&joint.name),
-            escape(code.join("\n").trim_end())
-        );
-    }
-    html += "<p><code>arm.report()</code> is a page of HTML in which the arm moves and every equation has its numbers.";
-    Ok(html)
+    html + "</table>"
 }

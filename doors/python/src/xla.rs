@@ -7,6 +7,7 @@
 
 mod border;
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::{LazyLock, PoisonError, RwLock};
 
@@ -250,44 +251,16 @@ fn compute_in<T: Passed>(
     if operands.len() != given.len() {
         return Err(format!("`{name}` takes {} arrays, but {} are given", operands.len(), given.len()));
     }
-    // what is neither a row per state nor one row for all
-    let mut spread = Vec::new();
-    let mut arrays = Vec::new();
-    for (Operand { name, parts, .. }, argument) in operands.iter().zip(given) {
-        let elements: usize = parts.iter().map(|(_, length)| length).sum();
-        let of_state = argument.shape.split_last().filter(|&(&last, _)| last == elements);
-        let fits = |axes: &[usize]| {
-            axes.len() == leading.len() && axes.iter().zip(leading).all(|(&axis, &whole)| axis == whole || axis == 1)
-        };
-        let Some((_, axes)) = of_state.filter(|(_, axes)| fits(axes)) else {
-            return Err(format!(
-                "`{name}` has the shape {:?}; it is {leading:?}, or 1 in place of some of them, then {elements}",
-                argument.shape
-            ));
-        };
-        let numbers =
-            T::of(&argument.numbers).ok_or_else(|| format!("`{name}` has another precision than the result"))?;
-        let rows: usize = axes.iter().product();
-        if rows != 1 && rows != states {
-            spread.push(spread_over(numbers, elements, axes, leading, states));
-            arrays.push(None);
-        } else if rows == states {
-            arrays.push(Some(Array::Rows(numbers)));
-        } else {
-            arrays.push(Some(Array::Same(numbers)));
-        }
-    }
-    let mut spread = spread.iter();
+    let rows_of = |(operand, argument)| rows(operand, argument, leading, states);
+    let arrays = operands.iter().zip(given).map(rows_of).collect::<Result<Vec<_>, _>>()?;
     let mut arguments = Arguments::new();
-    for (Operand { name, parts, .. }, array) in operands.iter().zip(arrays) {
-        let array = array.or_else(|| spread.next().map(|numbers| Array::Rows(numbers)));
-        let missing = || format!("`{name}` is no argument");
-        let array = array.ok_or_else(missing)?;
+    for (Operand { name, parts, .. }, (numbers, is_one)) in operands.iter().zip(&arrays) {
+        let array = if *is_one { Array::Same(numbers) } else { Array::Rows(numbers) };
         let elements: usize = parts.iter().map(|(_, length)| length).sum();
         let mut from = 0;
         for &(part, length) in parts {
             let array = if length == elements { array } else { array.part(elements, from..from + length) };
-            arguments = arguments.with(part, array).ok_or_else(missing)?;
+            arguments = arguments.with(part, array).ok_or_else(|| format!("`{name}` is no argument"))?;
             from += length;
         }
     }
@@ -297,6 +270,33 @@ fn compute_in<T: Passed>(
         arm.run(function, states, &arguments, Destination::Rows(room))
     }
     .map_err(|error| error.to_string())
+}
+
+/// The numbers of an argument: a row for each state, or one row for all, and whether they are that.
+fn rows<'a, T: Passed>(
+    Operand { name, parts, .. }: &Operand,
+    argument: &'a Argument<'_>,
+    leading: &[usize],
+    states: usize,
+) -> Result<(Cow<'a, [T]>, bool), String> {
+    let elements: usize = parts.iter().map(|(_, length)| length).sum();
+    let of_state = argument.shape.split_last().filter(|&(&last, _)| last == elements);
+    let fits = |axes: &[usize]| {
+        axes.len() == leading.len() && axes.iter().zip(leading).all(|(&axis, &whole)| axis == whole || axis == 1)
+    };
+    let Some((_, axes)) = of_state.filter(|(_, axes)| fits(axes)) else {
+        return Err(format!(
+            "`{name}` has the shape {:?}; it is {leading:?}, or 1 in place of some of them, then {elements}",
+            argument.shape
+        ));
+    };
+    let numbers = T::of(&argument.numbers).ok_or_else(|| format!("`{name}` has another precision than the result"))?;
+    let rows: usize = axes.iter().product();
+    Ok(if rows == states || rows == 1 {
+        (Cow::Borrowed(numbers), rows != states)
+    } else {
+        (Cow::Owned(spread_over(numbers, elements, axes, leading, states)), false)
+    })
 }
 
 /// A copy with a row for each state, of an array that has 1 in place of some leading axes.

@@ -64,7 +64,8 @@ impl Walk<'_> {
     pub(super) fn refuse_followers_outside(&self) -> Result<(), Report> {
         let Some(&(first, _)) = self.followers.first() else { return Ok(()) };
         let name = |joint: usize| &self.urdf.joints[joint].name;
-        let follows = |&(joint, leader): &(usize, usize)| format!("{} follows {}", quoted(name(joint)), quoted(name(leader)));
+        let follows =
+            |&(joint, leader): &(usize, usize)| format!("{} follows {}", quoted(name(joint)), quoted(name(leader)));
         let followers = some(self.followers.iter().map(follows));
         let message = format!("joints outside the chain follow moving joints of the chain: {followers}");
         let help = "these joints carry mass, and no row of the table can describe that this mass moves along; if the \

@@ -16,7 +16,7 @@ use crate::urdf::{Joint, Kind, Urdf};
 /// A walk through the tree.
 pub(super) struct Walk<'a> {
     pub(super) urdf: &'a Urdf,
-    selection: &'a Selection,
+    pub(super) selection: &'a Selection,
     pub(super) locks: HashMap<usize, f64>,
     /// The joints of the chain that move.
     pub(super) moving: BTreeSet<usize>,
@@ -102,9 +102,7 @@ impl<'a> Walk<'a> {
             ));
         }
         let moved = match joint.kind {
-            Kind::Prismatic => {
-                Pose { rotation: Rotation::identity(), translation: self.axis(joint) * decimal(value) }
-            }
+            Kind::Prismatic => Pose { rotation: Rotation::identity(), translation: self.axis(joint) * decimal(value) },
             kind if kind.has_one_freedom() => {
                 Pose { rotation: Rotation::about(self.axis(joint), value), translation: Vector::ZERO }
             }

@@ -2,14 +2,14 @@
 
 use std::collections::{BTreeSet, HashSet};
 
-use rne_model::{Limits, Report};
+use rne_model::Report;
 
 use super::compiler::twice;
 use super::element::Element;
 use super::geom;
 use super::settings::{Classed, Settings};
-use super::{LeftOut, inertial, is_there};
-use crate::geometry::{Pose, Rotation, Vector, decimal};
+use super::{LeftOut, inertial};
+use crate::geometry::{Pose, Vector};
 use crate::source::{Source, quoted};
 use crate::urdf::{Joint, Kind, Link, Urdf};
 
@@ -39,16 +39,16 @@ pub(super) struct Content<'a> {
 
 /// Bodies that are read one after the other, each before those in it.
 pub(super) struct Bodies<'a> {
-    settings: &'a Settings<'a>,
-    left_out: &'a mut LeftOut,
-    urdf: Urdf,
+    pub(super) settings: &'a Settings<'a>,
+    pub(super) left_out: &'a mut LeftOut,
+    pub(super) urdf: Urdf,
     /// The names of links and of joints that are taken.
-    links: HashSet<String>,
-    joints: HashSet<String>,
+    pub(super) links: HashSet<String>,
+    pub(super) joints: HashSet<String>,
     /// Sites, with the links on which they are.
     sites: Vec<(usize, Content<'a>)>,
     /// Links that a free joint moves.
-    floating: Vec<usize>,
+    pub(super) floating: Vec<usize>,
 }
 
 impl<'a> Bodies<'a> {
@@ -149,146 +149,8 @@ impl<'a> Bodies<'a> {
         self.below(link, &contents)
     }
 
-    /// The joints of a body, from the link `parent` to that of the body, which is at `place` where all are at their
-    /// reference.
-    fn joints(
-        &mut self,
-        parent: usize,
-        place: Pose,
-        name: &str,
-        body: &'a Element,
-        contents: &[Content<'a>],
-    ) -> Result<usize, Report> {
-        let joints: Vec<&Content> =
-            contents.iter().filter(|content| matches!(content.element.name.as_str(), "joint" | "freejoint")).collect();
-        let (mut on, mut before) = (parent, place);
-        for (index, content) in joints.iter().enumerate() {
-            let joint = self.settings.classed(content.element, content.class)?;
-            if is_free(joint) {
-                if joints.len() > 1 || parent != 0 {
-                    let message = format!("the body {} has a free joint and is not free", quoted(name));
-                    let help = "MuJoCo takes a free joint as the only joint of a body in `worldbody`";
-                    return Err(joint.refused(message, help));
-                }
-                if is_there(joint, &["armature", "damping", "frictionloss", "stiffness"])? {
-                    self.left_out.add_felt("armature, friction and springs of free joints are left out", name);
-                }
-                let link = self.link(name.to_owned(), body)?;
-                self.fixed(on, link, before);
-                self.floating.push(link);
-                return Ok(link);
-            }
-            let mut read = self.joint(joint, name)?;
-            let anchor = content.frame.point(Vector::decimal(joint.vector("pos")?.unwrap_or_default()));
-            let axis = joint.vector("axis")?.unwrap_or([0.0, 0.0, 1.0]);
-            let axis = content.frame.rotation * Vector::decimal(axis);
-            let Some(direction) = axis.direction() else {
-                let message = format!("the axis of the joint {} has no direction", quoted(&read.name));
-                return Err(joint.refused(message, "write a direction, such as 0 0 1"));
-            };
-            let reference = joint.number("ref")?.unwrap_or(0.0);
-            let reference =
-                if read.kind == Kind::Prismatic { reference } else { self.settings.compiler.radians(reference) };
-            read.reference = reference;
-            let to = |translation: Vector| Pose { rotation: Rotation::identity(), translation };
-            let back = match read.kind {
-                Kind::Prismatic => to(direction * -decimal(reference)),
-                Kind::Spherical => Pose::identity(),
-                _ => Pose { rotation: Rotation::about(direction, -reference), translation: Vector::ZERO },
-            };
-            (read.xyz, read.rpy) = placed(before * to(anchor) * back);
-            read.axis = axis.rounded(1.0);
-            let is_last = index + 1 == joints.len() && anchor.to_f64() == [0.0; 3];
-            let moved = if is_last {
-                name.to_owned()
-            } else {
-                let free = (1..).map(|number| if number == 1 { String::new() } else { format!("_{number}") });
-                let mut names = free.map(|number| format!("{}_link{number}", read.name));
-                names.find(|name| !self.links.contains(name)).unwrap_or_default()
-            };
-            let link = self.link(moved, body)?;
-            (read.parent, read.child) = (on, link);
-            self.add(read);
-            (on, before) = (link, to(-anchor));
-            if is_last {
-                return Ok(link);
-            }
-        }
-        let link = self.link(name.to_owned(), body)?;
-        self.fixed(on, link, before);
-        Ok(link)
-    }
-
-    /// A hinge, slide or ball of the body `of`, without its place.
-    fn joint(&mut self, joint: Classed<'a>, of: &str) -> Result<Joint, Report> {
-        const MATTER: [&str; 15] = [
-            "name",
-            "class",
-            "type",
-            "pos",
-            "axis",
-            "ref",
-            "range",
-            "limited",
-            "armature",
-            "damping",
-            "frictionloss",
-            "stiffness",
-            "springdamper",
-            "actuatorfrcrange",
-            "actuatorfrclimited",
-        ];
-        joint.refuse_slips(&MATTER, &["springref", "springyield", "margin", "group", "user", "actuatorgravcomp"])?;
-        let kind = match joint.text("type").unwrap_or("hinge") {
-            "hinge" => Kind::Continuous,
-            "slide" => Kind::Prismatic,
-            "ball" => Kind::Spherical,
-            _ => return Err(joint.error("type", "it must be hinge, slide, ball or free")),
-        };
-        let name = if let Some(name) = joint.element.text("name") {
-            if !self.joints.insert(name.to_owned()) {
-                return Err(twice(self.settings.source, joint.element, name));
-            }
-            name.to_owned()
-        } else {
-            let mut names = (1..).map(|number| format!("{of}_joint_{number}"));
-            names.find(|name| self.joints.insert(name.clone())).unwrap_or_default()
-        };
-        let mut not_negative = |attribute: &'static str, most: usize| match joint.numbers(attribute, 1, most)? {
-            Some(numbers) if numbers[0] < 0.0 => Err(joint.error(attribute, "it must not be negative")),
-            Some(numbers) => {
-                if numbers[1..].iter().any(|number| *number != 0.0) {
-                    self.left_out.add_felt("damping and stiffness of higher degree are left out", &name);
-                }
-                Ok(numbers[0])
-            }
-            None => Ok(0.0),
-        };
-        let friction = [not_negative("damping", 3)?, not_negative("frictionloss", 1)?];
-        let rotor_inertia = not_negative("armature", 1)?;
-        if not_negative("stiffness", 3)? != 0.0 || joint.numbers("springdamper", 2, 2)?.is_some() {
-            self.left_out.add_felt("springs of joints are left out", &name);
-        }
-        let position = if kind == Kind::Spherical { None } else { joint.range("range", "limited")? };
-        let position = position.filter(|(low, high)| low.is_finite() && high.is_finite());
-        let position = position.map(|(low, high)| {
-            let radians = |angle| self.settings.compiler.radians(angle);
-            if kind == Kind::Prismatic { (low, high) } else { (radians(low), radians(high)) }
-        });
-        let effort = joint.range("actuatorfrcrange", "actuatorfrclimited")?;
-        let effort = effort.and_then(|range| self.effort(&name, range));
-        let kind = if position.is_some() && kind == Kind::Continuous { Kind::Revolute } else { kind };
-        let limits = Limits { position, velocity: None, effort };
-        let span = joint.element.span.clone();
-        Ok(Joint { name, limits, friction, rotor_inertia, ..Joint::new(kind, span) })
-    }
-
-    fn effort(&mut self, joint: &str, range: (f64, f64)) -> Option<f64> {
-        effort(self.left_out, joint, range)
-    }
-
     /// A new link, without mass.
-    fn link(&mut self, name: String, of: &Element) -> Result<usize, Report> {
+    pub(super) fn link(&mut self, name: String, of: &Element) -> Result<usize, Report> {
         if !self.links.insert(name.clone()) {
             return Err(twice(self.settings.source, of, &name));
         }
@@ -301,7 +163,7 @@ impl<'a> Bodies<'a> {
     }
 
     /// Fixes a link to another one.
-    fn fixed(&mut self, parent: usize, child: usize, place: Pose) {
+    pub(super) fn fixed(&mut self, parent: usize, child: usize, place: Pose) {
         let link = &self.urdf.links[child];
         let (xyz, rpy) = placed(place);
         let mut names = std::iter::successors(Some(format!("to_{}", link.name)), |name| Some(format!("{name}'")));
@@ -310,7 +172,7 @@ impl<'a> Bodies<'a> {
         self.add(Joint { name, parent, child, xyz, rpy, ..Joint::new(Kind::Fixed, link.span.clone()) });
     }
 
-    fn add(&mut self, joint: Joint) {
+    pub(super) fn add(&mut self, joint: Joint) {
         let index = self.urdf.joints.len();
         self.urdf.links[joint.child].parent = Some(index);
         self.urdf.links[joint.parent].children.push(index);
@@ -363,10 +225,6 @@ impl<'a> Bodies<'a> {
             ));
         }
     }
-}
-
-fn is_free(joint: Classed) -> bool {
-    joint.element.name == "freejoint" || joint.text("type") == Some("free")
 }
 
 /// Position and orientation of an element.

@@ -11,8 +11,7 @@ use crate::geometry::{Pose, Rotation, Vector, decimal};
 use crate::source::quoted;
 use crate::urdf::{Joint, Kind, Mimic, Urdf};
 
-/// Couples joints by the equalities of the file: position = reference + polynomial of the other joint's position from
-/// its reference.
+/// Couples joints and closes loops by the equalities of the file.
 pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, urdf: &mut Urdf) -> Result<(), Report> {
     for element in root.below("equality") {
         let equality = settings.classed(element, 0)?;
@@ -23,11 +22,8 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
             continue;
         }
         match element.name.as_str() {
-            "joint" => {}
-            "connect" | "weld" => {
-                close(equality, left_out, urdf)?;
-                continue;
-            }
+            "joint" => couple(equality, left_out, urdf)?,
+            "connect" | "weld" => close(equality, left_out, urdf)?,
             kind => {
                 let message = format!(
                     "the equality {} is of the kind `{kind}`, and is neither `joint`, `connect` nor `weld`",
@@ -37,48 +33,6 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
                 return Err(equality.refused(message, help));
             }
         }
-        let find = |attribute: &str| {
-            let Some(name) = equality.text(attribute) else { return Ok(None) };
-            let Some(index) = urdf.joints.iter().position(|joint| joint.name == name) else {
-                let message = format!("the equality names the joint {}, which does not exist", quoted(name));
-                return Err(equality.refused(message, "there is no such joint in the file"));
-            };
-            if urdf.joints[index].kind.has_one_freedom() {
-                return Ok(Some(index));
-            }
-            let message = format!("the equality names the joint {}, which is neither hinge nor slide", quoted(name));
-            Err(equality.refused(message, None))
-        };
-        let Some(joint) = find("joint1")? else {
-            return Err(equality.refused("the equality lacks the attribute `joint1`", None));
-        };
-        let leader = find("joint2")?;
-        let mut coefficients = equality.numbers("polycoef", 1, 5)?.unwrap_or(vec![0.0, 1.0]);
-        coefficients.resize(5, 0.0);
-        let [start, ratio, higher @ ..] = &coefficients[..] else { continue };
-        if leader.is_some() && higher.iter().any(|coefficient| *coefficient != 0.0) {
-            let message = format!(
-                "the joint {} follows another one by a polynomial of a degree above 1",
-                quoted(&urdf.joints[joint].name)
-            );
-            let help = "a robot file couples joints by a ratio and an offset: keep the first two numbers of `polycoef`";
-            return Err(equality.refused(message, help));
-        }
-        if urdf.joints[joint].mimic.is_some() {
-            let message = format!("the joint {} follows others twice", quoted(&urdf.joints[joint].name));
-            return Err(equality.refused(message, "delete one of the equalities"));
-        }
-        let reference = |joint: usize| decimal(urdf.joints[joint].reference);
-        let start = reference(joint) + decimal(*start);
-        if let Some(leader) = leader.filter(|_| *ratio != 0.0) {
-            let offset = (start - decimal(*ratio) * reference(leader)).to_f64();
-            let name = urdf.joints[leader].name.clone();
-            urdf.joints[joint].mimic = Some(Mimic { joint: name, leader: Some(leader), multiplier: *ratio, offset });
-        } else {
-            let position = start.to_f64();
-            left_out.add("joints that an equality holds are fixed", &urdf.joints[joint].name);
-            hold(urdf, joint, position);
-        }
     }
     Ok(())
 }
@@ -87,6 +41,53 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
 fn are_disabled(root: &Element) -> bool {
     let flags = root.children("option").flat_map(|option| option.children.iter().filter(|flag| flag.name == "flag"));
     flags.filter_map(|flag| flag.text("equality")).last() == Some("disable")
+}
+
+/// Couples a joint to another one: position = reference + polynomial of the other joint's position from its reference.
+fn couple(equality: Classed, left_out: &mut LeftOut, urdf: &mut Urdf) -> Result<(), Report> {
+    let find = |attribute: &str| {
+        let Some(name) = equality.text(attribute) else { return Ok(None) };
+        let Some(index) = urdf.joints.iter().position(|joint| joint.name == name) else {
+            let message = format!("the equality names the joint {}, which does not exist", quoted(name));
+            return Err(equality.refused(message, "there is no such joint in the file"));
+        };
+        if urdf.joints[index].kind.has_one_freedom() {
+            return Ok(Some(index));
+        }
+        let message = format!("the equality names the joint {}, which is neither hinge nor slide", quoted(name));
+        Err(equality.refused(message, None))
+    };
+    let Some(joint) = find("joint1")? else {
+        return Err(equality.refused("the equality lacks the attribute `joint1`", None));
+    };
+    let leader = find("joint2")?;
+    let mut coefficients = equality.numbers("polycoef", 1, 5)?.unwrap_or(vec![0.0, 1.0]);
+    coefficients.resize(5, 0.0);
+    let [start, ratio, higher @ ..] = &coefficients[..] else { return Ok(()) };
+    if leader.is_some() && higher.iter().any(|coefficient| *coefficient != 0.0) {
+        let message = format!(
+            "the joint {} follows another one by a polynomial of a degree above 1",
+            quoted(&urdf.joints[joint].name)
+        );
+        let help = "a robot file couples joints by a ratio and an offset: keep the first two numbers of `polycoef`";
+        return Err(equality.refused(message, help));
+    }
+    if urdf.joints[joint].mimic.is_some() {
+        let message = format!("the joint {} follows others twice", quoted(&urdf.joints[joint].name));
+        return Err(equality.refused(message, "delete one of the equalities"));
+    }
+    let reference = |joint: usize| decimal(urdf.joints[joint].reference);
+    let start = reference(joint) + decimal(*start);
+    if let Some(leader) = leader.filter(|_| *ratio != 0.0) {
+        let offset = (start - decimal(*ratio) * reference(leader)).to_f64();
+        let name = urdf.joints[leader].name.clone();
+        urdf.joints[joint].mimic = Some(Mimic { joint: name, leader: Some(leader), multiplier: *ratio, offset });
+    } else {
+        let position = start.to_f64();
+        left_out.add("joints that an equality holds are fixed", &urdf.joints[joint].name);
+        hold(urdf, joint, position);
+    }
+    Ok(())
 }
 
 /// Adds the loop of a `connect`, which is a spherical joint, or of a `weld`.
@@ -122,12 +123,18 @@ fn close(equality: Classed, left_out: &mut LeftOut, urdf: &mut Urdf) -> Result<(
         };
         *link = known;
     }
+    let places = places(equality, cut, are_sites, urdf.at_reference(links[0]).inverse() * urdf.at_reference(links[1]))?;
+    let ends = [(links[0], places[0]), (links[1], places[1])];
+    urdf.add_loop(Loop { name, span: element.span.clone(), cut, ends }, equality.settings.source)
+}
+
+/// The places of the cut joint on the two links of a loop. `of_one` is the pose of the second link in the first one.
+fn places(equality: Classed, cut: Cut, are_sites: bool, of_one: Pose) -> Result<[Pose; 2], Report> {
     let (anchor, relative) = (equality.vector::<3>("anchor")?, equality.numbers("relpose", 7, 7)?);
-    let of_one = urdf.at_reference(links[0]).inverse() * urdf.at_reference(links[1]);
-    let places = match (cut, anchor, relative) {
+    Ok(match (cut, anchor, relative) {
         (_, None, None) if are_sites => [Pose::identity(); 2],
         _ if are_sites => {
-            let message = format!("`{}` between sites has no `anchor` and no `relpose`", element.name);
+            let message = format!("`{}` between sites has no `anchor` and no `relpose`", equality.element.name);
             return Err(equality.refused(message, "delete them: the sites say where the ends are"));
         }
         (Cut::Weld, anchor, Some(pose)) if pose[3..] != [0.0; 4] => {
@@ -148,9 +155,7 @@ fn close(equality: Classed, left_out: &mut LeftOut, urdf: &mut Urdf) -> Result<(
             let message = "`connect` between bodies lacks the attribute `anchor`";
             return Err(equality.refused(message, "write the place of the joint in the axes of `body1`"));
         }
-    };
-    let ends = [(links[0], places[0]), (links[1], places[1])];
-    urdf.add_loop(Loop { name, span: element.span.clone(), cut, ends }, equality.settings.source)
+    })
 }
 
 impl Urdf {

@@ -41,10 +41,12 @@ pub use crate::error::LogError;
 pub use crate::formats::csv_rows::CsvRows;
 pub use crate::formats::format::Format;
 pub use crate::formats::guard::is_guarded;
-#[cfg(feature = "parquet")]
-pub use crate::formats::motion_parquet::MotionParquet;
 pub use crate::formats::npy::Npy;
+#[cfg(feature = "parquet")]
+pub use crate::formats::parquet::motion_parquet::MotionParquet;
+pub use crate::log::Log;
 pub use crate::log::frozen_position::FrozenPosition;
+pub use crate::log::layout::Layout;
 pub use crate::log::motion::Motion;
 pub use crate::log::motions::{Motions, Piece};
 pub use crate::log::pass::{Counts, Interruption, InvalidSample};
@@ -52,7 +54,6 @@ pub use crate::log::recorded::{Recorded, RecordedState};
 pub use crate::log::remark::{LeftOut, Reason, Remark};
 pub use crate::log::survey::{Cutoff, Run, Survey};
 pub use crate::log::values::LabelValue;
-pub use crate::log::{Layout, Log};
 pub use crate::options::{Angles, Options};
 pub use crate::remedy::{Remedy, Setting};
 pub use crate::signal::median::median;

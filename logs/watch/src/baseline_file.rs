@@ -96,13 +96,7 @@ impl Baseline {
         let cutoff = read.number("cutoff").and_then(|cutoff| read.check("cutoff", cutoff, cutoff > 0.0))?;
         let structure = Self::structure(robot, cutoff);
         let (dof, count) = (structure.dof(), structure.count());
-        let transitions = read.numbers("transitions", dof)?;
-        let ways = structure.options().transitions().len();
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // it saturates
-        let transitions: Vec<usize> = transitions.into_iter().map(|at| at as usize).collect();
-        if transitions.iter().any(|at| *at >= ways) {
-            return Err(read.refuse("transitions", &format!("transitions are numbers from 0 to {}", ways - 1)));
-        }
+        let transitions = read.transitions(dof, structure.options().transitions().len())?;
         let file = FittedModel::of_file(&structure, &transitions).solution;
         let is_same = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME * a.abs().max(b.abs()).max(1e-6);
         let recorded = read.numbers("robot_file", count)?;
@@ -112,20 +106,6 @@ impl Baseline {
                 "this baseline was made with another robot file, or with another version of it; make a new one",
             ));
         }
-        let contact = match read.list("contact")?.as_slice() {
-            [] => None,
-            numbers if numbers.len() == 5 * dof => {
-                let joints = numbers.chunks_exact(5).map(|of| JointNoise {
-                    mean: of[0],
-                    deviation: of[1],
-                    part: of[2],
-                    terms: of[3],
-                    inertia: of[4],
-                });
-                Some(ContactNoise { joints: joints.collect() })
-            }
-            _ => return Err(read.refuse("contact", &format!("a list of {} numbers is expected", 5 * dof))),
-        };
         let solution = DVector::from_vec(read.numbers("solution", count)?);
         let model = FittedModel {
             solution,
@@ -152,7 +132,7 @@ impl Baseline {
             duration: read.number("duration")?,
             span: read.span()?,
             doubt: 1.0,
-            contact,
+            contact: read.contact(dof)?,
         })
     }
 }
@@ -247,6 +227,35 @@ impl Reading<'_> {
             _ => self.number_of(item).and_then(|noise| self.check("noise", noise, noise > 0.0)),
         };
         items.iter().map(number).collect()
+    }
+
+    /// The transition of the friction of each joint, as one of `ways`.
+    fn transitions(&self, dof: usize, ways: usize) -> Result<Vec<usize>, Report> {
+        let transitions = self.numbers("transitions", dof)?;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // it saturates
+        let transitions: Vec<usize> = transitions.into_iter().map(|at| at as usize).collect();
+        if transitions.iter().any(|at| *at >= ways) {
+            return Err(self.refuse("transitions", &format!("transitions are numbers from 0 to {}", ways - 1)));
+        }
+        Ok(transitions)
+    }
+
+    /// The noise of contacts, which a baseline of parameters alone has not.
+    fn contact(&self, dof: usize) -> Result<Option<ContactNoise>, Report> {
+        match self.list("contact")?.as_slice() {
+            [] => Ok(None),
+            numbers if numbers.len() == 5 * dof => {
+                let joints = numbers.chunks_exact(5).map(|of| JointNoise {
+                    mean: of[0],
+                    deviation: of[1],
+                    part: of[2],
+                    terms: of[3],
+                    inertia: of[4],
+                });
+                Ok(Some(ContactNoise { joints: joints.collect() }))
+            }
+            _ => Err(self.refuse("contact", &format!("a list of {} numbers is expected", 5 * dof))),
+        }
     }
 
     fn triangle(&self, key: &str, count: usize) -> Result<DMatrix<f64>, Report> {

@@ -84,7 +84,8 @@ struct OfJoint {
     /// N m or N, root mean square: what is left with all changes, and before.
     residual: f64,
     residual_of_baseline: f64,
-    /// Deviation of the observer's torque, N m or N; contacts are beyond a multiple of it.
+    /// The standard deviation of the torque that the momentum observer finds without any contact, N m or N. A contact
+    /// is a torque that is larger than a multiple of it.
     observer_deviation: f64,
 }
 

@@ -122,11 +122,8 @@ pub fn watch(
         None => ContactNoise::typical(&noise(robot, log, settings, progress, &explain)?)
             .ok_or(WatchError::TooFew { found: 0, needed: 1 })?,
     };
-    let stride = usize::try_from(log.states().div_ceil(DRAWN)).unwrap_or(usize::MAX).max(1);
     let mut found: Vec<(u64, Vec<Contact>)> = Vec::new();
-    let mut signals: Option<Signals> = None;
-    let mut is_cut = false;
-    let mut explained = vec![Vec::new(); robot.dof()];
+    let mut drawn = Drawn::new(robot.dof(), log.states());
     each_signals(robot, log, settings, progress, &explain, &mut |run, piece, added| {
         let mut contacts = contacts(&piece, &contact, settings)?;
         contacts.retain(|contact| !changes.is_frozen(contact.joint, run, contact.start..contact.end));
@@ -134,17 +131,8 @@ pub fn watch(
             Some((last, of_run)) if *last == run => of_run.extend(contacts),
             _ => found.push((run, contacts)),
         }
-        if is_drawn && !is_cut {
-            let thin = piece.thinned(stride);
-            is_cut = signals.as_ref().is_some_and(|all: &Signals| all.time.last() >= thin.time.first());
-            if !is_cut {
-                let columns = explained.iter_mut().zip(added);
-                columns.for_each(|(all, added)| all.extend(added.iter().step_by(stride)));
-                match &mut signals {
-                    Some(all) => all.append(thin),
-                    None => signals = Some(thin),
-                }
-            }
+        if is_drawn {
+            drawn.push(&piece, added);
         }
         Ok(())
     })?;
@@ -158,7 +146,42 @@ pub fn watch(
         events = frozen;
     }
     Dates::of(log, baseline.span).give(&mut events);
+    let Drawn { signals, explained, is_cut, .. } = drawn;
     Ok(Report { events: one_cause(&events), changes, contact, signals, explained, is_cut })
+}
+
+/// The signals of a picture, of some states only.
+struct Drawn {
+    /// Of so many states, one is drawn.
+    stride: usize,
+    signals: Option<Signals>,
+    /// The torques of each joint that are explained already, N m or N.
+    explained: Vec<Vec<f64>>,
+    /// Whether the time begins anew, so that the rest is not drawn.
+    is_cut: bool,
+}
+
+impl Drawn {
+    fn new(dof: usize, states: u64) -> Self {
+        let stride = usize::try_from(states.div_ceil(DRAWN)).unwrap_or(usize::MAX).max(1);
+        Self { stride, signals: None, explained: vec![Vec::new(); dof], is_cut: false }
+    }
+
+    fn push(&mut self, piece: &Signals, added: &[Vec<f64>]) {
+        if self.is_cut {
+            return;
+        }
+        let thin = piece.thinned(self.stride);
+        self.is_cut = self.signals.as_ref().is_some_and(|all| all.time.last() >= thin.time.first());
+        if !self.is_cut {
+            let columns = self.explained.iter_mut().zip(added);
+            columns.for_each(|(all, added)| all.extend(added.iter().step_by(self.stride)));
+            match &mut self.signals {
+                Some(all) => all.append(thin),
+                None => self.signals = Some(thin),
+            }
+        }
+    }
 }
 
 /// A position that keeps one value while its joint moves.

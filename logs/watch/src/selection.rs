@@ -1,5 +1,7 @@
 //! The choice among the candidates: the change that explains most is taken first, then the next one beside it.
 
+mod window;
+
 use std::ops::Range;
 
 use nalgebra::DVector;
@@ -14,57 +16,56 @@ use crate::score::{Change, Estimate, Projected, Score};
 use crate::sensor::is_dead;
 use rne_identify::SLOWEST;
 
-/// A change is an event from this many deviations on.
+/// In standard deviations of the change: a change is an event if it is larger than this. Normal noise alone is larger
+/// in 0.3 % of all cases.
 const DEVIATIONS: f64 = 3.0;
 
-/// A change that does not last from the beginning to the end of the log needs more, because many times are tried.
+/// In standard deviations: the same for a change that does not last from the beginning to the end of the log. It is
+/// larger, because many times are tried, each of which noise can exceed. The value was chosen by experiment.
 const DEVIATIONS_OF_PART: f64 = 3.3;
 
-/// The factor by which the smallest change is larger then.
+/// A factor: the smallest size of a change that does not last for the whole log, in smallest sizes of one that does. The
+/// value was chosen by experiment.
 const SIZE_OF_PART: f64 = 1.5;
 
-/// A change begins or ends within the log only if that explains this much more, in squared deviations.
+/// In squared standard deviations: a change begins or ends within the log only if this explains so much more of the
+/// residuals. The value was chosen by experiment.
 const GAIN: f64 = 10.0;
 
-/// A payload has three more numbers than friction, which would explain this much without being there.
+/// In squared standard deviations: what a payload must explain more than friction does. It has three more numbers, which
+/// explain 3 in the mean even if there is no payload. Twice that was chosen by experiment.
 const PAID_BY_PAYLOAD: f64 = 6.0;
 
-/// The gain of an effort changes everything at once: it must explain more than a part of the torque does, by this part
-/// of itself.
+/// A part of what the gain of an effort explains: so much more must it explain than another change does, because a gain
+/// changes the whole torque at once. The value was chosen by experiment.
 const PAID_BY_GAIN: f64 = 0.2;
 
-/// The error of a gain, as a part of what the model leaves of the effort.
+/// The standard deviation of a gain by errors of the model, as a part of the ratio between the residual of the joint and
+/// its effort. The value was chosen by experiment.
 const UNEXPLAINED: f64 = 0.5;
 
-/// A joint that is slower or faster than in the quiet logs by more than this factor has another friction than a model
-/// of three numbers foretells.
+/// A ratio of speeds: the friction of a joint becomes less certain if the joint is slower or faster than in the quiet
+/// logs by more than this factor, because the model of friction has only three numbers. The value was chosen by
+/// experiment.
 const LIKE: f64 = 3.0;
 
-/// Changes of a log, at most.
+/// A number of changes: no log has more of them. The value was chosen by experiment.
 const MOST: usize = 4;
 
-/// A change that explains less than this part of the first one is an error in the model of the first, unless it is
-/// this many thresholds large.
+/// A part of what the first change explains: a further change that explains less is taken for an error in the model of
+/// the first, unless it is larger than `LARGE` thresholds. The values were chosen by experiment.
 const REST: f64 = 0.15;
 const LARGE: f64 = 3.0;
 
-/// s: times that are tried, at first; a log has at most `STEPS` of them.
-const STEP: f64 = 1.0;
-const STEPS: usize = 64;
-
-/// s: a change lasts at least as long.
-const SHORTEST: f64 = 3.0;
-
-/// s: errors of the model are alike over so long a time; a shorter window has more of them.
+/// In seconds: errors of the model are alike over so long a time, so a change over a shorter time is less certain. The
+/// value was chosen by experiment.
 const ALIKE: f64 = 8.0;
 
-/// s: a change that a moment as short as this explains is a contact and no change of a parameter.
-const MOMENT: f64 = 1.0;
-
-/// The mean square of a stretch that stands out, in medians of all stretches: seven deviations of normal noise.
+/// The mean square of a stretch that stands out, over the median of all stretches: 7² / 0.455. The median of the square
+/// of normal noise of the deviation 1 is 0.455, and a stretch stands out at seven deviations.
 const OUTLIER: f64 = 108.0;
 
-/// Rounds in which stretches that stand out are left out.
+/// A number of rounds in which stretches that stand out are left out. The value was chosen by experiment.
 const ROUNDS: usize = 3;
 
 /// The estimate of a change that lasts, with the bounds that make it an event.
@@ -225,11 +226,6 @@ impl<'a> Selection<'a> {
         best.map(|best| self.gain_in_place_of_offset(best))
     }
 
-    /// Whether a change may have this window: a recorder has one delay throughout a log.
-    fn may_begin(&self, change: &Change) -> bool {
-        self.candidate(change.candidate) != Candidate::Delay || change.window == (0..self.score.len())
-    }
-
     /// The gain of an effort where it explains more than the offset of this effort: most of a torque that is missing
     /// can be its mean.
     fn gain_in_place_of_offset(&self, best: Largest) -> Largest {
@@ -325,96 +321,6 @@ impl<'a> Selection<'a> {
         let deviation = fewer * (inflation[change.candidate] * estimate.deviation).hypot(model);
         let threshold = (deviations * deviation).max(size * scale.least(candidate));
         Statistic { candidate, change: estimate.value(), deviation, threshold }
-    }
-
-    /// s: of the stretches of a window, without what lies between runs.
-    fn duration(&self, window: &Range<usize>) -> f64 {
-        let of_rows: u64 = self.stretches[window.clone()].iter().map(|stretch| stretch.rows).sum();
-        #[allow(clippy::cast_precision_loss)]
-        let rows = of_rows as f64;
-        rows * self.baseline.row()
-    }
-
-    /// The windows that are tried: from the beginning, or from some time later, to the end.
-    fn windows(&self) -> Vec<Range<usize>> {
-        let count = self.score.len();
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let steps = ((self.duration(&(0..count)) / STEP) as usize).clamp(1, STEPS);
-        let starts = (1..steps).map(|step| step * count / steps..count);
-        let is_long = |window: &Range<usize>| self.duration(window) >= SHORTEST;
-        std::iter::once(0..count).chain(starts.filter(is_long)).collect()
-    }
-
-    /// The change with the beginning and the end that explain most, of all stretches about those that were tried.
-    fn refined(&self, mut change: Change) -> Change {
-        let count = self.score.len();
-        let reach = count.div_ceil(STEPS.min(count));
-        let drop = |change: &Change| {
-            let estimate = self.score.estimate(change.clone(), &self.given);
-            estimate.map_or(f64::NEG_INFINITY, |estimate| estimate.drop)
-        };
-        let Change { window, .. } = change.clone();
-        if window.start > 0 {
-            let starts = window.start.saturating_sub(reach)..(window.start + reach).min(window.end - 1);
-            let at = |start: usize| Change { window: start..window.end, ..change.clone() };
-            let best = starts.map(|start| (start, drop(&at(start)))).max_by(|a, b| a.1.total_cmp(&b.1));
-            change.window.start = best.map_or(window.start, |best| best.0);
-        }
-        let is_long = |change: &Change| self.duration(&change.window) >= SHORTEST;
-        let to = |end: usize| Change { window: change.window.start..end, ..change.clone() };
-        let ends = (change.window.start + 1..count).map(to).filter(is_long).filter(|change| self.may_begin(change));
-        let best = ends.map(|change| (drop(&change), change)).max_by(|a, b| a.0.total_cmp(&b.0));
-        match best {
-            Some((most, earlier)) if most > drop(&change) + GAIN && self.would_be_event(&earlier) => earlier,
-            _ => change,
-        }
-    }
-
-    /// The moment without which a change would not be half as large: somebody touched the arm then.
-    fn moment(&self, change: &Change) -> Option<Range<usize>> {
-        let mut given = self.given.clone();
-        given.push(self.score.projected(change.clone()));
-        let changes = self.score.changes(&given)?;
-        let common = self.score.common(&changes);
-        let (own, others) = changes.split_last()?;
-        let own = &own.1;
-        let gains: Vec<f64> = change
-            .window
-            .clone()
-            .map(|at| {
-                let active = others.iter().filter(|(window, _)| window.contains(&at));
-                let shift = active.fold(common.clone(), |sum, (_, change)| sum + change);
-                self.score.gain(at, &shift, own)
-            })
-            .collect();
-        let mut best: Option<(f64, Range<usize>)> = None;
-        let mut start = 0;
-        let mut sum = 0.0;
-        for end in 0..gains.len() {
-            sum += gains[end];
-            while start < end && self.duration(&(change.window.start + start..change.window.start + end + 1)) > MOMENT {
-                sum -= gains[start];
-                start += 1;
-            }
-            if best.as_ref().is_none_or(|(most, _)| sum > *most) {
-                best = Some((sum, change.window.start + start..change.window.start + end + 1));
-            }
-        }
-        let moment = best?.1;
-        let rest = self.stretches.iter().enumerate().filter(|(at, _)| !moment.contains(at));
-        let rest: Vec<&Stretch> = rest.map(|(_, stretch)| *stretch).collect();
-        let is_dead: Vec<bool> = (0..self.structure.dof()).map(|joint| self.is_dead(joint)).collect();
-        let score = Score::new(self.structure, &self.baseline.model, &rest, &is_dead)?;
-        let without = |window: &Range<usize>| {
-            let before = |at: usize| at - moment.clone().filter(|of| *of < at).count();
-            before(window.start)..before(window.end)
-        };
-        let moved = |change: &Change| Change { candidate: change.candidate, window: without(&change.window) };
-        let given: Vec<Projected> = self.given.iter().map(|given| score.projected(moved(&given.change))).collect();
-        let all = self.score.estimate(change.clone(), &self.given)?;
-        let rest = score.estimate(moved(change), &given)?;
-        let is_told = rest.deviation < 0.5 * all.value().abs();
-        (is_told && rest.value() / all.value() < 0.5).then_some(moment)
     }
 
     /// The changes that were found, each estimated beside all others: those that are events still.

@@ -121,21 +121,7 @@ impl fmt::Display for ArmLogError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Log { error, .. } => error.fmt(f),
-            Self::NamedJoints { named, logged, joints } => {
-                let there = if logged.is_empty() { String::new() } else { format!(", which has {}", shown(logged)) };
-                let advice = if (1..joints.len()).contains(&logged.len()) {
-                    ALL_NEEDED
-                } else {
-                    "name one joint of the log for each joint of the robot, from base to tip"
-                };
-                write!(
-                    f,
-                    "the list of joints names {} of the log{there}, but the robot has {}: {}; {advice}",
-                    of_joints(*named),
-                    of_joints(joints.len()),
-                    shown(joints)
-                )
-            }
+            Self::NamedJoints { named, logged, joints } => f.write_str(&wrong_names(*named, logged, joints)),
             Self::Unmatched { logged, joints, mismatch } => {
                 write!(
                     f,
@@ -160,19 +146,7 @@ impl fmt::Display for ArmLogError {
                 quantity.plural(),
                 one_line(logged)
             ),
-            Self::NoEfforts { unread, .. } => {
-                f.write_str("the log has no efforts, but rne must compare the model with torques")?;
-                if unread.is_empty() {
-                    return Ok(());
-                }
-                let unread: Vec<String> = unread.iter().take(SHOWN).map(|name| one_line(name)).collect();
-                write!(
-                    f,
-                    "; rne does not read the columns {}, because columns of efforts have names such as tau1 or \
-                     elbow/effort: see docs/control/logs.md",
-                    unread.join(", ")
-                )
-            }
+            Self::NoEfforts { unread, .. } => f.write_str(&no_efforts(unread)),
             Self::MissingEfforts { logged } => {
                 let names: Vec<String> = logged.iter().map(|name| one_line(name)).collect();
                 write!(
@@ -194,23 +168,53 @@ impl fmt::Display for ArmLogError {
                 write!(
                     f,
                     "{} Hz is not possible as a low-pass for samples at {rate:.4} Hz, because the runs (parts of the \
-                     log without gaps) have {} s at most",
+                     log without gaps) have {} s at most{}",
                     rounded(*cutoff, 3),
-                    rounded(*longest, 2)
-                )?;
-                let Some([lowest, highest]) = possible else {
-                    return f.write_str(", and no other cut-off is possible: the runs are too short");
-                };
-                write!(
-                    f,
-                    "; the cut-off can be from {} to {} Hz for this log; a lower cut-off drops more samples at the \
-                     ends of runs",
-                    rounded((lowest * 1e3).ceil() * 1e-3, 3),
-                    rounded((highest * 1e3).floor() * 1e-3, 3)
+                    rounded(*longest, 2),
+                    possible_cutoffs(*possible)
                 )
             }
         }
     }
+}
+
+fn wrong_names(named: usize, logged: &[String], joints: &[String]) -> String {
+    let there = if logged.is_empty() { String::new() } else { format!(", which has {}", shown(logged)) };
+    let advice = if (1..joints.len()).contains(&logged.len()) {
+        ALL_NEEDED
+    } else {
+        "name one joint of the log for each joint of the robot, from base to tip"
+    };
+    format!(
+        "the list of joints names {} of the log{there}, but the robot has {}: {}; {advice}",
+        of_joints(named),
+        of_joints(joints.len()),
+        shown(joints)
+    )
+}
+
+fn no_efforts(unread: &[String]) -> String {
+    let what = "the log has no efforts, but rne must compare the model with torques";
+    if unread.is_empty() {
+        return what.to_owned();
+    }
+    let unread: Vec<String> = unread.iter().take(SHOWN).map(|name| one_line(name)).collect();
+    format!(
+        "{what}; rne does not read the columns {}, because columns of efforts have names such as tau1 or \
+         elbow/effort: see docs/control/logs.md",
+        unread.join(", ")
+    )
+}
+
+fn possible_cutoffs(possible: Option<[f64; 2]>) -> String {
+    let Some([lowest, highest]) = possible else {
+        return ", and no other cut-off is possible: the runs are too short".to_owned();
+    };
+    format!(
+        "; the cut-off can be from {} to {} Hz for this log; a lower cut-off drops more samples at the ends of runs",
+        rounded((lowest * 1e3).ceil() * 1e-3, 3),
+        rounded((highest * 1e3).floor() * 1e-3, 3)
+    )
 }
 
 /// Advice for a log that has fewer joints than the robot.

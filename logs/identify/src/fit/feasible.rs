@@ -117,53 +117,29 @@ impl Problem {
     fn new(structure: &Structure, fit: &LeastSquares, scales: &Scales) -> Self {
         let dof = structure.dof();
         let count = structure.count();
-        let rank = structure.parameters.rank();
         let of_rotors = if structure.options.rotors { dof } else { 0 };
         let of_friction = if structure.options.friction { FRICTION * dof } else { 0 };
         let links = structure.robot.joints.len();
         let inertial = links * PER_LINK;
         let positive = of_rotors + of_friction;
-        let delay = usize::from(structure.options.delay);
-        let mut map = DMatrix::zeros(count, inertial + positive + delay);
-        map.view_mut((0, 0), (rank, inertial + of_rotors)).copy_from(&structure.parameters.regrouping);
-        for joint in 0..of_friction / FRICTION {
-            let (row, column) = (rank + FRICTION * joint, inertial + of_rotors + FRICTION * joint);
-            map[(row, column)] = 1.0;
-            // forward p and backward n: ½ (p + n) s + ½ (p - n)
-            for (row, signs) in [(row + 1, [0.5, 0.5]), (row + 2, [0.5, -0.5])] {
-                map[(row, column + 1)] = signs[0];
-                map[(row, column + 2)] = signs[1];
-            }
-        }
-        if delay == 1 {
-            map[(count - 1, inertial + positive)] = 1.0;
-        }
+        let map = map(structure, inertial, of_rotors, of_friction);
         let priors = prior::links(&structure.robot);
         let mut scale = DVector::from_element(map.ncols(), 1.0);
         for (link, prior) in priors.iter().enumerate() {
             scale.as_mut_slice()[link * PER_LINK..][..PER_LINK].copy_from_slice(&prior.scales());
         }
-        let mut expected = Vec::with_capacity(positive);
-        for joint in 0..of_rotors {
+        let behind = |joint: usize| {
             let first = structure.robot.coordinates().nth(joint).unwrap_or(joint);
-            let behind: f64 = (first..links).map(|link| scale[link * PER_LINK + 9]).sum();
-            let motor = structure.robot.independent_joint(joint).and_then(|joint| joint.motor);
-            let known = motor.map(|motor| motor.gear_ratio.powi(2) * motor.inertia);
-            expected.push(known.filter(|known| *known > 0.0).unwrap_or(PART * behind));
-        }
-        for joint in 0..of_friction / FRICTION {
-            let motor = structure.robot.independent_joint(joint).and_then(|joint| joint.motor);
-            let ratio = motor.map_or(1.0, |motor| motor.gear_ratio.abs());
-            let known = |value: Option<f64>| value.filter(|value| *value > 0.0);
-            let guess = PART * scales.friction[joint];
-            expected.push(known(motor.map(|motor| ratio * ratio * motor.viscous)).unwrap_or(guess));
-            expected.push(known(motor.map(|motor| ratio * motor.coulomb[0])).unwrap_or(guess));
-            expected.push(known(motor.map(|motor| -ratio * motor.coulomb[1])).unwrap_or(guess));
-        }
+            (first..links).map(|link| scale[link * PER_LINK + 9]).sum()
+        };
+        let rotors = (0..of_rotors).map(|joint| expected_rotor(structure, joint, behind(joint)));
+        let friction =
+            (0..of_friction / FRICTION).flat_map(|joint| expected_friction(structure, joint, scales.friction[joint]));
+        let expected: Vec<f64> = rotors.chain(friction).collect();
         for (at, expected) in expected.iter().enumerate() {
             scale[inertial + at] = *expected;
         }
-        if delay == 1 {
+        if structure.options.delay {
             scale[inertial + positive] = 1e-3;
         }
         let triangle = fit.triangle.triangle();
@@ -303,4 +279,45 @@ impl Problem {
         });
         Feasible { links, rotors, friction: friction.collect(), unknowns, certificate }
     }
+}
+
+/// The matrix from coordinates to unknowns: from the inertial parameters of links, rotors, frictions of both directions
+/// and the delay to base parameters, friction with offsets and the delay.
+fn map(structure: &Structure, inertial: usize, of_rotors: usize, of_friction: usize) -> DMatrix<f64> {
+    let (count, rank) = (structure.count(), structure.parameters.rank());
+    let positive = of_rotors + of_friction;
+    let delay = usize::from(structure.options.delay);
+    let mut map = DMatrix::zeros(count, inertial + positive + delay);
+    map.view_mut((0, 0), (rank, inertial + of_rotors)).copy_from(&structure.parameters.regrouping);
+    for joint in 0..of_friction / FRICTION {
+        let (row, column) = (rank + FRICTION * joint, inertial + of_rotors + FRICTION * joint);
+        map[(row, column)] = 1.0;
+        // forward p and backward n: ½ (p + n) s + ½ (p - n)
+        for (row, signs) in [(row + 1, [0.5, 0.5]), (row + 2, [0.5, -0.5])] {
+            map[(row, column + 1)] = signs[0];
+            map[(row, column + 2)] = signs[1];
+        }
+    }
+    if delay == 1 {
+        map[(count - 1, inertial + positive)] = 1.0;
+    }
+    map
+}
+
+/// The inertia of a rotor, at its joint, that is expected: that of the robot file, or a part of the inertia `behind`
+/// the joint.
+fn expected_rotor(structure: &Structure, joint: usize, behind: f64) -> f64 {
+    let motor = structure.robot.independent_joint(joint).and_then(|joint| joint.motor);
+    let known = motor.map(|motor| motor.gear_ratio.powi(2) * motor.inertia);
+    known.filter(|known| *known > 0.0).unwrap_or(PART * behind)
+}
+
+/// The friction of a joint that is expected: that of the robot file, or a part of its effort.
+fn expected_friction(structure: &Structure, joint: usize, effort: f64) -> [f64; FRICTION] {
+    let motor = structure.robot.independent_joint(joint).and_then(|joint| joint.motor);
+    let of_file = motor.map_or([0.0; FRICTION], |motor| {
+        let ratio = motor.gear_ratio.abs();
+        [ratio * ratio * motor.viscous, ratio * motor.coulomb[0], -ratio * motor.coulomb[1]]
+    });
+    of_file.map(|known| if known > 0.0 { known } else { PART * effort })
 }

@@ -1,22 +1,23 @@
 //! From a geometry and logs to a robot: passes over the logs, the fit, the bodies, and the report on them.
 
+mod robot;
+
 use std::ops::Range;
 
-use nalgebra::Matrix4;
 use rne_logs::Motion;
-use rne_model::{Bodies, FrictionTransition, Inertia, InertiaReference, Joint, Link, Motor, Robot};
+use rne_model::{FrictionTransition, Robot};
 
+pub(crate) use self::robot::link;
+use self::robot::{not_finite, robot_of};
 use crate::fit::feasible::Feasible;
 use crate::fit::friction::{FrictionExcitation, HeldFriction};
 use crate::fit::information::{Information, MotionError, Rejected, Weighting};
 use crate::fit::least_squares::LeastSquares;
 use crate::fit::parameters::Parameters;
 use crate::fit::prior::Scales;
-use crate::fit::pseudo_inertia;
 use crate::fit::steady::steady;
 use crate::fit::structure::{FRICTION, Options, Structure};
 use crate::replies::prediction::{JointError, Prediction};
-use rne_model::PER_LINK;
 
 /// Passes over the logs: one to begin with, and two in which rows that are far off count less.
 const PASSES: usize = 3;
@@ -37,9 +38,6 @@ const UNEXPLAINED: Range<f64> = 0.9..10.0;
 
 /// Efforts that are all smaller than this, in N m or N, are not torques.
 const LEAST_EFFORT: f64 = 1e-9;
-
-/// Digits of what is written.
-const DIGITS: i32 = 8;
 
 /// A robot that was identified, with the report on it.
 #[derive(Clone, Debug)]
@@ -353,92 +351,4 @@ fn joints(structure: &Structure, one: &Fit, errors: &[JointError], rejected: &[O
         rotor: structure.options.rotors.then(|| one.feasible.rotors[joint]),
     });
     reports.collect()
-}
-
-/// The first joint of which a number is not finite.
-fn not_finite(robot: &Robot) -> Option<usize> {
-    let is_finite = |joint: &Joint| {
-        let Link { mass, com, inertia, .. } = joint.row.link;
-        let Inertia { xx, yy, zz, xy, xz, yz } = inertia;
-        let of_motor =
-            joint.motor.map_or([0.0; 4], |Motor { inertia, viscous, coulomb: [forward, backward], .. }| {
-                [inertia, viscous, forward, backward]
-            });
-        [mass, xx, yy, zz, xy, xz, yz].iter().chain(&com).chain(&of_motor).all(|x| x.is_finite())
-    };
-    robot.joints.iter().position(|joint| !is_finite(joint))
-}
-
-/// The robot with these links and motors: its friction is what was identified, that of the file where the logs do not
-/// tell, and none where nobody asked for friction.
-fn robot_of(structure: &Structure, one: &Fit) -> Robot {
-    let Fit { least_squares, feasible, .. } = one;
-    let mut robot = structure.robot.clone();
-    // what is identified has the bodies in it
-    robot.bodies = Bodies::default();
-    let mut coordinate = 0;
-    for (joint, of_link) in robot.joints.iter_mut().zip(&feasible.links) {
-        joint.row.link = link(of_link);
-        joint.written_inertia = (joint.row.link.inertia, InertiaReference::Com);
-        // a follower has no motor
-        if joint.coupling.is_some() {
-            continue;
-        }
-        let at = coordinate;
-        coordinate += 1;
-        let before = joint.motor.unwrap_or(Motor { inertia: 0.0, gear_ratio: 1.0, viscous: 0.0, coulomb: [0.0; 2] });
-        let ratio = before.gear_ratio.abs();
-        let mut motor = before;
-        if structure.options.rotors {
-            motor.inertia = rounded(feasible.rotors[at] / (ratio * ratio));
-        }
-        if !structure.options.friction {
-            (motor.viscous, motor.coulomb) = (0.0, [0.0; 2]);
-            (joint.coulomb_width, joint.coulomb_displacement) = (None, None);
-        } else if one.is_friction_excited(at) {
-            let [viscous, forward, backward] = feasible.friction[at];
-            motor.viscous = rounded(viscous / (ratio * ratio));
-            motor.coulomb = [rounded(forward / ratio), -rounded(backward / ratio)];
-            (joint.coulomb_width, joint.coulomb_displacement) =
-                match structure.transitions[least_squares.transitions[at]] {
-                    FrictionTransition::Speed(width) => (Some(width), None),
-                    FrictionTransition::Displacement(length) => (None, Some(length)),
-                };
-        }
-        let is_nothing = motor.inertia == 0.0 && motor.viscous == 0.0 && motor.coulomb == [0.0; 2];
-        // a gear that the file has stays
-        if joint.motor.is_some_and(|motor| motor.gear_ratio != 1.0) || !is_nothing {
-            joint.motor = Some(motor);
-        } else {
-            joint.motor = None;
-        }
-    }
-    robot
-}
-
-/// A link of a pseudo-inertia: mass, centre of mass, inertia about it.
-pub(crate) fn link(pseudo: &Matrix4<f64>) -> Link {
-    let [mass, hx, hy, hz, ..]: [f64; PER_LINK] = pseudo_inertia::parameters(pseudo);
-    let com = [hx / mass, hy / mass, hz / mass];
-    let second = pseudo.fixed_view::<3, 3>(0, 0);
-    let centred = |row: usize, column: usize| second[(row, column)] - mass * com[row] * com[column];
-    let trace = centred(0, 0) + centred(1, 1) + centred(2, 2);
-    Link {
-        mass: rounded(mass),
-        com: com.map(rounded),
-        inertia: Inertia {
-            xx: rounded(trace - centred(0, 0)),
-            yy: rounded(trace - centred(1, 1)),
-            zz: rounded(trace - centred(2, 2)),
-            xy: rounded(-centred(0, 1)),
-            xz: rounded(-centred(0, 2)),
-            yz: rounded(-centred(1, 2)),
-        },
-        first_moment: [0.0; 3],
-    }
-}
-
-/// A number with as many digits as are written.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.*e}", usize::try_from(DIGITS - 1).unwrap_or_default()).parse().unwrap_or(value)
 }

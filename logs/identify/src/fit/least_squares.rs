@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::fit::friction::{FrictionExcitation, Hold};
 use crate::fit::information::{Information, Segment, Weighting};
 use crate::fit::prior::Scales;
-use crate::fit::r_factor::RFactor;
+use crate::fit::r_factor::{RFactor, condition, effort, inverse, solved};
 use crate::fit::structure::Structure;
 
 /// Rounds in which noise and unknowns settle.
@@ -364,42 +364,4 @@ impl State<'_> {
         let drawn = inverse * inverse.transpose() * self.ridge().columns(0, self.count()).transpose();
         &drawn * drawn.transpose()
     }
-}
-
-/// The root mean square of the efforts of a joint's rows, N m or N.
-pub(crate) fn effort(factor: &RFactor) -> f64 {
-    let power = factor.triangle().column(factor.columns() - 1).norm_squared();
-    (power / factor.weight().max(1.0)).sqrt()
-}
-
-/// The unknowns of a triangle whose last column is the torque.
-pub(crate) fn solved(triangle: &RFactor, count: usize) -> DVector<f64> {
-    let square = triangle.triangle().view((0, 0), (count, count));
-    let target = triangle.triangle().view((0, count), (count, 1));
-    square
-        .solve_upper_triangular(&target.clone_owned())
-        .map_or_else(|| DVector::zeros(count), |solution| solution.column(0).clone_owned())
-}
-
-fn inverse(triangle: &RFactor, count: usize) -> Option<DMatrix<f64>> {
-    triangle.triangle().view((0, 0), (count, count)).solve_upper_triangular(&DMatrix::identity(count, count))
-}
-
-/// The condition number of the columns, each of length one; those that the ridge alone holds are left out.
-pub(crate) fn condition(triangle: &RFactor, count: usize, ridge: &DVector<f64>) -> f64 {
-    let square = triangle.triangle().view((0, 0), (count, count));
-    let kept: Vec<usize> = (0..count).filter(|&at| square.column(at).norm() > 2.0 * ridge[at]).collect();
-    if kept.is_empty() {
-        return 1.0;
-    }
-    // of what is no number the singular values would be looked for without end
-    if square.iter().any(|x| !x.is_finite()) {
-        return f64::INFINITY;
-    }
-    let mut columns = square.clone_owned().select_columns(&kept);
-    for mut column in columns.column_iter_mut() {
-        column.normalize_mut();
-    }
-    let values = columns.singular_values();
-    if values.is_empty() { 1.0 } else { values.max() / values.min() }
 }

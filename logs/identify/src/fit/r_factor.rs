@@ -6,7 +6,7 @@
 //!
 //! Å. Björck, Numerical Methods for Least Squares Problems, SIAM 1996, section 3.2.3.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// A square that counts as zero.
 const SMALLEST: f64 = 1e-280;
@@ -176,6 +176,45 @@ impl std::fmt::Display for WrongColumns {
 }
 
 impl std::error::Error for WrongColumns {}
+
+/// The root mean square of the efforts of a joint's rows, N m or N.
+pub(crate) fn effort(factor: &RFactor) -> f64 {
+    let power = factor.triangle().column(factor.columns() - 1).norm_squared();
+    (power / factor.weight().max(1.0)).sqrt()
+}
+
+/// The unknowns of a triangle whose last column is the torque.
+pub(crate) fn solved(triangle: &RFactor, count: usize) -> DVector<f64> {
+    let square = triangle.triangle().view((0, 0), (count, count));
+    let target = triangle.triangle().view((0, count), (count, 1));
+    square
+        .solve_upper_triangular(&target.clone_owned())
+        .map_or_else(|| DVector::zeros(count), |solution| solution.column(0).clone_owned())
+}
+
+/// The inverse of a triangle without its last column, the torque.
+pub(crate) fn inverse(triangle: &RFactor, count: usize) -> Option<DMatrix<f64>> {
+    triangle.triangle().view((0, 0), (count, count)).solve_upper_triangular(&DMatrix::identity(count, count))
+}
+
+/// The condition number of the columns, each of length one; those that the ridge alone holds are left out.
+pub(crate) fn condition(triangle: &RFactor, count: usize, ridge: &DVector<f64>) -> f64 {
+    let square = triangle.triangle().view((0, 0), (count, count));
+    let kept: Vec<usize> = (0..count).filter(|&at| square.column(at).norm() > 2.0 * ridge[at]).collect();
+    if kept.is_empty() {
+        return 1.0;
+    }
+    // of what is no number the singular values would be looked for without end
+    if square.iter().any(|x| !x.is_finite()) {
+        return f64::INFINITY;
+    }
+    let mut columns = square.clone_owned().select_columns(&kept);
+    for mut column in columns.column_iter_mut() {
+        column.normalize_mut();
+    }
+    let values = columns.singular_values();
+    if values.is_empty() { 1.0 } else { values.max() / values.min() }
+}
 
 #[cfg(test)]
 mod tests {

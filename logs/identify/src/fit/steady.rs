@@ -8,8 +8,9 @@
 use rne_logs::median;
 
 use crate::fit::information::Information;
-use crate::fit::least_squares::{LeastSquares, effort};
+use crate::fit::least_squares::LeastSquares;
 use crate::fit::r_factor::RFactor;
+use crate::fit::r_factor::effort;
 use crate::fit::structure::Structure;
 
 /// A segment is an outlier if its residual is this many times the median of its joint.

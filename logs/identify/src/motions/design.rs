@@ -8,9 +8,9 @@ use rne_machine::{Arguments, Array, CompiledArm, Destination, EvaluationError, F
 use rne_model::{JointKind, Robot};
 
 use crate::fit::information::{Walk, plain_columns};
-use crate::fit::least_squares::condition;
 use crate::fit::prior::{self, Scales};
 use crate::fit::r_factor::RFactor;
+use crate::fit::r_factor::condition;
 use crate::fit::structure::{FRICTION, Options, Structure};
 use crate::motions::fourier::{Fourier, Grid};
 use crate::motions::motion_limits::MotionLimits;

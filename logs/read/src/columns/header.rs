@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
+use crate::columns::guess::{Meaning, Named, meaning};
 use crate::columns::mapping::{Mapped, Target};
-use crate::columns::name::{Meaning, Named, meaning};
 use crate::columns::quantity::Quantity;
 use crate::columns::table::Column;
 use crate::columns::time_column::{TimeColumn, within};

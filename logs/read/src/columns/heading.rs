@@ -1,7 +1,7 @@
 //! Names for the columns of a table that is written, such that a log reads the joints back.
 
 use crate::Quantity;
-use crate::columns::name::{Meaning, joint_number, meaning};
+use crate::columns::guess::{Meaning, joint_number, meaning};
 
 /// Names of the columns of joints in a table that is written. A [`Log`](crate::Log) reads the joints back by them.
 ///

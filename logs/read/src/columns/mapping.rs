@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::TimeUnit;
-use crate::columns::name::{self, Named, bracketed, joint_number};
+use crate::columns::guess::{self, Named, bracketed, joint_number};
 use crate::columns::quantity::Quantity;
 use crate::columns::unit::{Unit, time};
 use crate::spelling::{instead, listed};
@@ -147,7 +147,7 @@ pub fn suggested(columns: &[String], joints: &[String]) -> Vec<Mapping> {
     let mut suggest = |target: Target, column: Option<&String>| {
         found.push(Mapping { target, column: column.map_or_else(|| "COLUMN".to_owned(), Clone::clone) });
     };
-    if !columns.iter().any(|column| matches!(name::time(column), Some(Ok(_)))) {
+    if !columns.iter().any(|column| matches!(guess::time(column), Some(Ok(_)))) {
         let hints = |column: &&String| HINTS_OF_TIME.iter().any(|hint| column.to_lowercase().contains(hint));
         suggest(Target::Time, columns.iter().find(is_time).or_else(|| columns.iter().find(hints)));
     }

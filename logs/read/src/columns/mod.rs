@@ -1,11 +1,11 @@
 //! Columns of tables: which joint, quantity and unit a column has, by its name.
 
 pub(crate) mod checks;
+pub(crate) mod guess;
 pub(crate) mod header;
 pub(crate) mod heading;
 pub(crate) mod label;
 pub(crate) mod mapping;
-pub(crate) mod name;
 pub(crate) mod quantity;
 pub(crate) mod table;
 pub(crate) mod time_column;

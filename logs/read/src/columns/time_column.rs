@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::columns::name::time;
+use crate::columns::guess::time;
 use crate::remedy::Setting;
 use crate::{LogError, Options, TimeUnit};
 

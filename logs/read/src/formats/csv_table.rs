@@ -52,28 +52,11 @@ impl CsvTable {
                  bytes with the value zero",
             ));
         }
-        let header = first.split(|byte| *byte == b'\n').find(|line| !matches!(line.trim_ascii(), [] | [b'#', ..]));
-        let header = header.unwrap_or_default();
-        let delimiter = [b',', b';', b'\t'].into_iter().find(|byte| header.contains(byte)).unwrap_or(b',');
+        let delimiter = delimiter(first);
         // lines are records: a quote that is not closed would hold the file
         let rows = CsvRows::open(Box::new(file), delimiter, false).map_err(|what| LogError::file(path, what))?;
         let header = &rows.header;
-        if header.is_empty() {
-            return Err(LogError::file(
-                path,
-                "the file is empty; its first line must have the names of the columns, as in time,q1,tau1",
-            ));
-        }
-        if let [only] = &header[..]
-            && only.split_whitespace().count() > 2
-        {
-            let what = "the cells of the first line are separated by blanks: separate the cells of all lines by commas";
-            return Err(LogError::file(path, what));
-        }
-        if header.iter().all(|cell| cell.parse::<f64>().is_ok()) {
-            let what = "the first line has numbers; it must have the names of the columns, as in time,q1,qd1,tau1";
-            return Err(LogError::file(path, what));
-        }
+        check_header(path, header)?;
         let columns = Columns::of(path, header, options)?;
         let clock = match (columns.time, options.rate) {
             (Some((place, _)), Some(_)) => return Err(two_times(path, &header[place])),
@@ -215,6 +198,34 @@ impl Source for CsvTable {
     fn labels(&self) -> &[Label] {
         &self.labels
     }
+}
+
+/// The sign between the cells of the first line that is neither blank nor a comment.
+fn delimiter(text: &[u8]) -> u8 {
+    let header = text.split(|byte| *byte == b'\n').find(|line| !matches!(line.trim_ascii(), [] | [b'#', ..]));
+    let header = header.unwrap_or_default();
+    [b',', b';', b'\t'].into_iter().find(|byte| header.contains(byte)).unwrap_or(b',')
+}
+
+/// Refuses a first line that has no names of columns.
+fn check_header(path: &Path, header: &[String]) -> Result<(), LogError> {
+    if header.is_empty() {
+        return Err(LogError::file(
+            path,
+            "the file is empty; its first line must have the names of the columns, as in time,q1,tau1",
+        ));
+    }
+    if let [only] = header
+        && only.split_whitespace().count() > 2
+    {
+        let what = "the cells of the first line are separated by blanks: separate the cells of all lines by commas";
+        return Err(LogError::file(path, what));
+    }
+    if header.iter().all(|cell| cell.parse::<f64>().is_ok()) {
+        let what = "the first line has numbers; it must have the names of the columns, as in time,q1,qd1,tau1";
+        return Err(LogError::file(path, what));
+    }
+    Ok(())
 }
 
 /// Error for a table without times.

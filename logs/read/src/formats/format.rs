@@ -7,15 +7,15 @@ use std::io::{ErrorKind, Read as _};
 use std::path::{Path, PathBuf};
 
 use crate::columns::label;
-use crate::formats::csv_table::CsvTable;
 #[cfg(feature = "bags")]
-use crate::formats::mcap_bag::McapBag;
+use crate::formats::bags::mcap_bag::McapBag;
+#[cfg(feature = "bags")]
+use crate::formats::bags::sqlite_bag::SqliteBag;
+use crate::formats::csv_table::CsvTable;
 use crate::formats::npy_array::NpyArray;
 #[cfg(feature = "parquet")]
-use crate::formats::parquet_table::ParquetTable;
+use crate::formats::parquet::table::ParquetTable;
 use crate::formats::sample::Source;
-#[cfg(feature = "bags")]
-use crate::formats::sqlite_bag::SqliteBag;
 use crate::remedy::Setting;
 use crate::{LogError, Options, Target};
 

@@ -1,9 +1,18 @@
 //! Survey of a log, by one reading of it.
 
+mod agreement;
+mod runs;
+
+use std::ops::Range;
+
+use self::agreement::Agreement;
+pub use self::runs::Run;
+use self::runs::Runs;
 use crate::columns::quantity::Quantity;
 use crate::limits::{FEW_ROWS, MOST_FILLED};
 use crate::log::frozen_position::{FrozenPosition, FrozenPositions};
-use crate::log::pass::{Counts, Interruption, InvalidSample};
+use crate::log::layout::Layout;
+use crate::log::pass::{Counts, Interruption, InvalidSample, State};
 use crate::number::short;
 use crate::options::Angles;
 use crate::remedy::Setting;
@@ -33,9 +42,6 @@ impl Log {
         survey.longest.saturating_sub((dropped as u64).saturating_add(1)) as f64 * self.layout.step
     }
 }
-
-/// Runs that are listed; of others only the number is kept.
-const LISTED: usize = 1000;
 
 /// Seconds of a segment of the spectrum, and those that are tried where no run is as long.
 const SEGMENTS: [f64; 3] = [4.0, 2.0, 1.0];
@@ -84,24 +90,6 @@ pub struct Survey {
     pub dropped: usize,
 }
 
-/// A run: states without an interruption.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Run {
-    /// Why it begins.
-    pub begins: Interruption,
-    /// Its first time, s.
-    pub start: f64,
-    /// s
-    pub duration: f64,
-    /// How many states it has.
-    pub states: u64,
-    /// The root mean square deviation of intervals from the log's step, s.
-    pub jitter: f64,
-    /// The longest interval, s.
-    pub longest: f64,
-}
-
 /// The cut-off of the filter, and where it is from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cutoff {
@@ -137,49 +125,17 @@ impl Cutoff {
 impl Survey {
     pub(crate) fn of(log: &Log, mut progress: impl FnMut(f64)) -> Result<Self, LogError> {
         let layout = &log.layout;
-        let joints = layout.joints.len();
-        let rate = 1.0 / layout.step;
-        let efforts = layout.places(Quantity::Effort);
-        let mut spectra = SEGMENTS.map(|seconds| Spectrum::new(joints, rate, seconds));
-        let mut ranges = vec![(f64::INFINITY, f64::NEG_INFINITY); layout.width()];
-        let mut spikes = Spikes::new(if layout.has_efforts { joints } else { 0 });
-        let mut agreement = Agreement::new(if layout.has_velocities { joints } else { 0 });
-        let mut frozen_positions = FrozenPositions::new(if layout.has_velocities { joints } else { 0 });
-        let mut runs = Runs::default();
-        let mut grid: Option<Grid> = None;
+        let mut gathered = Gathered::new(layout);
         let mut pass = log.pass()?;
-        let (mut count, mut rows) = (0_u64, 0_u64);
+        let mut count = 0_u64;
         loop {
             count += 1;
             if count.is_multiple_of(4096) {
                 progress(pass.progress());
             }
             let Some((state, begins)) = pass.next()? else { break };
-            let message = state.message;
-            for (range, number) in ranges.iter_mut().zip(&state.numbers) {
-                *range = (range.0.min(*number), range.1.max(*number));
-            }
-            if let Some(begins) = begins {
-                if let Some(grid) = grid.take() {
-                    grid.finish(&mut |row| push(&mut spectra, row));
-                }
-                spectra.iter_mut().for_each(Spectrum::end_run);
-                spikes.end_run();
-                runs.begin(log.seconds(state.time), begins);
-                agreement.previous = None;
-                frozen_positions.begin_run(count == 1);
-            } else {
-                runs.push(log.seconds(state.time), layout.step);
-            }
-            agreement.push(state.time, &state.numbers);
-            frozen_positions.push(log.seconds(state.time), &state.numbers);
-            spikes.push(message, log.seconds(state.time), &state.numbers[efforts.clone()]);
-            let grid = grid.get_or_insert_with(|| Grid::new(layout.step * 1e9, state.time));
-            grid.push(state.time, &state.numbers, &mut |row| {
-                rows += 1;
-                push(&mut spectra, row);
-            });
-            if rows > FEW_ROWS && rows / MOST_FILLED > count {
+            gathered.push(log, state, begins);
+            if gathered.rows > FEW_ROWS && gathered.rows / MOST_FILLED > count {
                 let what = format!(
                     "the first {count} states of the log, up to {} s, have such long intervals that rne would \
                      interpolate more than {MOST_FILLED} states for each of them: choose a lower limit of gaps, so \
@@ -189,22 +145,10 @@ impl Survey {
                 return Err(log.request(what).give(Setting::Gap));
             }
         }
-        if let Some(grid) = grid {
-            grid.finish(&mut |row| push(&mut spectra, row));
-        }
+        gathered.end_grid();
+        let Gathered { spectra, ranges, spikes, agreement, frozen_positions, mut runs, .. } = gathered;
         let counts = pass.counts;
-        let cutoff = match log.options.cutoff {
-            Some(hertz) if hertz <= HIGHEST * rate => Cutoff::Given { hertz },
-            Some(hertz) => {
-                let what = format!(
-                    "a cut-off of {} Hz is too high for samples at {rate:.4} Hz: it can be at most {:.4} Hz",
-                    short(hertz),
-                    HIGHEST * rate
-                );
-                return Err(log.request(what));
-            }
-            None => spectra.iter().find_map(Spectrum::ends).map_or(Cutoff::Unknown, |ends| chosen(ends, rate)),
-        };
+        let cutoff = log.cutoff(&spectra)?;
         let dropped = cutoff.hertz().map_or(0, |hertz| log.dropped(Kernel::half_of(hertz, layout.step)));
         let invalid_sample = pass.invalid_sample.take();
         let spikes = spikes.end(counts.states);
@@ -244,6 +188,23 @@ impl Survey {
 }
 
 impl Log {
+    /// The cut-off of the options, or else the one that the spectra of positions choose.
+    fn cutoff(&self, spectra: &[Spectrum]) -> Result<Cutoff, LogError> {
+        let rate = 1.0 / self.layout.step;
+        match self.options.cutoff {
+            Some(hertz) if hertz <= HIGHEST * rate => Ok(Cutoff::Given { hertz }),
+            Some(hertz) => {
+                let what = format!(
+                    "a cut-off of {} Hz is too high for samples at {rate:.4} Hz: it can be at most {:.4} Hz",
+                    short(hertz),
+                    HIGHEST * rate
+                );
+                Err(self.request(what))
+            }
+            None => Ok(spectra.iter().find_map(Spectrum::ends).map_or(Cutoff::Unknown, |ends| chosen(ends, rate))),
+        }
+    }
+
     /// Seconds of a stamp, ns, since the origin.
     #[expect(clippy::cast_precision_loss, reason = "a quarter of a ns after a month")]
     pub(crate) fn seconds(&self, time: i64) -> f64 {
@@ -261,6 +222,70 @@ impl Log {
     }
 }
 
+/// What a survey gathers from state to state.
+struct Gathered {
+    spectra: [Spectrum; 3],
+    ranges: Vec<(f64, f64)>,
+    spikes: Spikes,
+    /// The places of efforts among the numbers of a state.
+    efforts: Range<usize>,
+    agreement: Agreement,
+    frozen_positions: FrozenPositions,
+    runs: Runs,
+    /// The even grid of this run, and its rows so far with those of the runs before.
+    grid: Option<Grid>,
+    rows: u64,
+}
+
+impl Gathered {
+    fn new(layout: &Layout) -> Self {
+        let joints = layout.joints.len();
+        let with_velocities = if layout.has_velocities { joints } else { 0 };
+        Self {
+            spectra: SEGMENTS.map(|seconds| Spectrum::new(joints, 1.0 / layout.step, seconds)),
+            ranges: vec![(f64::INFINITY, f64::NEG_INFINITY); layout.width()],
+            spikes: Spikes::new(if layout.has_efforts { joints } else { 0 }),
+            efforts: layout.places(Quantity::Effort),
+            agreement: Agreement::new(with_velocities),
+            frozen_positions: FrozenPositions::new(with_velocities),
+            runs: Runs::default(),
+            grid: None,
+            rows: 0,
+        }
+    }
+
+    fn push(&mut self, log: &Log, state: &State, begins: Option<Interruption>) {
+        let (layout, seconds) = (&log.layout, log.seconds(state.time));
+        for (range, number) in self.ranges.iter_mut().zip(&state.numbers) {
+            *range = (range.0.min(*number), range.1.max(*number));
+        }
+        if let Some(begins) = begins {
+            self.end_grid();
+            self.spectra.iter_mut().for_each(Spectrum::end_run);
+            self.spikes.end_run();
+            self.runs.begin(seconds, begins);
+            self.agreement.previous = None;
+            self.frozen_positions.begin_run(begins == Interruption::Beginning);
+        } else {
+            self.runs.push(seconds, layout.step);
+        }
+        self.agreement.push(state.time, &state.numbers);
+        self.frozen_positions.push(seconds, &state.numbers);
+        self.spikes.push(state.message, seconds, &state.numbers[self.efforts.clone()]);
+        let grid = self.grid.get_or_insert_with(|| Grid::new(layout.step * 1e9, state.time));
+        grid.push(state.time, &state.numbers, &mut |row| {
+            self.rows += 1;
+            push(&mut self.spectra, row);
+        });
+    }
+
+    fn end_grid(&mut self) {
+        if let Some(grid) = self.grid.take() {
+            grid.finish(&mut |row| push(&mut self.spectra, row));
+        }
+    }
+}
+
 fn push(spectra: &mut [Spectrum], row: &[f64]) {
     for spectrum in spectra {
         spectrum.push(row);
@@ -272,99 +297,4 @@ fn chosen(ends: Vec<f64>, rate: f64) -> Cutoff {
     let wanted = highest / PASSED;
     let hertz = wanted.max(LOWEST).min(HIGHEST_CHOSEN * rate);
     Cutoff::Spectrum { hertz, ends, bounded: hertz != wanted }
-}
-
-/// Velocities against differences of positions: trapezia over each interval.
-struct Agreement {
-    joints: usize,
-    previous: Option<(i64, Vec<f64>)>,
-    of_difference: Vec<f64>,
-    of_position: Vec<f64>,
-}
-
-impl Agreement {
-    fn new(joints: usize) -> Self {
-        Self { joints, previous: None, of_difference: vec![0.0; joints], of_position: vec![0.0; joints] }
-    }
-
-    #[expect(clippy::cast_precision_loss, reason = "ns between samples")]
-    fn push(&mut self, time: i64, numbers: &[f64]) {
-        let n = self.joints;
-        if n == 0 {
-            return;
-        }
-        if let Some((before, old)) = &self.previous {
-            let step = time.saturating_sub(*before) as f64 * 1e-9;
-            for joint in 0..n {
-                let moved = numbers[joint] - old[joint];
-                let said = step * (numbers[n + joint] + old[n + joint]) / 2.0;
-                self.of_difference[joint] += (moved - said).powi(2);
-                self.of_position[joint] += moved.powi(2);
-            }
-        }
-        let previous = self.previous.get_or_insert_default();
-        previous.0 = time;
-        previous.1.clear();
-        previous.1.extend_from_slice(numbers);
-    }
-
-    fn end(self) -> Vec<f64> {
-        let pairs = self.of_difference.iter().zip(&self.of_position);
-        pairs
-            .map(|(difference, position)| if *difference == 0.0 { 0.0 } else { (difference / position).sqrt() })
-            .collect()
-    }
-}
-
-/// The runs so far.
-#[derive(Default)]
-struct Runs {
-    ended: Vec<Run>,
-    count: u64,
-    /// s
-    longest: f64,
-    last: Option<Run>,
-    time: f64,
-    squares: f64,
-}
-
-impl Runs {
-    fn begin(&mut self, start: f64, begins: Interruption) {
-        self.end_run();
-        self.count += 1;
-        self.last = Some(Run { begins, start, duration: 0.0, states: 1, jitter: 0.0, longest: 0.0 });
-        (self.time, self.squares) = (start, 0.0);
-    }
-
-    fn push(&mut self, time: f64, step: f64) {
-        let Some(run) = &mut self.last else { return };
-        let interval = time - self.time;
-        run.duration = time - run.start;
-        run.states += 1;
-        run.longest = run.longest.max(interval);
-        self.squares += (interval - step).powi(2);
-        self.time = time;
-    }
-
-    #[expect(clippy::cast_precision_loss, reason = "intervals are fewer than 2^53")]
-    fn end_run(&mut self) {
-        let Some(mut run) = self.last.take() else { return };
-        run.jitter = (self.squares / (run.states - 1).max(1) as f64).sqrt();
-        self.longest = self.longest.max(run.duration);
-        if self.ended.len() < LISTED {
-            self.ended.push(run);
-        }
-    }
-
-    /// Rows of the longest run on a grid of this step, s.
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows of a run")]
-    fn longest(&mut self, step: f64) -> u64 {
-        self.end_run();
-        if self.count == 0 { 0 } else { (self.longest / step + Grid::CLOSE).floor() as u64 + 1 }
-    }
-
-    fn end(mut self) -> (u64, Vec<Run>) {
-        self.end_run();
-        (self.count, self.ended)
-    }
 }

@@ -11,10 +11,10 @@ use mcap::records::{Record, op};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 use crate::LogError;
+use crate::formats::bags::joint_state;
+use crate::formats::bags::topic::{self, is_joint_state};
 use crate::formats::guard::guarded;
-use crate::formats::joint_state;
 use crate::formats::sample::{Sample, Source};
-use crate::formats::topic::{self, is_joint_state};
 use crate::limits::LONGEST_NAME;
 
 /// Bytes that are asked for at once.

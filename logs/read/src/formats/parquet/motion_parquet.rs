@@ -261,7 +261,7 @@ mod tests {
     use parquet::record::RowAccessor as _;
 
     use super::*;
-    use crate::formats::parquet_table::ParquetTable;
+    use crate::formats::parquet::table::ParquetTable;
     use crate::formats::sample::{Sample, Source as _};
     use crate::{Log, Options};
 

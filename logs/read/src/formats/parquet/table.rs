@@ -1,5 +1,7 @@
 //! Tables in Parquet, with a column per number, or with lists.
 
+mod roles;
+
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -9,18 +11,13 @@ use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 
 use crate::columns::label::Label;
-use crate::columns::mapping::Mapped;
-use crate::columns::table::{self, Columns, note};
-use crate::columns::time_column::{TimeColumn, unread, within};
 use crate::columns::unit::FileUnits;
-use crate::formats::csv_table::{no_time, two_times};
 use crate::formats::guard::guarded;
-use crate::formats::list_columns::{self, ListColumns};
-use crate::formats::parquet_column::{Column, Kind, Leaf};
-use crate::formats::parquet_pages::{Refused, Room, column_reader};
+use crate::formats::parquet::column::{Column, Kind, Leaf};
+use crate::formats::parquet::pages::{Refused, Room, column_reader};
 use crate::formats::sample::{Sample, Source};
 use crate::remedy::Setting;
-use crate::{LogError, Options, Target, TimeUnit};
+use crate::{LogError, Options, TimeUnit};
 
 /// Rows that are taken from a column at once, and those of a column of lists: each may have a thousand numbers.
 const BATCH: usize = 1024;
@@ -125,110 +122,6 @@ impl ParquetTable {
         Ok(table)
     }
 
-    /// Finds out what columns are: lists where there is one of positions, else single columns.
-    fn assign(&mut self, leaves: &[Leaf], options: &Options) -> Result<(), LogError> {
-        let is_list = |leaf: &Leaf| leaf.is_list && leaf.kind.is_number() && within(&leaf.name, options).is_some();
-        let lists = leaves.iter().enumerate().filter(|(_, leaf)| is_list(leaf));
-        let lists = ListColumns::of(&self.path, lists.map(|(place, leaf)| (place, leaf.name.as_str())), options)?;
-        let is_mapped_by_time_alone = options.map.iter().all(|mapping| mapping.target == Target::Time);
-        if let Some((position, factor)) = lists.position.filter(|_| is_mapped_by_time_alone) {
-            let texts = leaves.iter().enumerate().filter(|(_, leaf)| leaf.is_list && leaf.kind == Kind::Text);
-            let texts = texts.map(|(place, leaf)| (place, leaf.name.as_str()));
-            let names = list_columns::names(&self.path, texts, &leaves[position].name, options)?;
-            self.roles = Roles::Lists {
-                names: names.map(|leaf| self.column(leaves, leaf, 1.0)),
-                position: self.column(leaves, position, factor),
-                velocity: lists.velocity.map(|(leaf, factor)| self.column(leaves, leaf, factor)),
-                effort: lists.effort.map(|(leaf, factor)| self.column(leaves, leaf, factor)),
-            };
-            self.units.others = lists.units;
-            let mut times = Vec::new();
-            let scalars: Vec<usize> = (0..leaves.len()).filter(|leaf| !leaves[*leaf].is_list).collect();
-            for place in &scalars {
-                times.extend(TimeColumn::of(&self.path, *place, &leaves[*place].name, options)?);
-            }
-            let header: Vec<String> = scalars.iter().map(|leaf| leaves[*leaf].name.clone()).collect();
-            for mapping in &options.map {
-                let found = mapping.find(&header).map_err(|what| LogError::request(&self.path, what))?;
-                if let (place, Mapped::Time(unit)) = found {
-                    times = vec![TimeColumn::mapped(scalars[place], unit)];
-                }
-            }
-            let name = |place: usize| leaves[place].name.as_str();
-            let time = TimeColumn::choose(&self.path, &times, name, options)?;
-            let mut converted = lists.converted;
-            let is_other = |time: &TimeColumn| time.unit.is_some_and(|unit| unit != TimeUnit::Seconds);
-            if let Some(time) = time.filter(|time| is_other(time) && leaves[time.place].kind.is_number()) {
-                converted.insert(0, leaves[time.place].name.clone());
-            }
-            self.notes.extend(table::converted(&converted));
-            note("other times that are not read", &unread(&times, time, name), &mut self.notes);
-            return self.tell_time(leaves, time.map(|time| (time.place, time.unit)), options);
-        }
-        let scalars: Vec<usize> = (0..leaves.len()).filter(|leaf| !leaves[*leaf].is_list).collect();
-        let header: Vec<String> = scalars.iter().map(|leaf| leaves[*leaf].name.clone()).collect();
-        let mut columns = Columns::of(&self.path, &header, options)?;
-        let mut column = |column: table::Column| -> Result<usize, LogError> {
-            let leaf = &leaves[scalars[column.place]];
-            if leaf.kind.is_number() {
-                return Ok(self.column(leaves, scalars[column.place], column.factor));
-            }
-            let what = format!("the column {} has {}, not numbers", leaf.name, leaf.words);
-            Err(LogError::file(&self.path, what))
-        };
-        let position = columns.position.iter().map(|place| column(*place)).collect::<Result<_, _>>()?;
-        let mut optional = |found: &[Option<table::Column>]| -> Result<Vec<Option<usize>>, LogError> {
-            found.iter().map(|found| found.map(&mut column).transpose()).collect()
-        };
-        let others = [optional(&columns.velocity)?, optional(&columns.effort)?, optional(&columns.acceleration)?];
-        self.roles = Roles::Scalars { position, others };
-        if let Some((place, _)) = columns.time
-            && matches!(leaves[scalars[place]].kind, Kind::Stamp(_))
-        {
-            // by its type, not by its name
-            columns.converted.retain(|name| *name != header[place]);
-        }
-        self.notes = columns.remarks();
-        (self.names, self.units, self.unread) = (columns.names, columns.units, columns.unread);
-        self.tell_time(leaves, columns.time.map(|(place, unit)| (scalars[place], unit)), options)
-    }
-
-    /// Sets the column of times, with the unit in its name. The unit of its type takes precedence.
-    fn tell_time(
-        &mut self,
-        leaves: &[Leaf],
-        time: Option<(usize, Option<TimeUnit>)>,
-        options: &Options,
-    ) -> Result<(), LogError> {
-        self.clock = match (time, options.rate) {
-            (None, Some(rate)) => Clock::Step(1.0 / rate),
-            (None, None) => {
-                let error = no_time(&self.path, leaves.iter().map(|leaf| &leaf.name));
-                let columns = leaves.iter().map(|leaf| leaf.name.clone()).collect();
-                let error = error.give(Setting::TimeColumn(columns));
-                return Err(error.give(Setting::Rate));
-            }
-            (Some((leaf, _)), Some(_)) => return Err(two_times(&self.path, &leaves[leaf].name)),
-            (Some((leaf, said)), None) => {
-                let unit = match leaves[leaf].kind {
-                    Kind::Stamp(unit) => unit,
-                    Kind::Real | Kind::Integer { .. } => {
-                        let unit = said.or(options.time_unit);
-                        self.is_time_unit_known = unit.is_some();
-                        unit.unwrap_or_default()
-                    }
-                    Kind::Text | Kind::Other => {
-                        let Leaf { name, words, .. } = &leaves[leaf];
-                        let what = format!("the column {name} has {words}, not times");
-                        return Err(LogError::file(&self.path, what));
-                    }
-                };
-                Clock::Column(self.column(leaves, leaf, 1.0), unit)
-            }
-        };
-        Ok(())
-    }
-
     /// Adds a column to those that are read; its place among them.
     fn column(&mut self, leaves: &[Leaf], leaf: usize, factor: f64) -> usize {
         self.columns.push(Column::new(leaf, &leaves[leaf], factor));
@@ -273,10 +166,9 @@ impl ParquetTable {
         self.left -= self.rows;
         Ok(true)
     }
-}
 
-impl Source for ParquetTable {
-    fn read(&mut self, sample: &mut Sample) -> Result<bool, LogError> {
+    /// Goes to the next row that is selected; false at the end.
+    fn next_selected(&mut self) -> Result<bool, LogError> {
         loop {
             if self.row == self.rows && !self.fill()? {
                 return Ok(false);
@@ -287,28 +179,31 @@ impl Source for ParquetTable {
                 is_selected &= label.take(&columns[label.place].text(row));
             }
             if is_selected {
-                break;
+                return Ok(true);
             }
             self.row += 1;
             self.read += 1;
         }
-        let row = self.row;
-        let columns = &self.columns;
-        sample.measured = match self.clock {
+    }
+
+    /// When this row was measured, ns.
+    fn time(&self) -> Result<i64, LogError> {
+        Ok(match self.clock {
             Clock::Step(step) => TimeUnit::step(self.selected, step),
-            Clock::Column(place, unit) => columns[place].time(row, unit).ok_or_else(|| {
-                let (name, unit) = (&columns[place].name, unit.name());
+            Clock::Column(place, unit) => self.columns[place].time(self.row, unit).ok_or_else(|| {
+                let (name, unit) = (&self.columns[place].name, unit.name());
                 let what = format!(
                     "row {}: {name} is missing, is not a number, or is later than the year 2262 in {unit}",
                     self.read
                 );
                 LogError::file(&self.path, what).give(Setting::TimeUnit)
             })?,
-        };
-        sample.recorded = sample.measured;
-        for list in [&mut sample.position, &mut sample.velocity, &mut sample.effort, &mut sample.acceleration] {
-            list.clear();
-        }
+        })
+    }
+
+    /// The names and numbers of this row.
+    fn numbers(&self, sample: &mut Sample) {
+        let (row, columns) = (self.row, &self.columns);
         match &self.roles {
             Roles::Scalars { position, others } => {
                 if sample.names != self.names {
@@ -341,6 +236,20 @@ impl Source for ParquetTable {
                 }
             }
         }
+    }
+}
+
+impl Source for ParquetTable {
+    fn read(&mut self, sample: &mut Sample) -> Result<bool, LogError> {
+        if !self.next_selected()? {
+            return Ok(false);
+        }
+        sample.measured = self.time()?;
+        sample.recorded = sample.measured;
+        for list in [&mut sample.position, &mut sample.velocity, &mut sample.effort, &mut sample.acceleration] {
+            list.clear();
+        }
+        self.numbers(sample);
         self.row += 1;
         self.read += 1;
         self.selected += 1;

@@ -9,7 +9,7 @@ use parquet::errors::ParquetError;
 use parquet::schema::types::ColumnDescriptor;
 
 use crate::TimeUnit;
-use crate::formats::parquet_pages::Refused;
+use crate::formats::parquet::pages::Refused;
 use crate::limits::LONGEST_NAME;
 
 /// A column of the schema.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::LogError;
-use crate::formats::joint_state::TYPE;
+use crate::formats::bags::joint_state::TYPE;
 use crate::remedy::Setting;
 use crate::spelling::{instead, listed};
 

@@ -9,9 +9,9 @@ use rusqlite::limits::Limit;
 use rusqlite::{Connection, OpenFlags, OptionalExtension as _};
 
 use crate::LogError;
-use crate::formats::joint_state;
+use crate::formats::bags::joint_state;
+use crate::formats::bags::topic;
 use crate::formats::sample::{Sample, Source};
-use crate::formats::topic;
 use crate::limits::MOST_BYTES;
 
 /// Messages that are read at once. Their place is kept between: a statement cannot be kept beside its connection.

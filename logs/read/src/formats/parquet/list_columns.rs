@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::columns::name::{Meaning, Named, list};
+use crate::columns::guess::{Meaning, Named, list};
 use crate::columns::quantity::Quantity;
 use crate::columns::time_column::within;
 use crate::columns::unit::{Dimension, JointUnits, Unit};

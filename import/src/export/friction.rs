@@ -1,0 +1,26 @@
+//! The friction of a motor at its joint.
+
+use rne_model::Motor;
+
+/// The friction of a joint as a URDF has it.
+pub(super) struct Friction {
+    /// N m s/rad or N s/m.
+    pub(super) damping: f64,
+    /// N m or N.
+    pub(super) friction: f64,
+}
+
+impl Friction {
+    /// Through the gear: G² B and |G| Tc, of the mean Tc of both directions; `None` where that overflows.
+    pub(super) fn at_joint(motor: &Motor) -> Option<Self> {
+        let Motor { gear_ratio, viscous, coulomb: [positive, negative], .. } = *motor;
+        let mean = 0.5 * positive - 0.5 * negative;
+        let (damping, friction) = (gear_ratio * gear_ratio * viscous, gear_ratio.abs() * mean);
+        (damping.is_finite() && friction.is_finite()).then_some(Self { damping, friction })
+    }
+
+    /// The value, where it exists.
+    pub(super) fn of(motor: &Motor) -> Option<Self> {
+        Self::at_joint(motor).filter(|at_joint| at_joint.damping != 0.0 || at_joint.friction != 0.0)
+    }
+}
