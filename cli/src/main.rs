@@ -3,10 +3,11 @@
 //! `commands` parse and answer, by means of `files`, `render` and `values`; none of these knows a command.
 #![forbid(unsafe_code)]
 
+#[macro_use]
+mod outcome;
 mod commands;
 mod files;
 mod mistyped;
-mod outcome;
 mod palette;
 mod remedy;
 mod render;

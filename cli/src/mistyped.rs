@@ -24,18 +24,26 @@ pub(crate) fn explained(error: &clap::Error, words: &[String]) -> Option<(String
     let name = words.first()?;
     let command = grammar.get_subcommands().find(|command| command.get_name() == name)?;
     let words = &words[1..];
-    let text = with_blanks(command, words).or_else(|| without_value(command, words));
-    let text =
-        text.or_else(|| of_libraries(error)).or_else(|| of_other_name(error)).or_else(|| unknown_function(error));
-    let text = text.or_else(|| of_synonym(command, error));
-    let text = text.or_else(|| {
-        let is_stray = error.kind() == ErrorKind::UnknownArgument;
-        is_stray.then(|| refused(command, words).or_else(|| of_others(&grammar, command, error))).flatten()
-    });
-    let text =
-        text.or_else(|| needed_by_another(command, error, words)).or_else(|| beside_states(command, error, words));
-    let text = text.or_else(|| missing_or_too_many(command, error))?;
+    let is_stray = error.kind() == ErrorKind::UnknownArgument;
+    let stray = || refused(command, words).or_else(|| of_others(&grammar, command, error));
+    let text = with_blanks(command, words)
+        .or_else(|| without_value(command, words))
+        .or_else(|| unknown_function(error))
+        .or_else(|| of_synonym(command, error))
+        .or_else(|| is_stray.then(stray).flatten())
+        .or_else(|| needed_by_another(command, error, words))
+        .or_else(|| beside_states(command, error, words))
+        .or_else(|| missing_or_too_many(command, error))?;
     Some((format!("rne {name}"), Failure::usage(text)))
+}
+
+/// What the parser tells of one kind: one text, several, or none.
+fn texts(error: &clap::Error, kind: ContextKind) -> &[String] {
+    match error.get(kind) {
+        Some(ContextValue::String(text)) => std::slice::from_ref(text),
+        Some(ContextValue::Strings(texts)) => texts,
+        _ => &[],
+    }
 }
 
 /// The option of a word, `--q` or `--q=1`, and its value if it stands in the same word.
@@ -108,61 +116,47 @@ fn refused(command: &Command, words: &[String]) -> Option<String> {
     })
 }
 
-/// Functions of matrices, which Rust and Python have: `--function operational_space_inertia`.
-fn of_libraries(error: &clap::Error) -> Option<String> {
-    const FUNCTIONS: [&str; 2] = ["operational_space_inertia", "dynamically_consistent_inverse"];
-    let Some(ContextValue::String(value)) = error.get(ContextKind::InvalidValue) else { return None };
-    let of_matrices = FUNCTIONS.contains(&value.as_str()).then(|| {
-        format!(
-            "`{value}` is a function of Rust and Python only, because its arguments are matrices: see the section \
-             Operational space of docs/reference/functions.md; rne eval computes the arguments, `mass_matrix` and \
-             `jacobian`"
-        )
-    });
-    of_matrices.or_else(|| choice::composed(value))
-}
+/// Functions of matrices, which Rust and Python have.
+const OF_LIBRARIES: [&str; 2] = ["operational_space_inertia", "dynamically_consistent_inverse"];
 
 /// The function whose C code contains the observer.
 const OBSERVER: &str = "momentum_and_rate";
 
-/// A value that is a valid one but for capital letters, `--lang C`, or a function that has another name.
-fn of_other_name(error: &clap::Error) -> Option<String> {
-    let text = |kind| match error.get(kind) {
-        Some(ContextValue::String(text)) => Some(text.as_str()),
-        _ => None,
-    };
-    let (option, value) = (text(ContextKind::InvalidArg)?, text(ContextKind::InvalidValue)?);
-    let Some(ContextValue::Strings(valid)) = error.get(ContextKind::ValidValue) else { return None };
-    if value.eq_ignore_ascii_case("observer") && valid.iter().any(|name| name == OBSERVER) {
+/// A value of `--function` that is no function of the command. The list of all names is long, so the message has the
+/// names that are similar, and says which command prints the others.
+fn unknown_function(error: &clap::Error) -> Option<String> {
+    /// The most names that a message proposes.
+    const MOST: usize = 6;
+    let [value] = texts(error, ContextKind::InvalidValue) else { return None };
+    let valid = texts(error, ContextKind::ValidValue);
+    let names = || valid.iter().map(String::as_str);
+    let is_known = |name: &str| names().any(|known| known == name);
+    if !is_known(Function::InverseDynamics.name()) {
+        return None;
+    }
+    if OF_LIBRARIES.contains(&value.as_str()) {
+        return Some(format!(
+            "`{value}` is a function of Rust and Python only, because its arguments are matrices: see the section \
+             Operational space of docs/reference/functions.md; rne eval computes the arguments, `mass_matrix` and \
+             `jacobian`"
+        ));
+    }
+    if let Some(composed) = choice::composed(value) {
+        return Some(composed);
+    }
+    let word = value.to_lowercase().replace('-', "_");
+    if word == "observer" && is_known(OBSERVER) {
         return Some(format!(
             "`{value}` is no function; the C code of {OBSERVER} contains the momentum observer: write \
              {TYPED}--function {OBSERVER}{TYPED:#}, or {TYPED}--observer{TYPED:#} of {TYPED}rne certify{TYPED:#}"
         ));
     }
-    let other = What::of_alias(&value.to_ascii_lowercase()).map(What::name);
-    let meant = valid.iter().find(|name| name.eq_ignore_ascii_case(value) || other == Some(name.as_str()))?;
-    Some(format!("`{value}` is not a valid value of {TYPED}{option}{TYPED:#}; did you mean {TYPED}{meant}{TYPED:#}?"))
-}
-
-/// A value of `--function` that no function has as its name. The list of all names is long, so the message has the
-/// names that are similar, and says which command prints the others.
-fn unknown_function(error: &clap::Error) -> Option<String> {
-    /// The most names that a message proposes.
-    const MOST: usize = 6;
-    let Some(ContextValue::String(value)) = error.get(ContextKind::InvalidValue) else { return None };
-    let Some(ContextValue::Strings(valid)) = error.get(ContextKind::ValidValue) else { return None };
-    let is_known = |name: &str| valid.iter().any(|known| known == name);
-    if !is_known(Function::InverseDynamics.name()) {
-        return None;
-    }
-    let names = || valid.iter().map(String::as_str);
-    let near: Vec<&str> = did_you_mean(value, names()).map_or_else(
-        || {
-            let word = value.to_lowercase().replace('-', "_");
-            names().filter(|name| word.len() > 3 && (name.contains(&word) || word.contains(name))).collect()
-        },
-        |near| vec![near],
-    );
+    let other = What::of_alias(&word).map(What::name);
+    let meant = names().find(|name| *name == word || other == Some(*name)).or_else(|| did_you_mean(value, names()));
+    let near: Vec<&str> = match meant {
+        Some(meant) => vec![meant],
+        None => names().filter(|name| word.len() > 3 && (name.contains(&word) || word.contains(name))).collect(),
+    };
     let listed = format!("{TYPED}rne explain functions{TYPED:#} lists all functions");
     let proposed = |names: &[&str]| names.iter().map(|name| format!("{TYPED}{name}{TYPED:#}")).collect::<Vec<_>>();
     Some(match proposed(&near[..near.len().min(MOST)]).as_slice() {
@@ -191,7 +185,7 @@ const SYNONYMS: [(&str, &[&str]); 6] = [
 
 /// An option under another word of the field: `--velocity 1,1`.
 fn of_synonym(command: &Command, error: &clap::Error) -> Option<String> {
-    let Some(ContextValue::String(typed)) = error.get(ContextKind::InvalidArg) else { return None };
+    let [typed] = texts(error, ContextKind::InvalidArg) else { return None };
     let (meant, _) = SYNONYMS.into_iter().find(|(_, words)| words.contains(&typed.trim_start_matches('-')))?;
     let arg = command.get_arguments().find(|arg| arg.get_long() == Some(meant))?;
     Some(format!("there is no option {TYPED}{typed}{TYPED:#}; did you mean {}?", described(arg)))
@@ -200,7 +194,7 @@ fn of_synonym(command: &Command, error: &clap::Error) -> Option<String> {
 /// Finds the commands that have an option which this command does not have: `eval --seed 1`. The parser would propose
 /// an option of this command that merely looks alike.
 fn of_others(grammar: &Command, command: &Command, error: &clap::Error) -> Option<String> {
-    let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg) else { return None };
+    let [option] = texts(error, ContextKind::InvalidArg) else { return None };
     let long = option.strip_prefix("--")?;
     let has = |other: &&Command| other.get_arguments().any(|arg| arg.get_long() == Some(long) && !arg.is_hide_set());
     let others = grammar.get_subcommands().filter(has);
@@ -236,26 +230,25 @@ fn joined(names: &[String]) -> String {
 
 /// An option that needs another one which is missing: without the first, the parser does not miss the second.
 fn needed_by_another(command: &Command, error: &clap::Error, words: &[String]) -> Option<String> {
-    let missing = |error: &clap::Error| match (error.kind(), error.get(ContextKind::InvalidArg)) {
-        (ErrorKind::MissingRequiredArgument, Some(ContextValue::Strings(missing))) => Some(missing.clone()),
-        _ => None,
+    let missing = |error: &clap::Error| match error.kind() {
+        ErrorKind::MissingRequiredArgument => texts(error, ContextKind::InvalidArg).to_vec(),
+        _ => Vec::new(),
     };
-    let names = missing(error).filter(|names| names.iter().all(|name| name.starts_with('-')))?;
-    let is_needless = |start: usize, count: usize| {
-        let rest = words[..start].iter().chain(&words[start + count..]).cloned();
-        let line = std::iter::once(command.get_name().to_owned()).chain(rest);
-        command.clone().try_get_matches_from(line).err().as_ref().and_then(missing).as_ref() != Some(&names)
+    let names = missing(error);
+    if names.iter().any(|name| !name.starts_with('-')) {
+        return None;
+    }
+    let missing_with = |words: &[String]| {
+        let line = std::iter::once(command.get_name()).chain(words.iter().map(String::as_str));
+        command.clone().try_get_matches_from(line).err().map_or_else(Vec::new, |error| missing(&error))
     };
-    // an option that is fine without the missing ones does not need them
-    let misses = |start: usize, count: usize| {
-        let line = std::iter::once(command.get_name()).chain(words[start..start + count].iter().map(String::as_str));
-        let found = command.clone().try_get_matches_from(line).err().as_ref().and_then(missing);
-        found.is_some_and(|found| names.iter().any(|name| found.contains(name)))
-    };
+    let always = missing_with(&[]);
     let needing = words.iter().enumerate().find_map(|(index, word)| {
         let (arg, value) = option(command, word)?;
         let count = 1 + usize::from(takes_value(arg) && value.is_none() && index + 1 < words.len());
-        (is_needless(index, count) && misses(index, count)).then(|| format!("--{}", arg.get_long().unwrap_or_default()))
+        let missing = missing_with(&words[index..index + count]);
+        let is_needing = names.iter().any(|name| missing.contains(name) && !always.contains(name));
+        is_needing.then(|| format!("--{}", arg.get_long().unwrap_or_default()))
     })?;
     // what else the command cannot do without
     let is_required = command.get_arguments().any(|arg| arg.is_required_set() && Some(&needing[2..]) == arg.get_long());
@@ -290,11 +283,11 @@ fn beside_states(command: &Command, error: &clap::Error, words: &[String]) -> Op
 fn missing_or_too_many(command: &Command, error: &clap::Error) -> Option<String> {
     let name = command.get_name();
     let example = format!("for example {TYPED}{}{TYPED:#}", example(command)?);
-    match (error.kind(), error.get(ContextKind::InvalidArg)?) {
-        (ErrorKind::MissingRequiredArgument, ContextValue::Strings(missing)) => {
+    match (error.kind(), texts(error, ContextKind::InvalidArg)) {
+        (ErrorKind::MissingRequiredArgument, missing @ [_, ..]) => {
             Some(format!("{TYPED}rne {name}{TYPED:#} needs {}; {example}", joined(missing)))
         }
-        (ErrorKind::UnknownArgument, ContextValue::String(word)) if error.get(ContextKind::SuggestedArg).is_none() => {
+        (ErrorKind::UnknownArgument, [word]) if error.get(ContextKind::SuggestedArg).is_none() => {
             Some(if word.starts_with('-') {
                 format!("{TYPED}rne {name}{TYPED:#} has no option {TYPED}{word}{TYPED:#}; {example}")
             } else {
@@ -377,10 +370,8 @@ mod tests {
     }
 
     #[test]
-    fn values_of_another_name() {
+    fn functions_of_another_name() {
         for command in ["emit", "certify"] {
-            let lang = said(&format!("{command} planar2 --lang C")).expect("refused");
-            assert!(lang.contains("`C` is not a valid value of --lang") && lang.ends_with("did you mean c?"), "{lang}");
             let observer = said(&format!("{command} planar2 --function observer")).expect("refused");
             assert!(
                 observer.contains("write --function momentum_and_rate, or --observer of rne certify"),
@@ -391,9 +382,14 @@ mod tests {
 
     #[test]
     fn what_the_parser_says_well_stays() {
-        for line in
-            ["eval planar2 --qq 1", "evil", "eval --help", "eval planar2 --golden -3", "emit planar2 --real half"]
-        {
+        for line in [
+            "eval planar2 --qq 1",
+            "evil",
+            "eval --help",
+            "eval planar2 --golden -3",
+            "emit planar2 --real half",
+            "emit planar2 --lang C",
+        ] {
             assert_eq!(said(line), None, "{line}");
         }
     }

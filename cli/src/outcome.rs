@@ -47,6 +47,16 @@ impl Outcome {
     }
 }
 
+/// A failure where something is wrong with a file or its contents, with the arguments of `format!`.
+macro_rules! input_error {
+    ($($message:tt)*) => { $crate::outcome::Failure::input(format_args!($($message)*)) };
+}
+
+/// A failure where something is wrong with the command line, with the arguments of `format!`.
+macro_rules! usage_error {
+    ($($message:tt)*) => { $crate::outcome::Failure::usage(format_args!($($message)*)) };
+}
+
 /// A command that could not do its work.
 #[derive(Debug)]
 pub(crate) struct Failure {

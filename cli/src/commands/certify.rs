@@ -1,44 +1,45 @@
 //! `rne certify`: what the code of an arm costs on a microcontroller, and how exact it is.
 
-pub(super) mod check;
-pub(super) mod code;
-pub(super) mod subject;
-pub(super) mod tools;
-pub(super) mod trace;
+mod certificate_file;
+mod code;
+mod command;
+mod measurement;
+mod options;
+mod subject;
+mod tools;
+mod trace;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use rne_certify::accuracy::Sample;
 use rne_certify::board::Call;
-use rne_certify::certificate::{Certificate, Certified, Cost, trace};
-use rne_certify::cycles::{self, Core, Counter};
-use rne_certify::image::{Image, NoFigures};
+use rne_certify::certificate::{Certificate, Certified, Traced, trace};
+use rne_certify::cycles::Core;
 use rne_certify::joint_functions::JointFunction;
 use rne_certify::observer::LowPass;
 use rne_certify::{misra, sha256};
 use rne_codegen::CheckFor as _;
-use rne_codegen::{Argument, Form, Function, Order, Program};
+use rne_codegen::{Form, Function, Order, Program};
 use rne_emit::{CCode, Precision, Prefix};
 use rne_model::Robot;
 
-use crate::commands::certify::check::{check, code_beside};
-use crate::commands::certify::code::{Code, build, emulate};
+use crate::commands::certify::code::{Code, build};
+use crate::commands::certify::command::file_name;
+use crate::commands::certify::measurement::Measurement;
 use crate::commands::certify::subject::Subject;
 use crate::commands::certify::tools::Tool;
 use crate::commands::emit::c::{self, Request};
-use crate::commands::emit::{self, Real};
+use crate::commands::emit::{Real, functions};
 use crate::commands::toolchain;
 use crate::files::chosen_arm::Rotors;
 use crate::files::input_file::is_stream;
-use crate::files::output_file::{self, Existing, is_standard_output};
 use crate::files::plan_file::{self, Compiler};
 use crate::files::reading;
 use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::{Failure, Outcome};
-use crate::palette::{TITLE, TYPED};
+use crate::palette::TITLE;
 use crate::values::choice;
 
 /// Certify code for a microcontroller: cycles, stack, error
@@ -252,128 +253,11 @@ fn states(text: &str) -> Result<usize, String> {
 const FEW_STATES: usize = 100;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    fits_together(arguments)?;
+    options::fit_together(arguments)?;
     let (certificate, remarks) = certificate(arguments)?;
-    let mut outcome = written(arguments, &certificate)?;
+    let mut outcome = certificate_file::written(arguments, &certificate)?;
     outcome.remark += &remarks;
     Ok(outcome)
-}
-
-/// The certificate on standard output or in a file, or the check of a file.
-fn written(arguments: &Arguments, certificate: &Certificate) -> Result<Outcome, Failure> {
-    let text = if arguments.json {
-        serde_json::to_string_pretty(certificate).map_err(Failure::input)? + "\n"
-    } else {
-        certificate.page()
-    };
-    if let Some(file) = &arguments.check {
-        if matches!(output_file::existing(file), Existing::Text(found) if !is_ours(&found)) {
-            return Err(Failure::input(format_args!("{} is no certificate of rne", file.display())));
-        }
-        return check(file, &text, certificate);
-    }
-    let Some(out) = arguments.output.as_deref().filter(|out| !is_standard_output(out)) else {
-        return Ok(Outcome::text(text));
-    };
-    match output_file::existing(out) {
-        Existing::Text(found) if !is_ours(&found) && !arguments.force => Err(Failure::usage(format_args!(
-            "{} is no certificate of rne and is not changed; {TYPED}--force{TYPED:#} overwrites it",
-            out.display()
-        ))),
-        Existing::Other if !arguments.force => {
-            Err(Failure::usage(format_args!("{} is no certificate of rne and is not changed", out.display())))
-        }
-        Existing::Folder => Err(Failure::usage(format_args!("{} is a folder; name a file", out.display()))),
-        Existing::Special => Err(Failure::usage(format_args!("{} is not a regular file", out.display()))),
-        Existing::Unreadable(error) => Err(output_file::unreadable(out, &error)),
-        _ => {
-            let remark = output_file::write_all(&[(out, text)])?;
-            let other = code_beside(out, certificate).err().map(|failure| failure.sentence());
-            let note = other.map_or_else(String::new, |other| format!("{TITLE}note{TITLE:#}: {other}\n"));
-            Ok(Outcome::remark(remark + &note))
-        }
-    }
-}
-
-/// Whether the options fit together, and the gain and the period of an observer are above zero.
-fn fits_together(arguments: &Arguments) -> Result<(), Failure> {
-    // rotors are in Rust, too
-    let [_, of_c @ ..] = arguments.flags();
-    if let Some((option, _)) = of_c.into_iter().find(|(_, is_given)| *is_given && arguments.lang != Language::C) {
-        return Err(Failure::usage(format_args!("{TYPED}{option}{TYPED:#} is for {TYPED}--lang c{TYPED:#}")));
-    }
-    // a list of options that choose code: others write files or stop the compiler
-    let chooses = |word: &str| ["-f", "-m", "-O", "-W", "--param", "-C"].iter().any(|start| word.starts_with(start));
-    let words = arguments.cc_options.split_whitespace();
-    let writes = |word: &str| ["-fdump", "-flto", "-fsyntax-only"].iter().any(|start| word.starts_with(start));
-    if let Some(word) = words.into_iter().find(|word| !chooses(word) || writes(word)) {
-        return Err(Failure::usage(format_args!(
-            "{TYPED}--cc-options{TYPED:#} takes options that choose the code, such as -O3, -fno-schedule-insns or \
-             -mtune=cortex-a5, but not `{word}`"
-        )));
-    }
-    let of_joints = |argument: &Argument| {
-        matches!(argument, Argument::Positions | Argument::Rates | Argument::Accelerations | Argument::Torques)
-    };
-    let returns_numbers = |function: &Function| {
-        let mut shape = function.shape();
-        while let rne_codegen::Shape::Array(_, of) = shape {
-            shape = of;
-        }
-        *shape == rne_codegen::Shape::Number
-    };
-    let in_rust = |of: &&Function| of.arguments().iter().all(of_joints) && returns_numbers(of);
-    if arguments.lang != Language::C
-        && let Some(function) = arguments.functions.iter().find(|of| !in_rust(of))
-    {
-        return Err(Failure::usage(format_args!(
-            "{TYPED}--lang rust{TYPED:#} certifies functions that take arrays of the joints alone and return a number, \
-             a vector or a matrix, and no struct; for {function}, give {TYPED}--lang c{TYPED:#}"
-        )));
-    }
-    if arguments.evidence.is_some() {
-        trace::check_options(arguments, &arguments.programs())?;
-    }
-    if !arguments.observer {
-        return Ok(());
-    }
-    if arguments.lang != Language::C {
-        return Err(Failure::usage(format_args!(
-            "{TYPED}--observer{TYPED:#} is for {TYPED}--lang c{TYPED:#}: in Rust, the observer is `rne::ObserverState`"
-        )));
-    }
-    for (option, value) in [("--gain", arguments.gain), ("--period", arguments.period)] {
-        // powers of ten between which the numbers of single precision are far from their ends
-        if !(1e-6..=1e6).contains(&value) {
-            return Err(Failure::usage(format_args!("{option} is {value}; it must be between 1e-6 and 1e6")));
-        }
-    }
-    Ok(())
-}
-
-fn is_ours(text: &str) -> bool {
-    text.trim().is_empty()
-        || text.starts_with("# Certificate of `")
-        || text.starts_with("{\n  \"command\": \"rne certify")
-}
-
-/// The compiler, its `objdump`, and the versions of both and of rne.
-fn compiler(arguments: &Arguments) -> Result<(String, String, BTreeMap<String, String>), Failure> {
-    let compiler = arguments.cc.clone().unwrap_or_else(|| arguments.lang.compiler().to_owned());
-    let version = match arguments.lang {
-        Language::C => toolchain::version_of_gcc(&compiler)?,
-        Language::Rust => toolchain::version(&compiler)?,
-    };
-    let objdump = match arguments.lang {
-        Language::C => toolchain::objdump_of(&compiler),
-        Language::Rust => toolchain::objdump_of(""),
-    };
-    let tools = BTreeMap::from([
-        ("rne".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
-        (compiler.clone(), version),
-        (objdump.clone(), toolchain::version(&objdump)?),
-    ]);
-    Ok((compiler, objdump, tools))
 }
 
 /// The certificate, and remarks on missing tools, on the checker and on warnings of the robot file.
@@ -383,17 +267,12 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
     if arguments.lang == Language::C && (arguments.names || !robot.is_serial()) {
         checked.identifiers.map_err(|report| Failure::from(&report))?;
     }
-    let compiled = Compiler::new(&arguments.file, &robot);
-    let functions = arguments.programs();
-    functions.iter().try_for_each(|function| function.check_base(&robot)).map_err(Failure::usage)?;
-    let programs = functions.into_iter().map(|function| compiled.compile(function, arguments.form));
-    let programs: Vec<Program> = programs.collect::<Result<_, _>>()?;
-    let programs = emit::in_order(arguments.order, arguments.form, programs)?;
+    let programs = programs(arguments, &robot)?;
     let subjects = arguments.subjects(&robot, &programs)?;
     let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(&robot));
     let call = |subject: &Subject| subject.call(prefix.as_str(), &robot);
     let calls: Vec<Call> = subjects.iter().map(call).collect::<Result<_, _>>()?;
-    let (compiler, objdump, mut tools) = compiler(arguments)?;
+    let (compiler, objdump, mut tools) = tools::compiler(arguments)?;
     let ([qemu, cppcheck], mut remarks) = tools::versions(arguments.lang, &arguments.require)?;
     remarks += &notes(arguments, &robot);
     let folder = tempfile::tempdir().map_err(Failure::input)?;
@@ -401,74 +280,86 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
     if let Some(evidence) = &arguments.evidence {
         remarks += &trace::write(arguments, evidence, &robot, &programs, &bytes)?;
     }
-    let code = build(arguments, &robot, &programs, &compiler, &calls, &bytes, folder)?;
-    tools.extend(qemu.iter().map(|version| ("qemu-system-arm".to_owned(), version.clone())));
-    let sample = Sample { states: arguments.states, seed: arguments.seed };
+    let mut code = build(arguments, &robot, &programs, &compiler, &calls, &bytes, folder)?;
+    let (objdump, has_qemu) = (objdump.as_str(), qemu.is_some());
+    let measurement = Measurement { arguments, robot: &robot, prefix: &prefix, objdump, folder, has_qemu };
     let bar = reading::bar("certified", false);
-    let certified = |(index, ((subject, call), elf)): (usize, ((&Subject, &Call), &String))| {
-        #[expect(clippy::cast_precision_loss, reason = "functions are few")]
-        reading::show(&bar, index as f64 / subjects.len() as f64);
-        let callees: Vec<String> = subject.callees().iter().map(|callee| format!("{prefix}_{callee}")).collect();
-        let image = toolchain::image(&objdump, folder, elf)?;
-        let cost = cost(arguments.cpu, &image, &call.function, &callees).map_err(|fault| subject.refused(&fault))?;
-        let emulation = match qemu {
-            None => None,
-            Some(_) => Some(emulate(arguments.cpu, &robot, subject, elf, cost.instructions, folder)?),
-        };
-        Ok(Certified {
-            function: subject.name().to_owned(),
-            cost,
-            emulation,
-            accuracy: subject.accuracy(&robot, sample)?,
-            proof: subject.proof(),
-        })
-    };
-    let certified = subjects.iter().zip(&calls).zip(&code.images).enumerate().map(certified);
+    let certified =
+        subjects.iter().zip(&calls).zip(&code.images).enumerate().map(|(index, ((subject, call), image))| {
+            #[expect(clippy::cast_precision_loss, reason = "functions are few")]
+            reading::show(&bar, index as f64 / subjects.len() as f64);
+            measurement.of(subject, call, image)
+        });
     let mut certified = certified.collect::<Result<Vec<Certified>, Failure>>()?.into_iter();
     let first = certified.next().ok_or_else(|| Failure::usage("no function is named"))?;
-    let misra = match cppcheck {
-        None => None,
-        Some(version) => {
-            tools.insert("cppcheck".to_owned(), version);
-            Some(violations(folder, &code)?)
-        }
-    };
-    let mut hashes = code.hashes;
-    let name = if is_stream(&arguments.file) { "robot file".into() } else { file_name(&arguments.file) };
-    hashes.insert(name, sha256(&bytes));
-    if let Some(plan) = plan_file::read(&arguments.file, &robot)? {
-        hashes.insert(file_name(Path::new(&plan.name)), sha256(plan.text.as_bytes()));
-    }
-    if let Some(hash) = toolchain::hash(&compiler) {
-        hashes.insert(format!("compiler {compiler}"), hash);
-    }
-    let heads = subjects.iter().zip(&calls).flat_map(|(subject, call)| match (arguments.lang, subject) {
-        (Language::Rust, _) => vec![format!("fn {}<", subject.name())],
-        // the lines of its program come first
-        (Language::C, Subject::Observer(program, _)) => {
-            vec![format!("{prefix}_{}(", program.function), format!("{}(", call.function)]
-        }
-        (Language::C, _) => vec![format!("{}(", call.function)],
-    });
-    let joints: Vec<&str> = robot.independent_joints().map(|joint| joint.name.as_str()).collect();
-    let trace = heads.flat_map(|head| trace(&code.text, &head, &joints)).collect();
+    let misra = cppcheck.is_some().then(|| violations(folder, &code)).transpose()?;
+    let used = [("qemu-system-arm", qemu), ("cppcheck", cppcheck)];
+    tools.extend(used.into_iter().filter_map(|(tool, version)| Some((tool.to_owned(), version?))));
+    code.hashes.extend(hashes(arguments, &robot, &bytes, &compiler)?);
     let certificate = Certificate {
-        command: command(arguments),
-        emit: emit(arguments, &code.source),
+        command: command::of_certificate(arguments),
+        emit: command::of_code(arguments, &code.source),
         robot: robot.name.clone(),
         language: arguments.lang.name(),
         form: arguments.form.to_string(),
         core: arguments.cpu.name().to_owned(),
         tools,
-        options: code.options,
-        hashes,
         first,
         more: certified.collect(),
         tests: arguments.tests,
         misra,
-        trace,
+        trace: lines(arguments, &robot, &prefix, &subjects, &calls, &code.text),
+        options: code.options,
+        hashes: code.hashes,
     };
     Ok((certificate, remarks))
+}
+
+/// The programs of the functions, in the order of statements that is asked for.
+fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failure> {
+    let compiler = Compiler::new(&arguments.file, robot);
+    let functions = arguments.programs();
+    functions.iter().try_for_each(|function| function.check_base(robot)).map_err(Failure::usage)?;
+    let programs = functions.into_iter().map(|function| compiler.compile(function, arguments.form));
+    functions::in_order(arguments.order, arguments.form, programs.collect::<Result<_, _>>()?)
+}
+
+/// The SHA-256 of the robot file, of its plan and of the compiler, by their names.
+fn hashes(
+    arguments: &Arguments,
+    robot: &Robot,
+    bytes: &[u8],
+    compiler: &str,
+) -> Result<BTreeMap<String, String>, Failure> {
+    let name = if is_stream(&arguments.file) { "robot file".into() } else { file_name(&arguments.file) };
+    let mut hashes = BTreeMap::from([(name, sha256(bytes))]);
+    if let Some(plan) = plan_file::read(&arguments.file, robot)? {
+        hashes.insert(file_name(Path::new(&plan.name)), sha256(plan.text.as_bytes()));
+    }
+    hashes.extend(toolchain::hash(compiler).map(|hash| (format!("compiler {compiler}"), hash)));
+    Ok(hashes)
+}
+
+/// The lines of the code with what they compute.
+fn lines(
+    arguments: &Arguments,
+    robot: &Robot,
+    prefix: &Prefix,
+    subjects: &[Subject<'_>],
+    calls: &[Call],
+    code: &str,
+) -> Vec<Traced> {
+    let heads = subjects.iter().zip(calls).flat_map(|(subject, call)| {
+        let own = format!("{}(", call.function);
+        match (arguments.lang, subject) {
+            (Language::Rust, _) => vec![format!("fn {}<", subject.name())],
+            // the lines of its program come first
+            (Language::C, Subject::Observer(program, _)) => vec![format!("{prefix}_{}(", program.function), own],
+            (Language::C, _) => vec![own],
+        }
+    });
+    let joints: Vec<&str> = robot.independent_joints().map(|joint| joint.name.as_str()).collect();
+    heads.flat_map(|head| trace(code, &head, &joints)).collect()
 }
 
 /// Notes on options that have no effect, or a small one.
@@ -489,110 +380,10 @@ fn violations(folder: &Path, code: &Code) -> Result<BTreeMap<String, usize>, Fai
     let source = rne_emit::without_c_tests(&code.text);
     let found = misra::violations(&toolchain::misra(folder, &code.source, source)?);
     if let Some((rule, places)) = found.iter().find(|(rule, _)| misra::deviation(rule).is_none()) {
-        return Err(Failure::input(format_args!(
+        return Err(input_error!(
             "cppcheck reports rule {rule} of MISRA C:2012, for which no deviation is recorded, at {}",
             places.join(", ")
-        )));
+        ));
     }
     Ok(found.into_iter().map(|(rule, places)| (rule, places.len())).collect())
-}
-
-/// The cost of a call: of the function and of those that it calls.
-fn cost(core: Core, image: &Image, symbol: &str, callees: &[String]) -> Result<Cost, NoFigures> {
-    // the compiler makes copies of static functions, with a point in their names
-    let is_of = |name: &str, own: &String| name.strip_prefix(own).is_some_and(|s| s.is_empty() || s.starts_with('.'));
-    let may_be_called = |name: &str| name.contains("sin_cos") || callees.iter().any(|own| is_of(name, own));
-    let figures = image.straight_but_for(symbol, may_be_called)?;
-    let executed = image.executed(symbol, &may_be_called)?;
-    let mut counter = Counter::default();
-    for name in &executed {
-        counter.add(core, &image.function(name)?.lines);
-    }
-    let frame = |function: &rne_certify::image::Function| cycles::stack(&function.lines);
-    let stack = image.deepest(symbol, &may_be_called, &frame)?;
-    let worst = counter.cycles();
-    let mut called = BTreeMap::new();
-    for callee in executed.into_iter().skip(1) {
-        *called.entry(callee).or_default() += 1;
-    }
-    Ok(Cost {
-        instructions: figures.instructions,
-        cycles: worst.total,
-        bound: core.bound(),
-        waits: worst.waits,
-        classes: worst.classes,
-        unknown: worst.unknown,
-        assumptions: core.assumptions().into_iter().map(str::to_owned).collect(),
-        code: figures.code,
-        constants: figures.constants,
-        stack: figures.stack,
-        stack_of_listing: stack,
-        calls: called,
-    })
-}
-
-pub(super) fn file_name(path: &Path) -> String {
-    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
-}
-
-/// The options that `rne emit` takes, too.
-fn of_emit(arguments: &Arguments) -> String {
-    let mut options = String::new();
-    if let Some(prefix) = &arguments.prefix {
-        let _ = write!(options, " --prefix {prefix}");
-    }
-    for (option, _) in arguments.flags().into_iter().filter(|(_, is_given)| *is_given) {
-        let _ = write!(options, " {option}");
-    }
-    options += &emit::of_order(arguments.order);
-    options
-}
-
-/// The functions as a list for an option.
-fn list(functions: &[Function]) -> String {
-    functions.iter().map(|function| function.name()).collect::<Vec<_>>().join(",")
-}
-
-/// The command that writes the code that is certified.
-fn emit(arguments: &Arguments, source: &str) -> String {
-    let file = robot_file::shell(Path::new(&file_name(&arguments.file)));
-    let sine = if arguments.lang == Language::Rust { " --with-sin-cos" } else { "" };
-    format!(
-        "rne emit {file} --lang {} --function {} --form {}{sine}{} -o {source}",
-        arguments.lang.name(),
-        list(&arguments.programs()),
-        arguments.form,
-        of_emit(arguments)
-    )
-}
-
-/// The command that makes the certificate: the file by its name, so that the page is the same in each folder.
-fn command(arguments: &Arguments) -> String {
-    let lang = arguments.lang.name();
-    let mut function = format!("--function {}", list(&arguments.programs()));
-    if arguments.observer {
-        let _ = write!(function, " --observer --gain {} --period {}", arguments.gain, arguments.period);
-    }
-    let mut command = format!(
-        "rne certify {} --lang {lang} --cpu {} {function} --form {} --states {} --seed {}",
-        robot_file::shell(Path::new(&file_name(&arguments.file))),
-        arguments.cpu.name(),
-        arguments.form,
-        arguments.states,
-        arguments.seed
-    );
-    if let Some(compiler) = arguments.cc.as_ref().filter(|compiler| *compiler != arguments.lang.compiler()) {
-        let _ = write!(command, " --cc {}", robot_file::shell(Path::new(compiler)));
-    }
-    if !arguments.cc_options.is_empty() {
-        let _ = write!(command, " --cc-options={}", robot_file::shell(Path::new(&arguments.cc_options)));
-    }
-    command.push_str(&of_emit(arguments));
-    if let Some(source) = &arguments.source {
-        let _ = write!(command, " --source {}", robot_file::shell(Path::new(&file_name(source))));
-    }
-    if arguments.json {
-        command.push_str(" --json");
-    }
-    command
 }

@@ -167,7 +167,7 @@ fn misnamed_golden(path: &Path) -> Option<String> {
 fn plan(robot_file: &Path) -> Result<Good, Failure> {
     let robot = robot_file::robot(robot_file, Shape::Coupled)?;
     let Some(read) = plan_file::read(robot_file, &robot)? else {
-        return Err(Failure::input(format_args!("there is no plan {}", plan_of(robot_file).display())));
+        return Err(input_error!("there is no plan {}", plan_of(robot_file).display()));
     };
     let counts = plan_file::verify(&robot, &read)?;
     let planned = counts.first().map_or(0, |(.., total)| *total);

@@ -1,28 +1,27 @@
 //! `rne emit`: code that compiles by itself.
 
 pub(super) mod c;
+mod files;
+pub(super) mod functions;
+pub(super) mod options;
 
-use std::fmt::Write as _;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use rne_codegen::CheckFor as _;
-use rne_codegen::{Form, Function, Order, Program, Target, ordered_for_registers};
+use rne_codegen::{Form, Order, Program};
 use rne_emit::{Precision, Prefix};
-use rne_model::{FrameId, Robot};
+use rne_model::Robot;
 
-use crate::commands::emit::c::{ForGpu, Header, Request, c_code, for_gpu, header_beside};
+use crate::commands::emit::c::{Header, Request, c_code, for_gpu, header_beside};
+use crate::commands::emit::files::Generated;
 use crate::commands::eval::golden;
-use crate::files::chosen_arm::{Rotors, not_of_frames};
-use crate::files::file_name::{self, Format};
-use crate::files::output_file::{self, Existing, is_standard_output};
-use crate::files::plan_file::Compiler;
+use crate::files::chosen_arm::Rotors;
+use crate::files::file_name::Format;
+use crate::files::output_file::is_standard_output;
 use crate::files::robot_file::{self, Frames, Shape};
 use crate::outcome::{Failure, Outcome};
-use crate::palette::{GOOD, TITLE, TYPED, WARNING};
-use crate::values::choice;
-use crate::values::choice::FunctionOrAll;
+use crate::palette::{TITLE, TYPED, WARNING};
+use crate::values::choice::{self, FunctionOrAll};
 
 /// Write the generated code in Rust, C, CUDA or PTX
 #[derive(Args)]
@@ -140,31 +139,26 @@ enum Language {
 }
 
 impl Language {
-    const fn name(self) -> &'static str {
+    /// The name on the command line, the name in a sentence, and the ending of a file.
+    const fn words(self) -> [&'static str; 3] {
         match self {
-            Self::Rust => "rust",
-            Self::C => "c",
-            Self::Cuda => "cuda",
-            Self::Ptx => "ptx",
+            Self::Rust => ["rust", "Rust", "rs"],
+            Self::C => ["c", "C", "c"],
+            Self::Cuda => ["cuda", "CUDA", "cuh"],
+            Self::Ptx => ["ptx", "PTX", "ptx"],
         }
+    }
+
+    const fn name(self) -> &'static str {
+        self.words()[0]
     }
 
     const fn title(self) -> &'static str {
-        match self {
-            Self::Rust => "Rust",
-            Self::C => "C",
-            Self::Cuda => "CUDA",
-            Self::Ptx => "PTX",
-        }
+        self.words()[1]
     }
 
     const fn extension(self) -> &'static str {
-        match self {
-            Self::Rust => "rs",
-            Self::C => "c",
-            Self::Cuda => "cuh",
-            Self::Ptx => "ptx",
-        }
+        self.words()[2]
     }
 
     const fn format(self) -> Format {
@@ -194,28 +188,22 @@ impl Real {
     }
 }
 
-/// A file as it is to be.
-struct Generated {
-    path: PathBuf,
-    text: String,
-}
-
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    only_of_one_language(arguments)?;
-    is_named_once(&arguments.run_time)?;
+    options::only_of_one_language(arguments)?;
+    options::is_named_once(&arguments.run_time)?;
     if arguments.casadi && !arguments.run_time.is_empty() {
-        return Err(Failure::usage(format_args!(
+        return Err(usage_error!(
             "the functions that CasADi calls have no parameters, so all numbers of the robot file are constants there: \
              leave out {TYPED}--run-time{TYPED:#} or {TYPED}--casadi{TYPED:#}"
-        )));
+        ));
     }
     let out = arguments.output.as_deref().filter(|out| !is_standard_output(out)).or(arguments.check.as_deref());
     if arguments.check.as_deref().is_some_and(is_standard_output) {
-        return Err(Failure::usage(format_args!(
+        return Err(usage_error!(
             "{TYPED}--check{TYPED:#} compares with a file, so it needs the name of a file and not standard output"
-        )));
+        ));
     }
-    out.map_or(Ok(()), |out| is_named_for(arguments.lang, out))?;
+    out.map_or(Ok(()), |out| options::is_named_for(arguments.lang, out))?;
     let header = out.filter(|_| arguments.lang == Language::C).map(header_beside).transpose()?;
     let names: Vec<&str> = arguments.run_time.iter().map(String::as_str).collect();
     let of_urdf = if arguments.frames.is_empty() { Frames::Dropped } else { Frames::Kept };
@@ -224,7 +212,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.names_joints(&robot) {
         checked.identifiers.map_err(|report| Failure::from(&report))?;
     }
-    let programs = programs(arguments, &robot)?;
+    let programs = functions::programs(arguments, &robot)?;
     let mut outcome = emitted(arguments, &robot, &programs, &bytes, out, header)?;
     outcome.remark += &not_for_casadi(arguments, &programs);
     outcome.remark += &arguments.rotors.note(&robot);
@@ -250,27 +238,7 @@ fn emitted(
     out: Option<&Path>,
     header: Option<Header>,
 ) -> Result<Outcome, Failure> {
-    if arguments.casadi && !programs.iter().any(rne_emit::is_for_casadi) {
-        return Err(Failure::usage(format_args!(
-            "CasADi can call none of these functions: it calls functions that take vectors and return a number, a \
-             vector or a matrix, such as {TYPED}--function inverse_dynamics,forward_dynamics{TYPED:#}"
-        )));
-    }
-    if arguments.casadi {
-        let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
-        if let Some(name) = rne_emit::casadi_collision(programs, &prefix) {
-            return Err(Failure::usage(format_args!(
-                "two functions would have the name {name}: one for CasADi, and one of C, whose names begin with \
-                 {prefix}. Choose other names in C: {TYPED}--prefix my_arm{TYPED:#}"
-            )));
-        }
-    }
-    if arguments.rollout && !programs.iter().any(|program| rne_emit::is_for_rollouts(program.function)) {
-        return Err(Failure::usage(format_args!(
-            "none of these functions can be rolled out; ask for \
-             {TYPED}--function forward_dynamics,forward_dynamics_with_payload{TYPED:#}, or for one of the two"
-        )));
-    }
+    are_for_options(arguments, robot, programs)?;
     let precision = if arguments.casadi { Real::Double } else { arguments.real.unwrap_or(Real::Float) }.precision();
     let request = Request {
         file: &arguments.file,
@@ -292,8 +260,7 @@ fn emitted(
     let names = if arguments.names_joints(robot) { rne_emit::rust_joints(robot) } else { String::new() };
     let rust = || Ok::<_, Failure>(rust_file(robot, programs) + &names + &rust_tests(arguments, robot, programs)?);
     let shown = |text: String| if arguments.ascii { rne_emit::ascii(&text) } else { text };
-    let language = if arguments.lang == Language::Cuda { ForGpu::Cuda } else { ForGpu::Ptx };
-    let gpu = || for_gpu(language, &request, robot, programs);
+    let gpu = || for_gpu(arguments.lang, &request, robot, programs);
     let generated = |path: &Path, text| Generated { path: path.to_owned(), text };
     let files = match (arguments.lang, out, header) {
         (Language::Rust, None, _) => return Ok(Outcome::text(shown(rust()?))),
@@ -308,24 +275,33 @@ fn emitted(
         (_, Some(out), _) => vec![generated(out, gpu()?)],
     };
     match &arguments.check {
-        Some(out) => check(arguments, out, &files),
-        None => write(arguments, &files),
+        Some(out) => files::check(arguments, out, &files),
+        None => files::write(arguments, &files),
     }
 }
 
-/// Refuses rollouts of a robot whose own equations of motion no kernel integrates.
-fn can_be_rolled_out(arguments: &Arguments, robot: &Robot) -> Result<(), Failure> {
-    if !robot.closed.is_empty() {
-        return Err(Failure::usage(format_args!(
-            "a robot with closed loops cannot be rolled out in a kernel; leave {TYPED}--rollout{TYPED:#} out: \
-             {TYPED}--function forward_dynamics_of_loops{TYPED:#} writes a kernel of its accelerations"
-        )));
+/// Refuses options for CasADi and for rollouts that have no function among these.
+fn are_for_options(arguments: &Arguments, robot: &Robot, programs: &[Program]) -> Result<(), Failure> {
+    if arguments.casadi && !programs.iter().any(rne_emit::is_for_casadi) {
+        return Err(usage_error!(
+            "CasADi can call none of these functions: it calls functions that take vectors and return a number, a \
+             vector or a matrix, such as {TYPED}--function inverse_dynamics,forward_dynamics{TYPED:#}"
+        ));
     }
-    if robot.floating_base.is_some() && arguments.functions.is_empty() {
-        return Err(Failure::usage(format_args!(
-            "a robot on a floating base cannot be rolled out in a kernel; {TYPED}--function forward_dynamics{TYPED:#} \
-             rolls out the robot with a locked base"
-        )));
+    if arguments.casadi {
+        let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
+        if let Some(name) = rne_emit::casadi_collision(programs, &prefix) {
+            return Err(usage_error!(
+                "two functions would have the name {name}: one for CasADi, and one of C, whose names begin with \
+                 {prefix}. Choose other names in C: {TYPED}--prefix my_arm{TYPED:#}"
+            ));
+        }
+    }
+    if arguments.rollout && !programs.iter().any(|program| rne_emit::is_for_rollouts(program.function)) {
+        return Err(usage_error!(
+            "none of these functions can be rolled out; ask for \
+             {TYPED}--function forward_dynamics,forward_dynamics_with_payload{TYPED:#}, or for one of the two"
+        ));
     }
     Ok(())
 }
@@ -348,79 +324,6 @@ fn not_for_casadi(arguments: &Arguments, programs: &[Program]) -> String {
     )
 }
 
-/// A file whose name says that it is in another language.
-fn is_named_for(lang: Language, out: &Path) -> Result<(), Failure> {
-    let extension = out.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    let (is_other, other) = match lang {
-        Language::Rust => (matches!(extension.as_str(), "c" | "h" | "cc" | "cpp" | "cxx" | "hpp"), Language::C),
-        Language::C => (matches!(extension.as_str(), "rs" | "cc" | "cpp" | "cxx" | "hpp"), Language::Rust),
-        Language::Cuda | Language::Ptx => return Ok(()),
-    };
-    if !is_other {
-        return Ok(());
-    }
-    let right = out.with_extension(lang.extension());
-    let instead = if extension == other.extension() {
-        format!(", or ask for {TYPED}--lang {}{TYPED:#}", other.name())
-    } else {
-        String::new()
-    };
-    Err(Failure::usage(format_args!(
-        "{} is not a name for a file in {}; name it {TYPED}{}{TYPED:#}{instead}",
-        out.display(),
-        lang.title(),
-        right.display()
-    )))
-}
-
-fn is_named_once(run_time: &[String]) -> Result<(), Failure> {
-    if run_time.iter().any(String::is_empty) {
-        return Err(Failure::usage("--run-time names no parameter; write --run-time NAME,NAME"));
-    }
-    let twice = run_time.iter().enumerate().find(|(index, name)| run_time[..*index].contains(name));
-    twice.map_or(Ok(()), |(_, name)| Err(Failure::usage(format_args!("--run-time names {name} twice"))))
-}
-
-fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
-    use Language::{C, Cuda, Ptx, Rust};
-    let options: [(&str, bool, &[Language], &str); 11] = [
-        (
-            "--with-sin-cos",
-            arguments.with_sin_cos,
-            &[Rust],
-            "code in other languages always contains its sine and cosine",
-        ),
-        ("--real", arguments.real.is_some(), &[C, Ptx], "code in Rust and CUDA is generic over the number type"),
-        ("--prefix", arguments.prefix.is_some(), &[C, Cuda, Ptx], "a file of Rust is a module with a name of its own"),
-        ("--friction", arguments.friction, &[C], "in Rust, the derive `Actuation` computes friction"),
-        ("--limits", arguments.limits, &[C], "in Rust, `f64::clamp` limits a torque"),
-        ("--runge-kutta", arguments.runge_kutta, &[C], "in Rust, every type with `ForwardDynamics` has the step"),
-        ("--rollout", arguments.rollout, &[Ptx], "`CompiledArm::rollout` rolls samples out on the processor"),
-        (
-            "--order registers",
-            arguments.order == Order::Registers,
-            &[Rust, C, Cuda],
-            "kernels of PTX always have an order in which few values are alive at once",
-        ),
-        ("--names", arguments.names, &[Rust, C], "code for processors of graphics has functions alone"),
-        ("--tests", arguments.tests, &[Rust, C], "code for processors of graphics has functions alone"),
-        ("--casadi", arguments.casadi, &[C], "CasADi calls functions of C"),
-    ];
-    if arguments.casadi && arguments.real == Some(Real::Float) {
-        return Err(Failure::usage(format_args!(
-            "{TYPED}--real float{TYPED:#} is not for CasADi, which computes in double precision. Write \
-             {TYPED}--real double{TYPED:#}"
-        )));
-    }
-    let refused = options.iter().find(|(_, is_given, of, _)| *is_given && !of.contains(&arguments.lang));
-    let Some((option, _, of, why)) = refused else { return Ok(()) };
-    let of: Vec<String> = of.iter().map(|lang| format!("{TYPED}--lang {}{TYPED:#}", lang.name())).collect();
-    Err(Failure::usage(format_args!(
-        "{TYPED}{option}{TYPED:#} is for {}: {why}. Leave it out, or ask for another language",
-        of.join(" and ")
-    )))
-}
-
 /// The tests of code in Rust, where they are asked for.
 fn rust_tests(arguments: &Arguments, robot: &Robot, programs: &[Program]) -> Result<String, Failure> {
     if !arguments.tests {
@@ -428,253 +331,4 @@ fn rust_tests(arguments: &Arguments, robot: &Robot, programs: &[Program]) -> Res
     }
     let golden = golden::of_programs(robot, programs, Precision::Double)?;
     Ok(rne_emit::rust_tests(robot, programs, &golden))
-}
-
-/// The functions asked for, each once, in the order of the traits.
-fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
-    let asked = &arguments.functions;
-    if asked.contains(&FunctionOrAll::All) {
-        return choice::functions_of(robot).collect();
-    }
-    let (is_for_casadi, has_frames) = (arguments.casadi && robot.closed.is_empty(), !arguments.frames.is_empty());
-    let is_asked = |function: &Function| match asked.as_slice() {
-        _ if (arguments.acados || arguments.runge_kutta) && *function == Function::ForwardDynamics => true,
-        // with its derivatives
-        [] if arguments.runge_kutta && *function == Function::ForwardDynamicsDerivatives => true,
-        // each option adds its functions
-        [] if arguments.runge_kutta || arguments.rollout || is_for_casadi || has_frames => match function {
-            Function::InverseDynamics => is_for_casadi,
-            Function::ForwardDynamics => is_for_casadi || arguments.rollout,
-            function => has_frames && function.of_frame().is_some(),
-        },
-        // tips are there for their wrenches
-        [] => {
-            Function::TORQUES.contains(function)
-                || matches!(function, Function::ClosureStep | Function::InverseDynamicsOfLoops)
-                || (*function == Function::InverseDynamicsWithWrenches && !robot.tips.is_empty())
-        }
-        asked => asked.contains(&FunctionOrAll::One(*function)),
-    };
-    // a function by its name is refused by the compiler, which says why the robot has it not
-    let of_robot: Vec<Function> = match asked.as_slice() {
-        [] if arguments.runge_kutta => rne_codegen::functions_of(robot).chain([Function::ForwardDynamics]).collect(),
-        [] => rne_codegen::functions_of(robot).collect(),
-        _ => Function::ALL.to_vec(),
-    };
-    let asked: Vec<Function> = of_robot.into_iter().filter(is_asked).collect();
-    let for_derivatives = asked.iter().filter(|_| arguments.casadi);
-    let for_derivatives: Vec<Function> =
-        for_derivatives.flat_map(|&function| rne_emit::casadi_derivatives(function)).collect();
-    let is_needed = |function: &Function| asked.contains(function) || for_derivatives.contains(function);
-    Function::ALL.into_iter().filter(is_needed).collect()
-}
-
-fn compiled(arguments: &Arguments, compiler: &Compiler<'_>, function: Function) -> Result<Program, Failure> {
-    let is_for_derivatives = arguments.casadi && !arguments.functions.contains(&FunctionOrAll::One(function));
-    compiler.compile(function, arguments.form()).map_err(|mut failure| {
-        if is_for_derivatives {
-            let _ = write!(
-                failure.text,
-                "\n`{function}` is needed for CasADi's derivatives of another function. Name the functions that you \
-                 need, such as {TYPED}--function inverse_dynamics{TYPED:#}"
-            );
-        }
-        failure
-    })
-}
-
-fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failure> {
-    // kernels of a batch want the fewest instructions
-    let target = if arguments.lang == Language::Ptx { Target::Throughput } else { Target::Latency };
-    let compiler = Compiler::new(&arguments.file, robot).for_target(target);
-    if arguments.rollout {
-        can_be_rolled_out(arguments, robot)?;
-    }
-    let functions = functions(arguments, robot);
-    functions.iter().try_for_each(|function| function.check_base(robot)).map_err(Failure::usage)?;
-    let (of_frames, of_arm): (Vec<_>, Vec<_>) = functions.iter().partition(|function| function.of_frame().is_some());
-    if !arguments.frames.is_empty() && of_frames.is_empty() {
-        return Err(not_of_frames("none of the functions that are written is one of them"));
-    }
-    let of_tip = if arguments.frames.is_empty() { &functions } else { &of_arm };
-    let mut programs: Vec<Program> =
-        of_tip.iter().map(|&function| compiled(arguments, &compiler, function)).collect::<Result<_, _>>()?;
-    for frame in frames(arguments, robot)? {
-        let robot = robot.clone().at_frame(frame);
-        let compiler = Compiler::new(&arguments.file, &robot).for_target(target);
-        for &function in &of_frames {
-            let program = compiler.compile(function, arguments.form())?;
-            if let Some(other) = programs.iter().find(|other| other.name == program.name) {
-                return Err(Failure::usage(format_args!(
-                    "the frames {} and {} both give the name {}; write them to two files",
-                    other.frame.as_deref().unwrap_or("tip"),
-                    robot.frame_name(frame),
-                    program.name
-                )));
-            }
-            programs.push(program);
-        }
-    }
-    in_order(arguments.order, arguments.form(), programs)
-}
-
-/// Programs with their statements in an order.
-pub(super) fn in_order(order: Order, form: Form, programs: Vec<Program>) -> Result<Vec<Program>, Failure> {
-    match (order, form) {
-        (Order::Formulas, _) => Ok(programs),
-        (Order::Registers, Form::SevenSteps) => Err(Failure::usage(format_args!(
-            "{TYPED}--order registers{TYPED:#} is for {TYPED}--form reduced{TYPED:#}: code of the seven steps keeps \
-             their order, and code in Rust has this form unless you write {TYPED}--form reduced{TYPED:#}"
-        ))),
-        (Order::Registers, Form::Reduced) => Ok(programs.iter().map(ordered_for_registers).collect()),
-    }
-}
-
-/// The option of an order, where it is not the usual one.
-pub(super) fn of_order(order: Order) -> String {
-    if order == Order::Formulas { String::new() } else { format!(" --order {order}") }
-}
-
-/// The frames asked for, or those of the list `frames`.
-fn frames(arguments: &Arguments, robot: &Robot) -> Result<Vec<FrameId>, Failure> {
-    if arguments.frames.is_empty() {
-        return Ok((0..robot.frames.len()).map(FrameId::Named).collect());
-    }
-    arguments.frames.iter().map(|name| robot.frame(name).map_err(Failure::usage)).collect()
-}
-
-/// The title before the mark may take several lines.
-fn is_ours(text: &str) -> bool {
-    let mut heading = text.lines().take_while(|line| line.starts_with("//"));
-    let is_mark = |line: &str| line.starts_with(rne_emit::GENERATED);
-    heading.any(|line| ["//! ", "// "].iter().any(|mark| line.strip_prefix(mark).is_some_and(is_mark)))
-}
-
-/// Writes all files, or none if one of them is another's.
-fn write(arguments: &Arguments, files: &[Generated]) -> Result<Outcome, Failure> {
-    files.iter().try_for_each(|file| may_be_written(arguments, &file.path))?;
-    for path in files.iter().map(|file| &file.path) {
-        let made = path.parent().map_or(Ok(()), fs::create_dir_all);
-        made.map_err(|error| output_file::unwritable(path, &error))?;
-    }
-    let files: Vec<(&Path, &str)> = files.iter().map(|file| (file.path.as_path(), file.text.as_str())).collect();
-    output_file::write_all(&files).map(Outcome::remark)
-}
-
-fn may_be_written(arguments: &Arguments, out: &Path) -> Result<(), Failure> {
-    if output_file::is_same(out, &arguments.file) {
-        let message = format!("{} is the robot file itself; write the code to another file", out.display());
-        return Err(Failure::usage(message));
-    }
-    file_name::check(out, arguments.lang.format())?;
-    match output_file::existing(out) {
-        Existing::Nothing => Ok(()),
-        Existing::Text(text) if is_ours(&text) || arguments.force => Ok(()),
-        Existing::Other if arguments.force => Ok(()),
-        Existing::Text(_) | Existing::Other => Err(Failure::usage(format_args!(
-            "{} was not generated by rne and is not changed; {TYPED}--force{TYPED:#} overwrites it",
-            out.display()
-        ))),
-        Existing::Folder => Err(Failure::usage(format_args!(
-            "{0} is a folder; name a file, such as {0}/robot.{1}",
-            out.display(),
-            arguments.lang.extension()
-        ))),
-        Existing::Special => Err(Failure::usage(format_args!("{} is not a regular file; name another", out.display()))),
-        Existing::Unreadable(error) => Err(output_file::unreadable(out, &error)),
-    }
-}
-
-/// Compares all files. The message names the first that differs, and the command that writes them all.
-fn check(arguments: &Arguments, out: &Path, files: &[Generated]) -> Result<Outcome, Failure> {
-    let mut stale: Option<String> = None;
-    let mut force = "";
-    let mut remark = String::new();
-    for Generated { path, text } in files {
-        let shown = path.display();
-        let why = match output_file::existing(path) {
-            Existing::Text(found) if found == *text => {
-                let _ = writeln!(remark, "{GOOD}up to date:{GOOD:#} {shown}");
-                continue;
-            }
-            Existing::Text(found) if is_ours(&found) => {
-                format!("{shown} is stale: {}", first_difference(&found, text))
-            }
-            Existing::Text(_) | Existing::Other => {
-                force = " --force";
-                format!("{shown} was not generated by rne")
-            }
-            Existing::Nothing => format!("there is no file {shown}"),
-            Existing::Folder => return Err(Failure::usage(format_args!("{shown} is a folder"))),
-            Existing::Special => return Err(Failure::usage(format_args!("{shown} is not a regular file"))),
-            Existing::Unreadable(error) => format!("{shown} cannot be read: {error}"),
-        };
-        stale.get_or_insert(why);
-    }
-    match stale {
-        None => Ok(Outcome::remark(remark)),
-        Some(why) => Err(Failure::input(format_args!(
-            "{why}\n\nto write it: {TYPED}{}{force}{TYPED:#}",
-            command(arguments, out)
-        ))),
-    }
-}
-
-fn first_difference(found: &str, expected: &str) -> String {
-    let (mut found, mut expected) = (found.lines(), expected.lines());
-    let mut number = 1;
-    loop {
-        match (found.next(), expected.next()) {
-            (Some(a), Some(b)) if a == b => number += 1,
-            (None, None) => return "its line ends differ".to_owned(),
-            (a, b) => {
-                let quote =
-                    |line: Option<&str>| line.map_or("the end of the file".to_owned(), |line| format!("`{line}`"));
-                return format!("line {number} is {}, but rne would write {}", quote(a), quote(b));
-            }
-        }
-    }
-}
-
-/// The command that writes `out`.
-fn command(arguments: &Arguments, out: &Path) -> String {
-    let mut command = format!("rne emit {} --lang {}", robot_file::shell(&arguments.file), arguments.lang.name());
-    if let Some(real) = arguments.real {
-        let _ = write!(command, " --real {}", real.precision().c_type());
-    }
-    if let Some(prefix) = &arguments.prefix {
-        let _ = write!(command, " --prefix {prefix}");
-    }
-    for function in &arguments.functions {
-        let _ = write!(command, " --function {function}");
-    }
-    if !arguments.frames.is_empty() {
-        let _ = write!(command, " --frame {}", arguments.frames.join(","));
-    }
-    if arguments.rotors.rotors {
-        command.push_str(" --rotors");
-    }
-    if let Some(form) = arguments.form {
-        let _ = write!(command, " --form {form}");
-    }
-    command.push_str(&of_order(arguments.order));
-    if !arguments.run_time.is_empty() {
-        let _ = write!(command, " --run-time {}", arguments.run_time.join(","));
-    }
-    for (option, is_given) in [
-        (" --friction", arguments.friction),
-        (" --limits", arguments.limits),
-        (" --runge-kutta", arguments.runge_kutta),
-        (" --rollout", arguments.rollout),
-        (" --names", arguments.names),
-        (" --with-sin-cos", arguments.with_sin_cos),
-        (" --casadi", arguments.casadi),
-        (" --acados", arguments.acados),
-        (" --tests", arguments.tests),
-        (" --ascii", arguments.ascii),
-    ] {
-        command.push_str(if is_given { option } else { "" });
-    }
-    let _ = write!(command, " -o {}", robot_file::shell(out));
-    command
 }

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use clap::Args;
 use rne::DynArm;
 use rne_codegen::CheckFor as _;
-use rne_codegen::{Argument, Function, Layout, Record, Step};
+use rne_codegen::{Argument, Function, Record, Step};
 use rne_diagnose::worksheet::{Quantity, Worksheet};
 use rne_machine::CompiledArm;
 use rne_model::Robot;
@@ -167,18 +167,9 @@ fn impossible_payload(arguments: &Arguments) -> String {
     })
 }
 
+/// The results at the states of a table, at random states, or at one state.
 fn computed(arguments: &Arguments, robot: Robot) -> Result<Outcome, Failure> {
-    let is_at_frame = arguments.at.frame.is_some();
-    let has_loops = !robot.closed.is_empty();
-    let function = arguments.function.unwrap_or(match (&arguments.given.wrench, is_at_frame) {
-        _ if has_loops && !arguments.given.tip_wrench.is_empty() => Function::InverseDynamicsOfLoopsWithWrenches,
-        (None, false) if has_loops => Function::InverseDynamicsOfLoops,
-        _ if !arguments.given.tip_wrench.is_empty() => Function::InverseDynamicsWithWrenches,
-        (Some(_), true) => Function::WrenchTorques,
-        (None, true) => Function::ForwardKinematics,
-        (Some(_), false) => Function::InverseDynamicsWithWrench,
-        (None, false) => Function::InverseDynamics,
-    });
+    let function = arguments.asked(&robot);
     arguments.at.check(function)?;
     function.check_for(&robot).map_err(Failure::usage)?;
     arguments.arm.check(function)?;
@@ -200,7 +191,7 @@ fn computed(arguments: &Arguments, robot: Robot) -> Result<Outcome, Failure> {
         .run();
     }
     if let Some(states) = arguments.golden {
-        if has_loops {
+        if !robot.closed.is_empty() {
             return Err(Failure::usage("--golden writes torques of open trees; this robot has closed loops"));
         }
         let settings: Vec<String> =
@@ -209,23 +200,33 @@ fn computed(arguments: &Arguments, robot: Robot) -> Result<Outcome, Failure> {
     }
     let (function, robot) = arguments.loaded(function, robot)?;
     arguments.check(function, &robot)?;
-    let (sheet, of_sheet) = arguments.sheet(function, &robot)?;
+    at_one_state(arguments, function, &robot)
+}
+
+/// The result at the state of the command line, or of a worksheet.
+fn at_one_state(arguments: &Arguments, function: Function, robot: &Robot) -> Result<Outcome, Failure> {
+    let (sheet, of_sheet) = arguments.sheet(function, robot)?;
     let payload = arguments.arm.carried.payload.clone().filter(|_| function.takes(Argument::Payload));
     let given = Given { payload, ..arguments.given.clone() };
     let (given, assumed) = given.or_state(of_sheet).at_rest(function, robot.dof());
-    let state = State::new(function, &given, &robot)?;
-    let arm = DynArm::from_robot(&robot);
+    let state = State::new(function, &given, robot)?;
+    let arm = DynArm::from_robot(robot);
     // The lengths are checked, so this error does not occur; if it does, it says what is wrong.
     let numbers = state.numbers(&arm).map_err(Failure::usage)?;
     if let Some(index) = numbers.iter().position(|number| !number.is_finite()) {
-        return Err(Failure::input(not_finite(&robot, function, index, &state.q)));
+        return Err(Failure::input(not_finite(robot, function, index, &state.q)));
     }
-    if is_singular(&robot, function, [&state.q, &state.passive], state.payload.as_ref()) {
-        return Err(Failure::input(format_args!("{function} has no result: {BUT_FOR_ROUNDING}")));
+    if is_singular(robot, function, [&state.q, &state.passive], state.payload.as_ref()) {
+        return Err(input_error!("{function} has no result: {BUT_FOR_ROUNDING}"));
     }
-    let mut remark = limits::remark(&robot, [&state.q, &state.qd], &state.passive)
-        + &closure::remark(&robot, &arm, &state, arguments.given.passive.is_some());
-    if is_indefinite(&robot, function, [&state.q, &state.passive], state.payload.as_ref()) {
+    if let Some(sheet) = &sheet {
+        let digits = arguments.digits.unwrap_or(DIGITS_BY_HAND);
+        let manner = Manner { digits, json: arguments.json, hint: arguments.hint };
+        return compare::run(sheet, robot, &worksheet::situation(&state, robot.dof()), manner);
+    }
+    let mut remark = limits::remark(robot, [&state.q, &state.qd], &state.passive)
+        + &closure::remark(robot, &arm, &state, arguments.given.passive.is_some());
+    if is_indefinite(robot, function, [&state.q, &state.passive], state.payload.as_ref()) {
         let _ = writeln!(remark, "note: {NOT_DEFINITE}");
     }
     if !assumed.is_empty() {
@@ -235,39 +236,38 @@ fn computed(arguments: &Arguments, robot: Robot) -> Result<Outcome, Failure> {
         };
         let _ = writeln!(remark, "note: {names} not given, so these numbers are 0");
     }
-    let result = || grouped(&function.layout(rne_codegen::sizes_of(&robot)), &numbers);
-    if !arguments.trace {
-        if arguments.json {
-            return Ok(Outcome { remark, ..Outcome::json(&json!({ "result": result() }))? });
-        }
-        let mut text = answer::text(&robot, &state, &numbers);
+    let text = if arguments.trace {
+        traced(arguments, robot, &state, &numbers)?
+    } else if arguments.json {
+        Outcome::json(&json!({ "result": result(robot, function, &numbers) }))?.text
+    } else {
+        let mut text = answer::text(robot, &state, &numbers);
         if arguments.arm.carried.payload.is_some() && !function.takes(Argument::Payload) {
             let _ = writeln!(text, "{QUIET}the payload of --payload is a part of the link that carries it{QUIET:#}");
         }
-        return Ok(Outcome { remark, ..Outcome::text(text) });
-    }
-    let situation = worksheet::situation(&state, robot.dof());
-    if let Some(sheet) = &sheet {
-        let digits = arguments.digits.unwrap_or(DIGITS_BY_HAND);
-        let manner = Manner { digits, json: arguments.json, hint: arguments.hint };
-        return compare::run(sheet, &robot, &situation, manner);
-    }
-    let narrowed = Narrowed { joint: choice::joint_of(&robot, arguments.joint.as_deref())?, step: arguments.step };
+        text
+    };
+    Ok(Outcome { remark, ..Outcome::text(text) })
+}
+
+/// The intermediate values of the seven steps, as CSV, as JSON, or as text with the result.
+fn traced(arguments: &Arguments, robot: &Robot, state: &State, numbers: &[f64]) -> Result<String, Failure> {
+    let narrowed = Narrowed { joint: choice::joint_of(robot, arguments.joint.as_deref())?, step: arguments.step };
     let axes = arguments.axes.unwrap_or(Axes::Link).into();
-    let sheet = Worksheet::new(&robot, &situation, axes).map_err(Failure::usage)?;
+    let situation = worksheet::situation(state, robot.dof());
+    let sheet = Worksheet::new(robot, &situation, axes).map_err(Failure::usage)?;
     if arguments.csv {
-        return Ok(Outcome { remark, ..Outcome::text(worksheet_text::csv(&robot, &sheet, narrowed)) });
+        return Ok(worksheet_text::csv(robot, &sheet, narrowed));
     }
     if arguments.json {
-        let text = worksheet_text::json(&robot, &sheet, narrowed, &result())?;
-        return Ok(Outcome { remark, ..Outcome::text(text) });
+        return worksheet_text::json(robot, &sheet, narrowed, &result(robot, state.function, numbers));
     }
-    let mut text = worksheet::text(&robot, &sheet, narrowed, &state, arguments.letters);
+    let mut text = worksheet::text(robot, &sheet, narrowed, state, arguments.letters);
     if narrowed.is_all() {
         text.push('\n');
-        text.push_str(&answer::text(&robot, &state, &numbers));
+        text.push_str(&answer::text(robot, state, numbers));
     }
-    Ok(Outcome { remark, ..Outcome::text(text) })
+    Ok(text)
 }
 
 impl Arguments {
@@ -283,16 +283,30 @@ impl Arguments {
         self.arm.robot_at(&self.at)
     }
 
+    /// The function that is named, or else the one that the wrenches, the frame and the loops suggest.
+    fn asked(&self, robot: &Robot) -> Function {
+        let has_loops = !robot.closed.is_empty();
+        self.function.unwrap_or(match (&self.given.wrench, self.at.frame.is_some()) {
+            _ if has_loops && !self.given.tip_wrench.is_empty() => Function::InverseDynamicsOfLoopsWithWrenches,
+            (None, false) if has_loops => Function::InverseDynamicsOfLoops,
+            _ if !self.given.tip_wrench.is_empty() => Function::InverseDynamicsWithWrenches,
+            (Some(_), true) => Function::WrenchTorques,
+            (None, true) => Function::ForwardKinematics,
+            (Some(_), false) => Function::InverseDynamicsWithWrench,
+            (None, false) => Function::InverseDynamics,
+        })
+    }
+
     /// Whether the function can be computed and traced for a robot.
     fn check(&self, function: Function, robot: &Robot) -> Result<(), Failure> {
         if self.trace && !function.returns_torques() {
             let is_traced = |f: &&Function| f.returns_torques() && f.check_for(robot).is_ok();
             let with: Vec<&str> = Function::ALL.iter().filter(is_traced).map(|f| f.name()).collect();
-            return Err(Failure::usage(format_args!(
+            return Err(usage_error!(
                 "--trace prints the steps that compute torques, but {function} does not compute torques; use one of \
                  these functions: {}",
                 with.join(", ")
-            )));
+            ));
         }
         if self.trace && !robot.is_serial() {
             return Err(Failure::usage(
@@ -327,22 +341,24 @@ impl Arguments {
             return Ok((function, carried.of(robot)?));
         }
         if carried.payload_on.is_some() {
-            return Err(Failure::usage(format_args!(
+            return Err(usage_error!(
                 "{function} takes a payload at the tip; for a payload at another frame, name the function without a \
                  payload, such as inverse_dynamics"
-            )));
+            ));
         }
         Ok((function, robot))
     }
 }
 
 /// Numbers in the shape in which a function returns them.
-fn grouped(layout: &Layout, numbers: &[f64]) -> Value {
+fn result(robot: &Robot, function: Function, numbers: &[f64]) -> Value {
     let record = |record: Record, parts| {
         let fields = record.fields().iter().copied().map(str::to_owned);
         Value::Object(fields.zip::<Vec<Value>>(parts).collect())
     };
-    layout.fold(&mut numbers.iter().map(|&number| Value::from(number)), &Value::Array, &record).unwrap_or_default()
+    let numbers = &mut numbers.iter().map(|&number| Value::from(number));
+    let layout = function.layout(rne_codegen::sizes_of(robot));
+    layout.fold(numbers, &Value::Array, &record).unwrap_or_default()
 }
 
 #[cfg(test)]

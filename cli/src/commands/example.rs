@@ -24,7 +24,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = rne_convert::shipped(&arguments.name).map_err(Failure::input)?;
     let text = if arguments.plan {
-        robot.plan.ok_or_else(|| Failure::input(format_args!("{} is shipped without a plan", robot.name)))?
+        robot.plan.ok_or_else(|| input_error!("{} is shipped without a plan", robot.name))?
     } else {
         robot.yaml
     };

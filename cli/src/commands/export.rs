@@ -55,22 +55,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let Some(out) = &arguments.output.out else {
             let stem = arguments.file.file_stem().map_or("arm".into(), |stem| stem.to_string_lossy());
             let name = robot_file::shell(&PathBuf::from(format!("{}.fmu", if stem == "-" { "arm" } else { &*stem })));
-            return Err(Failure::usage(format_args!(
+            return Err(usage_error!(
                 "{TYPED}--fmu{TYPED:#} needs the name of the file that it writes: add {TYPED}-o {name}{TYPED:#}"
-            )));
+            ));
         };
         let version = if version.starts_with('2') { FmiVersion::Two } else { FmiVersion::Three };
         return fmu::write(&arguments.file, version, arguments.options, out, arguments.output.force);
     }
     if let Some(option) = arguments.options.given() {
-        return Err(Failure::usage(format_args!(
+        return Err(usage_error!(
             "{TYPED}{option}{TYPED:#} is for FMUs. Leave it out, or ask for \
             {TYPED}--fmu{TYPED:#} instead of {TYPED}--urdf{TYPED:#}"
-        )));
+        ));
     }
     let robot = robot_file::robot(&arguments.file, Shape::Coupled)?;
-    let exported = rne_convert::export(&robot)
-        .map_err(|error| Failure::input(format_args!("{}: {error}", arguments.file.display())))?;
+    let exported =
+        rne_convert::export(&robot).map_err(|error| input_error!("{}: {error}", arguments.file.display()))?;
     let mut remark = String::new();
     for line in exported.remarks {
         let _ = writeln!(remark, "{line}");

@@ -1,7 +1,7 @@
-//! `rne firmware`: a folder with a firmware that computes a robot's torques.
+//! `rne firmware`: writes a folder with a firmware that computes a robot's torques.
 //!
-//! The folder `firmware/` has its files. They are those of `firmware/example`, for the PUMA 560, and valid as they
-//! stand; only the lines named in [`files`] change with the robot.
+//! The folder `firmware/` beside this file contains the files that are written. They are the files of
+//! `firmware/example`, a firmware that runs for the PUMA 560; for another robot, [`files`] replaces a few lines.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -115,10 +115,10 @@ fn robot_of(arguments: &Arguments) -> Result<PathBuf, Failure> {
     let begun = || names.iter().copied().find(|known| name.len() > 2 && known.starts_with(name.as_str()));
     match did_you_mean(name, names.iter().copied()).or_else(begun) {
         None => Ok(DEFAULT.into()),
-        Some(near) => Err(Failure::usage(format_args!(
+        Some(near) => Err(usage_error!(
             "there is no shipped robot {name}; did you mean {TYPED}--robot {near}{TYPED:#}? {name} is then the name of \
              the crate; for the PUMA 560, write {TYPED}--robot {DEFAULT}{TYPED:#}"
-        ))),
+        )),
     }
 }
 
@@ -131,11 +131,11 @@ fn dependency(clone: Option<&Path>) -> Result<String, Failure> {
     let is_rne = fs::read_to_string(clone.join("Cargo.toml")).is_ok_and(|text| text.contains("\nname = \"rne\"\n"));
     let path = std::path::absolute(clone).ok().filter(|_| is_rne);
     let path = path.as_deref().and_then(Path::to_str).ok_or_else(|| {
-        Failure::usage(format_args!(
+        usage_error!(
             "{} is not a clone of the rne repository, whose Cargo.toml contains the package rne; name the \
              folder of a clone",
             clone.display()
-        ))
+        )
     })?;
     // a string of JSON is one of TOML
     let path = serde_json::Value::from(path);

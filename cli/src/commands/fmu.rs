@@ -9,6 +9,7 @@ use std::process::Command;
 use clap::Args;
 use rne_codegen::{Form, Program};
 use rne_emit::{FmiVersion, Fmu, FmuCausality, Precision, Prefix};
+use rne_model::Robot;
 
 use crate::files::chosen_arm::Rotors;
 use crate::files::file_name::{self, Format};
@@ -49,26 +50,12 @@ pub(super) fn write(
     force: bool,
 ) -> Result<Outcome, Failure> {
     if is_standard_output(out) {
-        return Err(Failure::usage(format_args!(
-            "{TYPED}--fmu{TYPED:#} needs the name of a file, such as {TYPED}-o arm.fmu{TYPED:#}"
-        )));
+        return Err(usage_error!("{TYPED}--fmu{TYPED:#} needs the name of a file, such as {TYPED}-o arm.fmu{TYPED:#}"));
     }
     check_new(out, None, &[file], force)?;
     file_name::check(out, Format::Fmu)?;
     let checked = robot_file::read_with_free_parameters(file, Shape::Closed)?;
-    if checked.robot.floating_base.is_some() {
-        return Err(Failure::input(format_args!(
-            "{}: the base of this robot floats, and an FMU needs a fixed base; remove `floating_base` to fix the base",
-            file.display()
-        )));
-    }
-    if !checked.robot.closed.is_empty() {
-        return Err(Failure::input(format_args!(
-            "{}: this robot has closed loops, and an FMU needs a robot without closed loops; remove `loops`, or use \
-             {TYPED}rne emit --lang c{TYPED:#}, which writes functions of closed loops",
-            file.display()
-        )));
-    }
+    can_be_fmu(file, &checked.robot)?;
     let rotors = Rotors { rotors: options.rotors };
     let robot = rne_emit::with_inertial_parameters(rotors.of(checked.robot));
     let causality = if options.inverse { FmuCausality::Inverse } else { FmuCausality::Forward };
@@ -78,7 +65,7 @@ pub(super) fn write(
         functions.map(|&function| compiler.compile(function, Form::Reduced)).collect::<Result<_, _>>()?;
     let prefix = Prefix::of(&robot);
     let code = rne_emit::c_code(&robot, &programs, Precision::Double, &prefix)
-        .map_err(|error| Failure::input(format_args!("{}: {error}", file.display())))?;
+        .map_err(|error| input_error!("{}: {error}", file.display()))?;
     // the code says what is computed, and with which parameters
     let token = rne_certify::sha256(code.one_file().as_bytes());
     let fmu = Fmu { robot: &robot, programs: &programs, code: &code, version, causality, token: &token };
@@ -104,20 +91,38 @@ pub(super) fn write(
             }
         }
     }
-    let archive = archive(&entries).map_err(|error| Failure::input(format_args!("{}: {error}", out.display())))?;
+    let archive = archive(&entries).map_err(|error| input_error!("{}: {error}", out.display()))?;
     remark += &write_bytes(out, &archive)?;
     remark += &rotors.note(&robot);
     Ok(Outcome::remark(remark))
 }
 
+/// Refuses a robot that an FMU cannot represent.
+fn can_be_fmu(file: &Path, robot: &Robot) -> Result<(), Failure> {
+    if robot.floating_base.is_some() {
+        return Err(input_error!(
+            "{}: the base of this robot floats, and an FMU needs a fixed base; remove `floating_base` to fix the base",
+            file.display()
+        ));
+    }
+    if !robot.closed.is_empty() {
+        return Err(input_error!(
+            "{}: this robot has closed loops, and an FMU needs a robot without closed loops; remove `loops`, or use \
+             {TYPED}rne emit --lang c{TYPED:#}, which writes functions of closed loops",
+            file.display()
+        ));
+    }
+    Ok(())
+}
+
 /// The binary for this computer with its path in the FMU and the compiler; none if there is no compiler.
 fn binary(fmu: &Fmu<'_>, files: &[(String, String)]) -> Result<Option<(String, Vec<u8>, String)>, Failure> {
     let folder = tempfile::tempdir().map_err(|error| {
-        Failure::input(format_args!(
+        input_error!(
             "the folder of temporary files {} cannot be used: {error}. Set the variable TMPDIR to a folder that can be \
              written, or give {TYPED}--no-build{TYPED:#}",
             std::env::temp_dir().display()
-        ))
+        )
     })?;
     let library = folder.path().join("library");
     for (path, text) in files {
@@ -136,17 +141,17 @@ fn binary(fmu: &Fmu<'_>, files: &[(String, String)]) -> Result<Option<(String, V
             let path = format!("binaries/{}/{}.{}", platform(fmu.version), fmu.robot.name, extension());
             Ok(Some((path, fs::read(&library).map_err(Failure::input)?, compiler)))
         }
-        Ok(output) => Err(Failure::input(format_args!(
+        Ok(output) => Err(input_error!(
             "{compiler} does not compile the sources; {TYPED}--no-build{TYPED:#} writes the FMU without a \
              binary:\n{}",
             String::from_utf8_lossy(&output.stderr)
-        ))),
-        Err(error) if error.kind() == ErrorKind::NotFound && named.is_some() => Err(Failure::input(format_args!(
+        )),
+        Err(error) if error.kind() == ErrorKind::NotFound && named.is_some() => Err(input_error!(
             "the compiler {compiler} that the variable CC names is not found; correct or remove the variable, or give \
              {TYPED}--no-build{TYPED:#}"
-        ))),
+        )),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(Failure::input(format_args!("{compiler} cannot be started: {error}"))),
+        Err(error) => Err(input_error!("{compiler} cannot be started: {error}")),
     }
 }
 

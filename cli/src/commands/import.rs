@@ -90,9 +90,9 @@ fn lock(text: &str) -> Result<(String, f64), String> {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.tip.len() > 1 && !arguments.whole {
-        return Err(Failure::usage(format_args!(
+        return Err(usage_error!(
             "an arm has one tip; {TYPED}--whole{TYPED:#} imports the whole robot, with these links in the list `tips`"
-        )));
+        ));
     }
     let (file, text) = read(&arguments.file)?;
     let urdf = match &arguments.loops {
@@ -137,11 +137,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 fn read(path: &Path) -> Result<(String, String), Failure> {
     let description = Description::open_by(path, input_file::open).map_err(|error| not_opened(&error))?;
     let (Description::RobotFile(bytes) | Description::Urdf(bytes)) = description else {
-        return Err(Failure::usage(format_args!("{} is a shipped robot, no URDF", path.display())));
+        return Err(usage_error!("{} is a shipped robot, no URDF", path.display()));
     };
     let text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        Failure::input(format_args!("{}: byte {at} is not UTF-8; save the file as UTF-8", path.display()))
+        input_error!("{}: byte {at} is not UTF-8; save the file as UTF-8", path.display())
     })?;
     Ok((input_file::name(path), text))
 }

@@ -37,22 +37,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let page = pages.iter().find(|(name, _)| *name == wanted).map(|(_, page)| page.clone());
         return page.map(Outcome::text).ok_or_else(|| {
             let names: Vec<&str> = pages.iter().filter_map(|(name, _)| name.strip_prefix("rne-")).collect();
-            Failure::usage(format_args!("{wanted} has no page; the commands are {}", names.join(", ")))
+            usage_error!("{wanted} has no page; the commands are {}", names.join(", "))
         });
     };
     let shown = folder.display();
     match output_file::existing(folder) {
         Existing::Folder => {}
         _ if is_standard_output(folder) => {
-            return Err(Failure::usage(format_args!(
+            return Err(usage_error!(
                 "-o needs the name of a folder for the pages; {TYPED}rne man{TYPED:#} and {TYPED}rne man \
                  COMMAND{TYPED:#} print one page"
-            )));
+            ));
         }
         Existing::Nothing => fs::create_dir_all(folder).map_err(|error| output_file::unwritable(folder, &error))?,
         Existing::Unreadable(error) => return Err(output_file::unreadable(folder, &error)),
         Existing::Text(_) | Existing::Other | Existing::Special => {
-            return Err(Failure::usage(format_args!("{shown} is not a folder; name the folder of the pages")));
+            return Err(usage_error!("{shown} is not a folder; name the folder of the pages"));
         }
     }
     let files: Vec<_> = pages.iter().map(|(name, page)| (folder.join(format!("{name}.1")), page)).collect();

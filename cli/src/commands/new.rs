@@ -42,10 +42,10 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if let Some(joint) = arguments.prismatic.iter().find(|&&joint| joint == 0 || joint > arguments.dof) {
-        return Err(Failure::usage(format_args!(
+        return Err(usage_error!(
             "there is no joint {joint}; joints have the numbers 1 (at the base) to {}",
             arguments.dof
-        )));
+        ));
     }
     let text = text(&arguments.name, arguments.dof, &arguments.prismatic, arguments.convention);
     let path = match &arguments.output {
@@ -58,9 +58,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Existing::Nothing => {}
         Existing::Unreadable(error) => return Err(unreadable(&path, &error)),
         Existing::Folder | Existing::Special | Existing::Text(_) | Existing::Other => {
-            return Err(Failure::usage(format_args!(
+            return Err(usage_error!(
                 "{shown} exists and is not changed; name another file with {TYPED}-o FILE{TYPED:#}"
-            )));
+            ));
         }
     }
     file_name::check(&path, Format::RobotFile)?;
@@ -99,42 +99,45 @@ fn text(name: &str, dof: u8, prismatic: &[u8], convention: Convention) -> String
          joints:                           # base to tip\n"
     );
     for joint in 1..=dof {
-        let slides = prismatic.contains(&joint);
-        let kind = if slides { "prismatic" } else { "revolute" };
-        let moving = if slides { "d" } else { "theta" };
-        // joint 1 stands upright, and the others turn about horizontal axes
-        let (d, a, alpha) = match (convention, joint) {
-            (Convention::Modified, 1) => ("0.3", "0", "0"),
-            (Convention::Standard, 1) => ("0.3", "0", "pi/2"),
-            (Convention::Modified, 2) => ("0", "0", "pi/2"),
-            _ => ("0", "0.3", "0"),
-        };
-        let (com, inertia) = match (convention, joint) {
-            (Convention::Standard, 1) => ("[0, -0.15, 0]", "xx: 0.015, yy: 0.002, zz: 0.015"),
-            (Convention::Modified, 1) => ("[0, 0, -0.15]", "xx: 0.015, yy: 0.015, zz: 0.002"),
-            (Convention::Standard, _) => ("[-0.15, 0, 0]", "xx: 0.002, yy: 0.015, zz: 0.015"),
-            (Convention::Modified, _) => ("[0.15, 0, 0]", "xx: 0.002, yy: 0.015, zz: 0.015"),
-        };
-        let note =
-            if joint == 1 { format!("   # {moving}: the constant part, q is added to it") } else { String::new() };
-        let _ = write!(
-            text,
-            "  - name: joint{joint}\n    type: {kind}\n    dh: {{theta: 0, d: {d}, a: {a}, alpha: {alpha}}}{note}\n"
-        );
-        let (mass_note, com_note, inertia_note) = match joint {
-            1 => (
-                "                   # kg".to_owned(),
-                format!("       # from the origin of the link frame ({place}), its axes, m"),
-                "  # about com, link axes, kg m²; xy = -∫ x y dm".to_owned(),
-            ),
-            _ => Default::default(),
-        };
-        let _ = write!(
-            text,
-            "    link:\n      mass: 2{mass_note}\n      com: {com}{com_note}\n      inertia: {{{inertia}, xy: 0, \
-             xz: 0, yz: 0}}{inertia_note}\n"
-        );
+        text += &row(joint, prismatic.contains(&joint), convention, place);
     }
+    text
+}
+
+/// The row of a joint. Only that of the first joint has comments; `place` says where the link frame is.
+fn row(joint: u8, slides: bool, convention: Convention, place: &str) -> String {
+    let kind = if slides { "prismatic" } else { "revolute" };
+    let moving = if slides { "d" } else { "theta" };
+    // joint 1 stands upright, and the others turn about horizontal axes
+    let (d, a, alpha) = match (convention, joint) {
+        (Convention::Modified, 1) => ("0.3", "0", "0"),
+        (Convention::Standard, 1) => ("0.3", "0", "pi/2"),
+        (Convention::Modified, 2) => ("0", "0", "pi/2"),
+        _ => ("0", "0.3", "0"),
+    };
+    let (com, inertia) = match (convention, joint) {
+        (Convention::Standard, 1) => ("[0, -0.15, 0]", "xx: 0.015, yy: 0.002, zz: 0.015"),
+        (Convention::Modified, 1) => ("[0, 0, -0.15]", "xx: 0.015, yy: 0.015, zz: 0.002"),
+        (Convention::Standard, _) => ("[-0.15, 0, 0]", "xx: 0.002, yy: 0.015, zz: 0.015"),
+        (Convention::Modified, _) => ("[0.15, 0, 0]", "xx: 0.002, yy: 0.015, zz: 0.015"),
+    };
+    let note = if joint == 1 { format!("   # {moving}: the constant part, q is added to it") } else { String::new() };
+    let mut text = format!(
+        "  - name: joint{joint}\n    type: {kind}\n    dh: {{theta: 0, d: {d}, a: {a}, alpha: {alpha}}}{note}\n"
+    );
+    let (mass_note, com_note, inertia_note) = match joint {
+        1 => (
+            "                   # kg".to_owned(),
+            format!("       # from the origin of the link frame ({place}), its axes, m"),
+            "  # about com, link axes, kg m²; xy = -∫ x y dm".to_owned(),
+        ),
+        _ => Default::default(),
+    };
+    let _ = write!(
+        text,
+        "    link:\n      mass: 2{mass_note}\n      com: {com}{com_note}\n      inertia: {{{inertia}, xy: 0, \
+         xz: 0, yz: 0}}{inertia_note}\n"
+    );
     text
 }
 

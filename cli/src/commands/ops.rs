@@ -247,21 +247,7 @@ fn with_columns(counted: &[(String, Vec<Count>)], left_out: &[usize]) -> String 
     }
     let mut lines = columns(&alignment, &lines).into_iter();
     let titles = lines.next().unwrap_or_default();
-    // what stands before the arrow ends with its total
-    let (total, after) = (titles.find("total").unwrap_or(0), titles.rfind("mul").unwrap_or(0));
-    let mut text = String::new();
-    match titles.find("mul").filter(|before| *before < after) {
-        Some(before) => {
-            let _ = writeln!(text, "{QUIET}{:before$}{:<2$}generated{QUIET:#}", "", "before folding", after - before);
-        }
-        None if total < after => {
-            let end = total + "total".len();
-            let _ = writeln!(text, "{QUIET}{:>end$}{:2$}generated{QUIET:#}", "before folding", "", after - end);
-        }
-        None => {
-            let _ = writeln!(text, "{QUIET}{:after$}generated{QUIET:#}", "");
-        }
-    }
+    let mut text = above(&titles);
     let _ = writeln!(text, "{QUIET}{titles}{QUIET:#}");
     for (robot, counts) in counted {
         let _ = writeln!(text, "{TITLE}{robot}{TITLE:#}");
@@ -274,6 +260,25 @@ fn with_columns(counted: &[(String, Vec<Count>)], left_out: &[usize]) -> String 
         }
     }
     text
+}
+
+/// The line above the titles: which columns are before folding, and which of the generated code.
+fn above(titles: &str) -> String {
+    // what stands before the arrow ends with its total
+    let (total, after) = (titles.find("total").unwrap_or(0), titles.rfind("mul").unwrap_or(0));
+    let line = match titles.find("mul").filter(|before| *before < after) {
+        Some(before) => {
+            format!("{:before$}{:<2$}generated", "", "before folding", after - before)
+        }
+        None if total < after => {
+            let end = total + "total".len();
+            format!("{:>end$}{:2$}generated", "before folding", "", after - end)
+        }
+        None => {
+            format!("{:after$}generated", "")
+        }
+    };
+    format!("{QUIET}{line}{QUIET:#}\n")
 }
 
 #[cfg(test)]

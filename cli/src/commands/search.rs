@@ -75,10 +75,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     if let Some(shipped) = rne_convert::shipped_at(&arguments.file) {
         let name = shipped.name;
-        return Err(Failure::usage(format_args!(
+        return Err(usage_error!(
             "a search writes its plan next to the robot file, so it needs a file: {TYPED}rne example {name} > \
              {name}.yaml{TYPED:#}"
-        )));
+        ));
     }
     let Checked { robot, lints, .. } = robot_file::robot_in_yaml(&arguments.file)?;
     robot_file::note_warnings(&arguments.file, &lints, &[]);
@@ -88,7 +88,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     interruption::expect();
     plan_file::is_writable(&path)?;
     let found = watched(&robot, known.plan.as_ref(), &options, arguments.seconds)
-        .map_err(|error| Failure::input(format_args!("{}: {error}", arguments.file.display())))?;
+        .map_err(|error| input_error!("{}: {error}", arguments.file.display()))?;
     let searched = Searched { file: &arguments.file, robot: &robot, known, fresh: arguments.fresh };
     let Kept { plan, left_out, written } = searched.keep(found, || ())?;
     Ok(Outcome::text(summary(&plan, &searched, &left_out, &path, written)))
@@ -143,11 +143,11 @@ impl Searched<'_> {
         if robot_file::robot_in_yaml(self.file).is_ok_and(is_same) {
             return Ok(());
         }
-        Err(Failure::input(format_args!(
+        Err(input_error!(
             "{} has changed during the search: the result is for the old file, so {} is not written. Search again",
             self.file.display(),
             plan_of(self.file).display()
-        )))
+        ))
     }
 }
 
@@ -184,9 +184,7 @@ fn rewritten(arguments: &Arguments, robot: &Robot) -> Result<Vec<Function>, Fail
     }
     let functions: Vec<Function> = Function::ALL.into_iter().filter(|&function| is_asked(function)).collect();
     if let Some(function) = functions.iter().find(|function| !function.can_be_rewritten()) {
-        return Err(Failure::usage(format_args!(
-            "`{function}` has only the form seven_steps, so there is nothing to rewrite"
-        )));
+        return Err(usage_error!("`{function}` has only the form seven_steps, so there is nothing to rewrite"));
     }
     // a plan with a function that the robot does not have is refused by all that read it
     if let Some(error) = functions.iter().find_map(|function| function.check_for(robot).err()) {

@@ -38,22 +38,22 @@ fn output(command: &mut Command) -> Result<Output, Failure> {
                 [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
             let lines: Vec<&str> = said.lines().collect();
             let last = lines[lines.len().saturating_sub(20)..].join("\n");
-            Err(Failure::input(format_args!("{program} fails ({}):\n{last}", output.status)))
+            Err(input_error!("{program} fails ({}):\n{last}", output.status))
         }
         Err(error) if error.kind() == ErrorKind::NotFound && program == "rustc" => {
             Err(Failure::input("there is no rustc; https://rustup.rs installs it"))
         }
         Err(error) if error.kind() == ErrorKind::NotFound => Err(match package(&program) {
-            Some(package) => Failure::input(format_args!(
+            Some(package) => input_error!(
                 "there is no program {program}; on Debian and Ubuntu, {TYPED}apt-get install {package}{TYPED:#} \
                  installs it"
-            )),
-            None => Failure::input(format_args!(
+            ),
+            None => input_error!(
                 "there is no program {program}; install it, or leave out {TYPED}--cc{TYPED:#}: the compiler is then \
                  arm-none-eabi-gcc or rustc"
-            )),
+            ),
         }),
-        Err(error) => Err(Failure::input(format_args!("{program} cannot be started: {error}"))),
+        Err(error) => Err(input_error!("{program} cannot be started: {error}")),
     }
 }
 
@@ -68,9 +68,9 @@ pub(crate) fn version(program: &str) -> Result<String, Failure> {
     let said = text(Command::new(program).arg("--version"))?;
     let line = said.lines().next().map(str::trim).filter(|line| !line.is_empty());
     line.map(str::to_owned).ok_or_else(|| {
-        Failure::usage(format_args!(
+        usage_error!(
             "{program} prints nothing for --version, so it is no compiler; name another with {TYPED}--cc{TYPED:#}"
-        ))
+        )
     })
 }
 
@@ -83,7 +83,7 @@ pub(crate) fn version_of_gcc(program: &str) -> Result<String, Failure> {
          utilities give the numbers of the certificate"
     );
     if !said.contains("Free Software Foundation") {
-        return Err(Failure::usage(format_args!("{program} is no GCC ({version}); {remedy}")));
+        return Err(usage_error!("{program} is no GCC ({version}); {remedy}"));
     }
     let target = text(Command::new(program).arg("-dumpmachine"))?;
     let target = target.trim();
@@ -91,11 +91,11 @@ pub(crate) fn version_of_gcc(program: &str) -> Result<String, Failure> {
         return Ok(version);
     }
     if target.is_empty() {
-        return Err(Failure::usage(format_args!(
+        return Err(usage_error!(
             "{program} is no compiler: it prints nothing for -dumpmachine, which asks for the target; {remedy}"
-        )));
+        ));
     }
-    Err(Failure::usage(format_args!("{program} is no compiler for Arm: its target is {target}; {remedy}")))
+    Err(usage_error!("{program} is no compiler for Arm: its target is {target}; {remedy}"))
 }
 
 /// The SHA-256 of a program.

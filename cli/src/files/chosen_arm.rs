@@ -49,10 +49,10 @@ impl Rotors {
 /// Refuses rotors as unknowns of an identification where the list `motors` has them: each is counted once.
 pub(crate) fn check_unknown_rotors(robot: &Robot, is_asked: bool) -> Result<(), Failure> {
     if is_asked && robot.has_spinning_rotors() {
-        return Err(Failure::usage(format_args!(
+        return Err(usage_error!(
             "the list `motors` of {} has the inertia of its rotors, which is known; leave out {TYPED}--rotors{TYPED:#}",
             robot.name
-        )));
+        ));
     }
     Ok(())
 }
@@ -84,10 +84,7 @@ impl AtFrame {
 /// The error where no function can be taken at the frames of `--frame`.
 pub(crate) fn not_of_frames(why: impl Display) -> Failure {
     let with: Vec<&str> = Function::of_frames().map(Function::name).collect();
-    Failure::usage(format_args!(
-        "{TYPED}--frame{TYPED:#} is for functions of a frame, and {why}; these are: {}",
-        with.join(", ")
-    ))
+    usage_error!("{TYPED}--frame{TYPED:#} is for functions of a frame, and {why}; these are: {}", with.join(", "))
 }
 
 /// A robot seen from the frame with this name.
@@ -189,20 +186,20 @@ impl ChosenArm {
     pub(crate) fn check(&self, function: Function) -> Result<(), Failure> {
         if self.carried.payload.is_some() && !function.entry().feels_links {
             let with = Function::ALL.into_iter().filter(|other| other.with_payload().is_some()).map(Function::name);
-            return Err(Failure::usage(format_args!(
+            return Err(usage_error!(
                 "{function} takes no {TYPED}--payload{TYPED:#}: masses do not change it. These functions take one, as \
                  do others of forces, energies and the centre of mass: {}",
                 with.collect::<Vec<_>>().join(", ")
-            )));
+            ));
         }
         if self.rotors.rotors && !function.feels_rotors() {
             let with = Function::ALL
                 .into_iter()
                 .filter(|other| other.feels_rotors() && other.is_of_closed_loops() == function.is_of_closed_loops());
-            return Err(Failure::usage(format_args!(
+            return Err(usage_error!(
                 "{function} takes no {TYPED}--rotors{TYPED:#}: the inertia of rotors does not change it. It changes {}",
                 with.map(Function::name).collect::<Vec<_>>().join(", ")
-            )));
+            ));
         }
         Ok(())
     }
@@ -223,10 +220,10 @@ impl ChosenArm {
     fn read(&self, frames: Frames, shape: Shape) -> Result<Robot, Failure> {
         let shown = self.file.display();
         if !self.file.exists() && shown.to_string().parse::<List>().is_ok() {
-            return Err(Failure::usage(format_args!(
+            return Err(usage_error!(
                 "found `{shown}` where FILE, the robot, is expected; write the numbers of a list with commas and \
                  without blanks, as in {TYPED}rne eval planar2 --q 0.5,0.3{TYPED:#}"
-            )));
+            ));
         }
         let robot = with_settings(&self.file, &self.set, frames, shape)?.robot;
         let without: Vec<&str> = self.without.iter().map(String::as_str).collect();
@@ -238,7 +235,7 @@ impl ChosenArm {
 fn with_settings(path: &Path, settings: &[Setting], frames: Frames, shape: Shape) -> Result<Checked, Failure> {
     for (index, Setting { name, .. }) in settings.iter().enumerate() {
         if settings[..index].iter().any(|other| other.name == *name) {
-            return Err(Failure::usage(format_args!("--set gives {name} twice")));
+            return Err(usage_error!("--set gives {name} twice"));
         }
     }
     let settings: Vec<(&str, f64)> = settings.iter().map(|Setting { name, value }| (name.as_str(), *value)).collect();

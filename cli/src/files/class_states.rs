@@ -8,8 +8,7 @@ use rne::testing::Random;
 use rne_diagnose::worksheet::Situation;
 use rne_model::{JointKind, Robot, did_you_mean};
 
-use crate::files::csv_table::{self, Cell, Mistakes, OPEN_QUOTE, quoted, text_of, with_point};
-use crate::files::input_file;
+use crate::files::csv_table::{self, Cell, Mistakes, OPEN_QUOTE, quoted, with_point};
 use crate::outcome::Failure;
 
 /// The choice of the states.
@@ -52,7 +51,7 @@ impl ClassStates {
             Self::Each(states, file) => states.get(student).cloned().ok_or_else(|| {
                 let near = did_you_mean(student, states.keys().map(String::as_str));
                 let near = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
-                Failure::input(format_args!("{file} has no row for the student {}{near}", quoted(student)))
+                input_error!("{file} has no row for the student {}{near}", quoted(student))
             }),
         }
     }
@@ -117,15 +116,8 @@ enum Column {
 const LISTS: [&str; 3] = ["q", "qd", "qdd"];
 
 fn read(path: &Path, robot: &Robot) -> Result<ClassStates, Failure> {
-    let name = input_file::name(path);
-    let bytes = input_file::read(path, LONGEST)
-        .map_err(|error| Failure::input(format_args!("the states {name} cannot be read: {error}")))?;
-    if bytes.len() > LONGEST {
-        return Err(Failure::input(format_args!("{name} has more than {LONGEST} bytes: are these states of a class?")));
-    }
-    let decoded = text_of(&name, &bytes)?;
-    let text = decoded.as_ref();
-    let mut mistakes = Mistakes::new(&name, text);
+    let (name, text) = &csv_table::read(path, "states", LONGEST, ": are these states of a class?")?;
+    let mut mistakes = Mistakes::new(name, text);
     let mut rows = Vec::new();
     for line in csv_table::lines(text) {
         match line {
@@ -144,18 +136,8 @@ fn read(path: &Path, robot: &Robot) -> Result<ClassStates, Failure> {
         return mistakes.finish(ClassStates::Seed(0));
     };
     // a key for another robot is one mistake, not one for each column
-    let joint = |cell: &Cell<'_>| -> Option<usize> {
-        cell.text.to_ascii_lowercase().strip_prefix('q')?.trim_start_matches('d').parse().ok()
-    };
-    let of_key = header.cells.iter().filter_map(joint).max().unwrap_or(dof);
-    if of_key != dof {
-        let joints = |count: usize| if count == 1 { "1 joint".to_owned() } else { format!("{count} joints") };
-        return Err(Failure::input(format_args!(
-            "{name}: the key is for an arm of {}; {} has {dof}",
-            joints(of_key),
-            robot.name
-        )));
-    }
+    is_for_arm_of(dof, header)
+        .map_err(|joints| input_error!("{name}: the key is for an arm of {joints}; {} has {dof}", robot.name))?;
     let columns = columns(header, dof, &help, &mut mistakes);
     if rows.is_empty() && !mistakes.are_there() {
         mistakes.push(header.span.clone(), "there is no state below the header", Some(&help));
@@ -167,30 +149,53 @@ fn read(path: &Path, robot: &Robot) -> Result<ClassStates, Failure> {
     }
     let mut states = BTreeMap::new();
     for row in rows.iter().filter(|_| !columns.is_empty()) {
-        let mut lists = [(); 3].map(|()| vec![0.0; dof]);
-        let mut student = String::new();
-        if row.cells.len() != header.cells.len() {
-            let message = format!("{} cells, but {} columns in the header", row.cells.len(), header.cells.len());
-            mistakes.push(row.span.clone(), message, Some("a decimal comma needs semicolons between the columns"));
-            continue;
-        }
-        for (column, cell) in columns.iter().zip(&row.cells) {
-            match column {
-                Some(Column::Name) => student = cell.text.to_string(),
-                Some(Column::Number(list, joint)) => lists[*list][*joint] = number(cell, &mut mistakes),
-                None => {}
-            }
-        }
+        let Some((student, state)) = of_row(row, &columns, dof, &mut mistakes) else { continue };
         if has_names && student.is_empty() {
             mistakes.push(row.span.clone(), "the name of the student is missing", None);
         }
-        let [q, qd, qdd] = lists;
-        if states.insert(student.clone(), at(q, qd, qdd)).is_some() && has_names {
+        if states.insert(student.clone(), state).is_some() && has_names {
             mistakes.push(row.span.clone(), format!("the student {} occurs twice", quoted(&student)), None);
         }
     }
     let of_everybody = states.get("").cloned().filter(|_| !has_names).map(Box::new);
     mistakes.finish(of_everybody.map_or_else(|| ClassStates::Each(states, name.clone()), ClassStates::Everybody))
+}
+
+/// Whether a header has the columns of an arm of `dof` joints; otherwise the joints that it has, in words.
+fn is_for_arm_of(dof: usize, header: &csv_table::Row<'_>) -> Result<(), String> {
+    let joint = |cell: &Cell<'_>| -> Option<usize> {
+        cell.text.to_ascii_lowercase().strip_prefix('q')?.trim_start_matches('d').parse().ok()
+    };
+    match header.cells.iter().filter_map(joint).max() {
+        Some(1) if dof != 1 => Err("1 joint".to_owned()),
+        Some(joints) if joints != dof => Err(format!("{joints} joints")),
+        _ => Ok(()),
+    }
+}
+
+/// The student of a row, empty without a column of names, and the state; `None` if cells are missing or too many.
+fn of_row(
+    row: &csv_table::Row<'_>,
+    columns: &[Option<Column>],
+    dof: usize,
+    mistakes: &mut Mistakes<'_>,
+) -> Option<(String, Situation)> {
+    if row.cells.len() != columns.len() {
+        let message = format!("{} cells, but {} columns in the header", row.cells.len(), columns.len());
+        mistakes.push(row.span.clone(), message, Some("a decimal comma needs semicolons between the columns"));
+        return None;
+    }
+    let mut student = String::new();
+    let mut lists = [(); 3].map(|()| vec![0.0; dof]);
+    for (column, cell) in columns.iter().zip(&row.cells) {
+        match column {
+            Some(Column::Name) => student = cell.text.to_string(),
+            Some(Column::Number(list, joint)) => lists[*list][*joint] = number(cell, mistakes),
+            None => {}
+        }
+    }
+    let [q, qd, qdd] = lists;
+    Some((student, at(q, qd, qdd)))
 }
 
 /// The columns of a header; none if it has mistakes.

@@ -2,9 +2,11 @@
 
 use std::borrow::Cow;
 use std::ops::Range;
+use std::path::Path;
 
 use rne_model::{Diagnostic, Report};
 
+use crate::files::input_file;
 use crate::outcome::Failure;
 
 /// A cell without the blanks and quotes around it.
@@ -53,17 +55,30 @@ const ALIKE: usize = 3;
 /// bytes have none.
 const WINDOWS: &str = "€\u{81}‚ƒ„…†‡ˆ‰Š‹Œ\u{8D}Ž\u{8F}\u{90}‘’“”•–—˜™š›œ\u{9D}žŸ";
 
+/// The name of a file and its text of at most `longest` bytes. A message calls the file `what`, and ends with `help` where
+/// the text is longer.
+pub(crate) fn read(path: &Path, what: &str, longest: usize, help: &str) -> Result<(String, String), Failure> {
+    let name = input_file::name(path);
+    let bytes =
+        input_file::read(path, longest).map_err(|error| input_error!("the {what} {name} cannot be read: {error}"))?;
+    if bytes.len() > longest {
+        return Err(input_error!("{name} has more than {longest} bytes{help}"));
+    }
+    let text = text_of(&name, &bytes)?.into_owned();
+    Ok((name, text))
+}
+
 /// The text of a file, without a byte order mark: in UTF-8, or as spreadsheets save `CSV` and `Unicode text`, in
 /// Windows-1252 and in UTF-16 with its mark.
 ///
 /// # Errors
 /// A byte, with its line and column, that has no character in UTF-8 and none in Windows-1252; half a character of
 /// UTF-16.
-pub(crate) fn text_of<'a>(name: &str, bytes: &'a [u8]) -> Result<Cow<'a, str>, Failure> {
+fn text_of<'a>(name: &str, bytes: &'a [u8]) -> Result<Cow<'a, str>, Failure> {
     let utf_16 = |rest: &[u8], unit: fn([u8; 2]) -> u16| {
         let units = rest.chunks_exact(2).filter_map(|pair| Some(unit(pair.try_into().ok()?))).collect::<Vec<_>>();
         let text = String::from_utf16(&units).ok().filter(|_| rest.len().is_multiple_of(2));
-        let broken = || Failure::input(format_args!("{name} is not UTF-16 to its end; save the file as UTF-8"));
+        let broken = || input_error!("{name} is not UTF-16 to its end; save the file as UTF-8");
         text.map(Cow::Owned).ok_or_else(broken)
     };
     match bytes {

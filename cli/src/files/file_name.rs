@@ -75,7 +75,7 @@ pub(crate) fn format(path: &Path, written: &[Format]) -> Result<Format, Failure>
         "" => format!("the name {shown} has no ending that gives the format"),
         end => format!("{shown} ends with .{end}, which this command does not write"),
     };
-    Err(Failure::usage(format_args!("{has}; name a file that ends with {}", ends.join(" or "))))
+    Err(usage_error!("{has}; name a file that ends with {}", ends.join(" or ")))
 }
 
 /// Whether a name does not say another format than what is written. A name may say nothing.
@@ -86,12 +86,12 @@ pub(crate) fn check(path: &Path, written: Format) -> Result<(), Failure> {
         return Ok(());
     }
     let right = path.with_extension(written.ends()[0]);
-    Err(Failure::usage(format_args!(
+    Err(usage_error!(
         "{} ends with .{end}, but the file is written as .{}; name it {TYPED}{}{TYPED:#}",
         path.display(),
         written.ends()[0],
         right.display()
-    )))
+    ))
 }
 
 /// Extension of a file name in small letters; empty if the name has no extension.

@@ -18,20 +18,20 @@ use crate::render::layout::cell;
 /// The format of a file of motions, by its name.
 pub(crate) fn format(path: &Path, is_raw: bool) -> Result<Format, Failure> {
     if !is_raw && file_name::format(path, &[Format::Npy]).is_ok() {
-        return Err(Failure::usage(format_args!(
+        return Err(usage_error!(
             "{} is an array of numpy, which {TYPED}rne log{TYPED:#} writes with {TYPED}--raw{TYPED:#} only; name a \
              file that ends with {TYPED}.csv{TYPED:#} or {TYPED}.parquet{TYPED:#}",
             path.display()
-        )));
+        ));
     }
     let written = [Format::Csv, Format::Parquet, Format::Npy];
     let format = file_name::format(path, if is_raw { &written } else { &written[..2] })?;
     if format == Format::Parquet && cfg!(not(feature = "parquet")) {
-        return Err(Failure::input(format_args!(
+        return Err(input_error!(
             "{}: this build of rne does not write Parquet; `cargo install --path cli --features full` in a clone \
              of rne builds one that does",
             path.display()
-        )));
+        ));
     }
     Ok(format)
 }

@@ -1,6 +1,7 @@
-//! Logs of an arm, by the joints of its robot file: opened and read below a bar.
+//! The logs of one arm. They are opened with the joints of its robot file, and a progress bar shows how far they were
+//! read.
 
-use std::fmt::{Display, Write as _};
+use std::fmt::Display;
 use std::path::PathBuf;
 
 use rne_identify::{ArmLog, ArmLogError, ArmLogOptions, ArmLogRemark, Options, Part, PassError, Purpose};
@@ -9,8 +10,7 @@ use rne_model::{Robot, one_line};
 
 use crate::files::reading;
 use crate::outcome::Failure;
-use crate::palette::{TITLE, WARNING};
-use crate::render::layout::wrap;
+use crate::render::layout::{note, warning};
 use crate::render::log_remark::{error_sentence, remark_sentence};
 use crate::values::log_arguments::LogArguments;
 use rne_watch::WatchError;
@@ -43,11 +43,11 @@ impl MotionLog {
     ) -> Result<Self, Failure> {
         Self::opened(paths, robot, &arguments.with_cutoff(cutoff), Purpose::Watch).map_err(|error| match error {
             // another low-pass is no remedy
-            ArmLogError::Cutoff { longest, possible: Some(_), .. } => Failure::input(format_args!(
+            ArmLogError::Cutoff { longest, possible: Some(_), .. } => input_error!(
                 "{}: {}",
                 names(paths),
                 WatchError::ShortLog { duration: longest, needed: 2.0 * Options::filter_reach(cutoff), cutoff }
-            )),
+            ),
             error => failure(&error),
         })
     }
@@ -59,8 +59,7 @@ impl MotionLog {
         purpose: Purpose,
     ) -> Result<Self, ArmLogError> {
         let options = ArmLogOptions { log: arguments.options(), purpose };
-        let bar = reading::bar("read", false);
-        ArmLog::open_with_progress(paths, robot, &options, &mut |share| reading::show(&bar, share)).map(Self)
+        ArmLog::open_with_progress(paths, robot, &options, &mut reading::progress(false)).map(Self)
     }
 
     /// The logs themselves.
@@ -75,8 +74,7 @@ impl MotionLog {
 
     /// The logs through the filter with which a robot file is judged; runs that are too short for it are included.
     pub(crate) fn judged(&self) -> Result<Self, Failure> {
-        let bar = reading::bar("read", false);
-        self.0.judged(&mut |share| reading::show(&bar, share)).map(Self).map_err(|error| failure(&error))
+        self.0.judged(&mut reading::progress(false)).map(Self).map_err(|error| failure(&error))
     }
 
     /// Hz: the low-pass of both sides of the equations of motion.
@@ -89,22 +87,19 @@ impl MotionLog {
         self.0.read_to()
     }
 
-    /// Remarks on the log, in lines of a width.
-    pub(crate) fn remark(&self, width: usize) -> String {
-        self.remark_beside(&[], width)
+    /// Remarks on the log.
+    pub(crate) fn remark(&self) -> String {
+        self.remark_beside(&[])
     }
 
-    /// Remarks on the log that are not among others, in lines of a width.
-    pub(crate) fn remark_beside(&self, others: &[ArmLogRemark], width: usize) -> String {
-        let mut text = String::new();
-        for remark in self.0.remarks().iter().filter(|remark| !others.contains(remark)) {
-            let line = remark_sentence(remark);
-            let (word, style) = if remark.is_warning() { ("warning", WARNING) } else { ("note", TITLE) };
-            let indent = " ".repeat(word.len() + 2);
-            let wrapped = wrap(&one_line(&line), width - indent.len(), &indent);
-            let _ = writeln!(text, "{style}{word}{style:#}: {wrapped}");
-        }
-        text
+    /// Remarks on the log that are not among others.
+    pub(crate) fn remark_beside(&self, others: &[ArmLogRemark]) -> String {
+        let new = self.0.remarks().iter().filter(|remark| !others.contains(remark));
+        let line = |remark: &ArmLogRemark| {
+            let styled = if remark.is_warning() { warning } else { note };
+            styled(&one_line(&remark_sentence(remark)))
+        };
+        new.map(line).collect()
     }
 
     /// Summary of the log, in words.
@@ -128,8 +123,7 @@ impl MotionLog {
         part: Part,
         take: &mut dyn FnMut(&Motion) -> Result<(), E>,
     ) -> Result<(), Failure> {
-        let bar = reading::bar("read", false);
-        self.0.pass_with_progress(part, take, &mut |share| reading::show(&bar, share)).map_err(stopped)
+        self.0.pass_with_progress(part, take, &mut reading::progress(false)).map_err(stopped)
     }
 }
 
@@ -144,8 +138,8 @@ fn stopped<E: Display>(error: PassError<E>) -> Failure {
 pub(crate) fn watch_failure(error: &WatchError, words: &str) -> Failure {
     match error {
         WatchError::Log(error) => failure(error),
-        WatchError::TooFew { .. } => Failure::input(format_args!("{words} is too short to watch")),
-        other => Failure::input(format_args!("{words}: {other}")),
+        WatchError::TooFew { .. } => input_error!("{words} is too short to watch"),
+        other => input_error!("{words}: {other}"),
     }
 }
 

@@ -250,9 +250,7 @@ pub(crate) fn check_picture(path: Option<&Path>) -> Result<(), Failure> {
 /// Whether what an option names is a file, such as the example: standard output has the account.
 pub(crate) fn check_file(path: Option<&Path>, option: &str, example: &str) -> Result<(), Failure> {
     if path.is_some_and(is_standard_output) {
-        return Err(Failure::usage(format_args!(
-            "{TYPED}{option}{TYPED:#} needs the name of a file, such as {example}"
-        )));
+        return Err(usage_error!("{TYPED}{option}{TYPED:#} needs the name of a file, such as {example}"));
     }
     Ok(())
 }
@@ -263,17 +261,15 @@ pub(crate) fn check_new(path: &Path, text: Option<&str>, sources: &[&Path], forc
     interruption::catch();
     let shown = path.display();
     if sources.iter().any(|source| is_same(path, source)) {
-        return Err(Failure::usage(format_args!("{shown} is also the file that rne reads; name another file")));
+        return Err(usage_error!("{shown} is also the file that rne reads; name another file"));
     }
     match existing(path) {
-        Existing::Folder => return Err(Failure::usage(format_args!("{shown} is a folder; name a file in it"))),
-        Existing::Special => return Err(Failure::usage(format_args!("{shown} is not a regular file; name another"))),
+        Existing::Folder => return Err(usage_error!("{shown} is a folder; name a file in it")),
+        Existing::Special => return Err(usage_error!("{shown} is not a regular file; name another")),
         Existing::Unreadable(error) => return Err(unreadable(path, &error)),
         Existing::Text(old) if Some(old.as_str()) == text => {}
         Existing::Text(_) | Existing::Other if !force => {
-            return Err(Failure::usage(format_args!(
-                "{shown} exists and is not changed; {TYPED}--force{TYPED:#} overwrites it"
-            )));
+            return Err(usage_error!("{shown} exists and is not changed; {TYPED}--force{TYPED:#} overwrites it"));
         }
         Existing::Nothing | Existing::Text(_) | Existing::Other => {}
     }
@@ -314,7 +310,7 @@ pub(crate) fn unreadable(path: &Path, error: &io::Error) -> Failure {
     if error.kind() == ErrorKind::InvalidFilename {
         return unwritable(path, error);
     }
-    Failure::input(format_args!("{} cannot be read: {error}", path.display()))
+    input_error!("{} cannot be read: {error}", path.display())
 }
 
 /// Error for a file that cannot be written: the system does not allow its name, its folder is missing, or the system's
@@ -322,18 +318,17 @@ pub(crate) fn unreadable(path: &Path, error: &io::Error) -> Failure {
 pub(crate) fn unwritable(path: &Path, error: &io::Error) -> Failure {
     let shown = path.display();
     if error.kind() == ErrorKind::InvalidFilename {
-        return Failure::usage(format_args!(
+        return usage_error!(
             "{} cannot be written: its name is too long for this system, or contains letters that are not \
              allowed; name another file",
             shortened(&shown.to_string(), 80)
-        ));
+        );
     }
     let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
     match path.parent().filter(|_| error.kind() == ErrorKind::NotFound).filter(is_missing) {
-        Some(folder) => Failure::input(format_args!(
-            "{shown} cannot be written: there is no folder {}; make it first",
-            folder.display()
-        )),
+        Some(folder) => {
+            input_error!("{shown} cannot be written: there is no folder {}; make it first", folder.display())
+        }
         // the message of a temporary file has its name
         None if error.get_ref().is_some_and(|inner| inner.to_string().contains(" at path ")) => {
             // the folder exists, but refuses new files, as /proc does
@@ -341,9 +336,9 @@ pub(crate) fn unwritable(path: &Path, error: &io::Error) -> Failure {
                 ErrorKind::NotFound => "the system does not allow a new file in this folder".to_owned(),
                 kind => kind.to_string(),
             };
-            Failure::input(format_args!("{shown} cannot be written: {why}"))
+            input_error!("{shown} cannot be written: {why}")
         }
-        None => Failure::input(format_args!("{shown} cannot be written: {error}")),
+        None => input_error!("{shown} cannot be written: {error}"),
     }
 }
 

@@ -13,20 +13,20 @@ use crate::palette::TYPED;
 pub(crate) fn is_free(folder: &Path, what: &str) -> Result<(), Failure> {
     let shown = folder.display();
     if is_standard_output(folder) {
-        return Err(Failure::usage(format_args!(
+        return Err(usage_error!(
             "{what} is a folder of files, so it cannot go to standard output; name the folder with {TYPED}-o \
              FOLDER{TYPED:#}"
-        )));
+        ));
     }
     match fs::read_dir(folder).map(|mut entries| entries.next().is_none()) {
         Ok(true) => Ok(()),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
-        Ok(false) => Err(Failure::usage(format_args!(
+        Ok(false) => Err(usage_error!(
             "{shown} is not empty and is not changed; name another folder with {TYPED}-o FOLDER{TYPED:#}"
-        ))),
-        Err(error) if error.kind() == ErrorKind::NotADirectory => Err(Failure::usage(format_args!(
-            "{shown} is not a folder and is not changed; name another with {TYPED}-o FOLDER{TYPED:#}"
-        ))),
+        )),
+        Err(error) if error.kind() == ErrorKind::NotADirectory => {
+            Err(usage_error!("{shown} is not a folder and is not changed; name another with {TYPED}-o FOLDER{TYPED:#}"))
+        }
         Err(error) => Err(unreadable(folder, &error)),
     }
 }
@@ -37,12 +37,12 @@ pub(crate) fn make(folder: &Path) -> Result<(), Failure> {
     fs::create_dir_all(folder).map_err(|error| match error.kind() {
         ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
             let file = folder.ancestors().find(|part| part.exists()).unwrap_or(folder);
-            Failure::usage(format_args!("{} is not a folder and is not changed; name another folder", file.display()))
+            usage_error!("{} is not a folder and is not changed; name another folder", file.display())
         }
         // all folders above are made, but this one refuses new entries, as /proc does
-        ErrorKind::NotFound => Failure::input(format_args!(
-            "{shown} cannot be written: the system does not allow a new file in this folder"
-        )),
+        ErrorKind::NotFound => {
+            input_error!("{shown} cannot be written: the system does not allow a new file in this folder")
+        }
         _ => unwritable(folder, &error),
     })
 }

@@ -55,9 +55,9 @@ pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<Read>, Fai
     let bytes = match read_file(&path) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(Failure::input(format_args!("{name} cannot be read: {error}"))),
+        Err(error) => return Err(input_error!("{name} cannot be read: {error}")),
     };
-    let text = String::from_utf8(bytes).map_err(|_| Failure::input(format_args!("{name} is not text in UTF-8")))?;
+    let text = String::from_utf8(bytes).map_err(|_| input_error!("{name} is not text in UTF-8"))?;
     let plan = PlanFile::read(&name, &text, robot).map_err(|report| Failure::plan(report, Remedy::SearchAfresh))?;
     Ok(Some(Read { name, text, plan }))
 }
@@ -73,7 +73,8 @@ pub(crate) struct Known {
     pub(crate) left_out: Vec<Function>,
 }
 
-/// The plan that a search goes on from, proved. Of a `fresh` one what cannot be proved is left out.
+/// The plan from which a search starts. The compiler proves that its programs compute the functions of the robot. What
+/// it cannot prove is an error, but a `fresh` search starts without it.
 pub(crate) fn known(robot_file: &Path, robot: &Robot, fresh: bool) -> Result<Known, Failure> {
     if fresh {
         let text = match output_file::existing(&plan_of(robot_file)) {
@@ -110,17 +111,17 @@ fn to_replace(robot_file: &Path, robot: &Robot) -> Result<(Option<PlanFile>, Vec
             plan.rewritten.retain(|function, _| !wrong.contains(function));
             Ok((Some(plan), wrong))
         }
-        _ => Err(Failure::usage(format_args!(
+        _ => Err(usage_error!(
             "{} was not written by `rne search`, so rne does not overwrite it; move or rename this file",
             path.display()
-        ))),
+        )),
     }
 }
 
 /// Whether a plan can be written there: better known before a search than after it.
 pub(crate) fn is_writable(path: &Path) -> Result<(), Failure> {
     if path.is_dir() {
-        return Err(Failure::input(format_args!("{} is a folder; the plan cannot be written", path.display())));
+        return Err(input_error!("{} is a folder; the plan cannot be written", path.display()));
     }
     Replacement::begin(path).map(drop).map_err(|error| unwritable(path, &error))
 }

@@ -7,8 +7,7 @@ use rne_logs::{Log, LogError, Survey};
 
 /// Surveys a log below a bar.
 pub(crate) fn survey(log: &Log, is_result_shown: bool) -> Result<Survey, LogError> {
-    let bar = bar("read", is_result_shown);
-    log.survey(|share| show(&bar, share))
+    log.survey(progress(is_result_shown))
 }
 
 /// A bar on a terminal, unless that shows the result meanwhile. It is cleared when it is dropped.
@@ -21,6 +20,12 @@ pub(crate) fn bar(word: &str, is_result_shown: bool) -> ProgressBar {
         Ok(style) => bar.with_style(style.progress_chars("=> ")),
         Err(_) => bar,
     }
+}
+
+/// Shows shares of a log, 0 to 1, in a bar, until the function is dropped.
+pub(crate) fn progress(is_result_shown: bool) -> impl FnMut(f64) {
+    let bar = bar("read", is_result_shown);
+    move |share| show(&bar, share)
 }
 
 /// Shows a share of 0 to 1.

@@ -120,7 +120,7 @@ fn open(path: &Path) -> Result<Opened, Failure> {
             // which is refused as a robot file is
             Err(error) => Ok(Opened::RobotFile(input_file::name(path), error.into_bytes())),
         },
-        Ok(_) => Err(Failure::input(format_args!("{} is not a robot file", path.display()))),
+        Ok(_) => Err(input_error!("{} is not a robot file", path.display())),
         Err(error) => Err(not_opened(&error)),
     }
 }
@@ -202,7 +202,7 @@ pub(crate) fn not_opened(error: &OpenError) -> Failure {
     match error {
         OpenError::Plan { .. } => Failure::usage(error),
         OpenError::NotFound { hint: None, .. } => {
-            Failure::input(format_args!("{error}; {TYPED}rne list{TYPED:#} prints the shipped robots"))
+            input_error!("{error}; {TYPED}rne list{TYPED:#} prints the shipped robots")
         }
         _ => Failure::input(error),
     }

@@ -102,5 +102,5 @@ impl Results {
 
 /// Writing that ended; what is already written of a stream stays, files do not appear.
 pub(crate) fn stopped(error: &io::Error) -> Failure {
-    Failure::input(format_args!("the results cannot be written: {error}"))
+    input_error!("the results cannot be written: {error}")
 }

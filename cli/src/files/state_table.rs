@@ -66,9 +66,9 @@ impl Table {
         restricted: Restricted,
     ) -> Result<Self, Failure> {
         let name = input_file::name(path);
-        let unreadable = |error: io::Error| Failure::input(format_args!("the states {name} cannot be read: {error}"));
+        let unreadable = |error: io::Error| input_error!("the states {name} cannot be read: {error}");
         if path.is_dir() {
-            return Err(Failure::input(format_args!("{name} is a folder; name a file of states, CSV or .npy")));
+            return Err(input_error!("{name} is a folder; name a file of states, CSV or .npy"));
         }
         let file: Box<dyn Read> = if is_standard_input(path) {
             Box::new(io::stdin())
@@ -81,7 +81,7 @@ impl Table {
         // a pipe may give a few bytes at first
         let first = file.fill_buf().map_err(unreadable)?;
         if first.starts_with(&[0xFF, 0xFE]) || first.starts_with(&[0xFE, 0xFF]) {
-            return Err(Failure::input(format_args!("{name} looks like UTF-16; save the file as UTF-8")));
+            return Err(input_error!("{name} looks like UTF-16; save the file as UTF-8"));
         }
         if first.starts_with(&Npy::MAGIC[..Npy::MAGIC.len().min(first.len())]) && !first.is_empty() {
             return Ok(Self { restricted, ..Self::npy(name, file, columns)? });
@@ -95,11 +95,11 @@ impl Table {
         wanted: &[String],
         others: &[Option<String>],
     ) -> Result<Self, Failure> {
-        let rows = CsvRows::open(file, b',', true).map_err(|what| Failure::input(format_args!("{name}: {what}")))?;
+        let rows = CsvRows::open(file, b',', true).map_err(|what| input_error!("{name}: {what}"))?;
         let header = &rows.header;
         if header.is_empty() {
             let needed = wanted.join(",");
-            return Err(Failure::input(format_args!("{name} is empty; its header is {needed}, in any order")));
+            return Err(input_error!("{name} is empty; its header is {needed}, in any order"));
         }
         let mut columns = Vec::new();
         for (at, column) in wanted.iter().enumerate() {
@@ -111,13 +111,13 @@ impl Table {
                 [] => {
                     let near = instead(column, header);
                     let needed = wanted.join(", ");
-                    return Err(Failure::input(format_args!(
+                    return Err(input_error!(
                         "{name}: the header has no column `{column}`{near}; the required columns are {needed}; \
                          others are ignored"
-                    )));
+                    ));
                 }
                 _ => {
-                    return Err(Failure::input(format_args!("{name}: the column `{column}` occurs twice")));
+                    return Err(input_error!("{name}: the column `{column}` occurs twice"));
                 }
             }
         }
@@ -141,7 +141,7 @@ impl Table {
     }
 
     fn npy(name: String, file: Box<dyn BufRead>, wanted: &[String]) -> Result<Self, Failure> {
-        let wrong = |what: &dyn std::fmt::Display| Failure::input(format_args!("{name}: {what}"));
+        let wrong = |what: &dyn std::fmt::Display| input_error!("{name}: {what}");
         let npy = Npy::open(file).map_err(|error| wrong(&error))?;
         let [states, width] = npy.shape[..] else {
             let axes = npy.shape.len();
@@ -163,8 +163,7 @@ impl Table {
             Rows::Csv { rows: table, columns } => {
                 let mut count = 0;
                 while count < PART {
-                    let is_there =
-                        table.read().map_err(|(line, what)| Failure::input(format_args!("{name}:{line}: {what}")))?;
+                    let is_there = table.read().map_err(|(line, what)| input_error!("{name}:{line}: {what}"))?;
                     if !is_there {
                         break;
                     }
@@ -181,12 +180,12 @@ impl Table {
                                 (_, Some(misfit)) => format!("{shown}, which is too {misfit} for a 64-bit float"),
                                 _ => format!("{shown}, which is not a number"),
                             };
-                            Failure::input(format_args!("{name}:{line}: `{column}` is {what}"))
+                            input_error!("{name}:{line}: `{column}` is {what}")
                         })?);
                     }
                     let column = |at: usize| format!("`{}`", columns[at].1);
                     if let Some(mistake) = restricted.mistake(&rows[begin..], column) {
-                        return Err(Failure::input(format_args!("{name}:{}: {mistake}", table.line())));
+                        return Err(input_error!("{name}:{}: {mistake}", table.line()));
                     }
                     count += 1;
                 }
@@ -208,7 +207,7 @@ impl Table {
                 for row in rows.chunks_exact((*width).max(1)) {
                     *read += 1;
                     if let Some(mistake) = restricted.mistake(row, |at| format!("in column {}", at + 1)) {
-                        return Err(Failure::input(format_args!("{name}: state {read}: {mistake}")));
+                        return Err(input_error!("{name}: state {read}: {mistake}"));
                     }
                 }
                 Ok(rows.len() / (*width).max(1))

@@ -2,7 +2,7 @@
 
 use std::io::{self, ErrorKind, IsTerminal as _};
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use rne::DynArm;
@@ -153,7 +153,7 @@ impl Job<'_> {
             let wrong = |error| match error {
                 // counted from the first part
                 EvaluationError::OutOfRange { mistake, state, .. } => {
-                    Failure::input(format_args!("{}: state {}: {mistake}", name(self.states), states + state))
+                    input_error!("{}: state {}: {mistake}", name(self.states), states + state)
                 }
                 error => Failure::input(error),
             };
@@ -172,8 +172,13 @@ impl Job<'_> {
             Err(error) if error.kind() == ErrorKind::BrokenPipe => return Ok(Outcome::default()),
             written => written.map_err(|error| state_results::stopped(&error))?,
         }
+        Ok(Outcome::remark(self.account(states, start.elapsed()) + &remarks.text()))
+    }
+
+    /// How many states were computed, and how fast.
+    fn account(&self, states: usize, elapsed: Duration) -> String {
         #[allow(clippy::cast_precision_loss)] // of a rate, three digits are printed
-        let rate = states as f64 / start.elapsed().as_secs_f64().max(1e-9);
+        let rate = states as f64 / elapsed.as_secs_f64().max(1e-9);
         let rate = match states {
             0 => String::new(),
             _ => format!(" {QUIET}({rate:.2e} a second, reading and writing included){QUIET:#}"),
@@ -183,8 +188,7 @@ impl Job<'_> {
             .out
             .filter(|out| !is_standard_output(out))
             .map_or(String::new(), |out| format!("{GOOD}wrote{GOOD:#} {}: ", out.display()));
-        let remark = format!("{place}{} of {states} {noun}{rate}\n{}", self.function, remarks.text());
-        Ok(Outcome::remark(remark))
+        format!("{place}{} of {states} {noun}{rate}\n", self.function)
     }
 }
 

@@ -1,13 +1,13 @@
 //! Trajectories in files: columns t, q1, …, qd1, …, qdd1, … of CSV.
 
+use std::ops::Range;
 use std::path::Path;
 
 use rne_logs::Heading;
 use rne_model::{Robot, did_you_mean};
 use rne_plot::{Trajectory, TrajectoryError};
 
-use crate::files::csv_table::{Cell, Line, Mistakes, OPEN_QUOTE, Row, lines, other_separator, quoted, text_of};
-use crate::files::input_file;
+use crate::files::csv_table::{self, Cell, Line, Mistakes, OPEN_QUOTE, Row, lines, other_separator, quoted};
 use crate::outcome::Failure;
 
 /// Ten minutes of a six-joint arm at a hundred hertz, with all digits, are as long.
@@ -32,21 +32,17 @@ struct Columns {
 
 /// Reads the trajectory of a robot.
 pub(crate) fn read(path: &Path, robot: &Robot) -> Result<Given, Failure> {
-    let name = input_file::name(path);
-    let bytes = input_file::read(path, LONGEST)
-        .map_err(|error| Failure::input(format_args!("the trajectory {name} cannot be read: {error}")))?;
-    if bytes.len() > LONGEST {
-        return Err(Failure::input(format_args!(
-            "{name} has more than {LONGEST} bytes; give a file with a part of the samples"
-        )));
-    }
-    let decoded = text_of(&name, &bytes)?;
-    let text = decoded.as_ref();
-    let mut mistakes = Mistakes::new(&name, text);
+    let (name, text) = &csv_table::read(path, "trajectory", LONGEST, "; give a file with a part of the samples")?;
+    let mut mistakes = Mistakes::new(name, text);
+    let given = given(text, robot, &mut mistakes);
+    mistakes.finish(given)?.ok_or_else(|| Failure::input("this is not a trajectory"))
+}
+
+/// The trajectory of a text; `None` where the text has mistakes.
+fn given(text: &str, robot: &Robot, mistakes: &mut Mistakes<'_>) -> Option<Given> {
     let dof = robot.dof();
     let help =
         format!("the header is t,{}; columns qd and qdd are optional, others are ignored", names("q", dof).join(","));
-    let mut rows = Vec::new();
     let mut table = lines(text).filter_map(|line| match line {
         Line::Row(row) => Some(Ok(row)),
         Line::OpenQuote(span) => Some(Err(span)),
@@ -57,31 +53,14 @@ pub(crate) fn read(path: &Path, robot: &Robot) -> Result<Given, Failure> {
         if !mistakes.are_there() {
             mistakes.push(0..0, "the file is empty: there is no header", Some(&help));
         }
-        return mistakes.finish(()).and(Err(Failure::input("the file is empty")));
+        return None;
     };
     let joints: Vec<String> = robot.independent_joints().map(|joint| joint.name.clone()).collect();
-    let Some(columns) = columns(&header, &joints, &help, &mut mistakes) else {
-        return mistakes.finish(()).and(Err(Failure::input("this is not the header of a trajectory")));
-    };
-    let asked = columns.asked(header.cells.len());
-    let mut samples = Vec::new();
-    for line in table {
-        match line {
-            Ok(row) if samples.len() == MOST => {
-                let message = format!("the file has more than {MOST} samples");
-                mistakes.push(row.span, message, Some("give a file with a part of the samples, or with every tenth"));
-                break;
-            }
-            _ if mistakes.are_enough() => break,
-            Ok(row) => {
-                rows.push(row.span.start);
-                samples.push(numbers(&header, &row, &asked, &mut mistakes));
-            }
-            Err(span) => mistakes.push(span, OPEN_QUOTE, None),
-        }
+    let columns = columns(&header, &joints, &help, mistakes)?;
+    let (starts, samples) = samples(table, &header, &columns, mistakes);
+    if mistakes.are_there() {
+        return None;
     }
-    mistakes.finish(())?;
-    let mut mistakes = Mistakes::new(&name, text);
     let series = |columns: &[usize]| -> Vec<Vec<f64>> {
         samples.iter().map(|sample| columns.iter().map(|&column| sample[column]).collect()).collect()
     };
@@ -93,24 +72,48 @@ pub(crate) fn read(path: &Path, robot: &Robot) -> Result<Given, Failure> {
         (None, Some(_)) => "velocities derived from the positions",
         (None, None) => "velocities and accelerations derived from the positions",
     };
-    match Trajectory::new(time, series(&columns.q), qd, qdd) {
-        Ok(trajectory) => Ok(Given { trajectory, derived }),
-        Err(error) => {
-            let (span, help) = match &error {
-                TrajectoryError::Time(sample) => {
-                    let start = rows.get(*sample).copied().unwrap_or_default();
-                    (start..start + 1, None)
-                }
-                TrajectoryError::TooFew { .. } => (
-                    text.len()..text.len(),
-                    Some("a trajectory needs at least two samples, and at least three if rne must compute derivatives"),
-                ),
-                _ => (header.span.clone(), None),
-            };
-            mistakes.push(span, error.to_string(), help);
-            mistakes.finish(()).and(Err(Failure::input(error)))
+    let trajectory = Trajectory::new(time, series(&columns.q), qd, qdd).map_err(|error| {
+        let (span, help) = match &error {
+            TrajectoryError::Time(sample) => {
+                let start = starts.get(*sample).copied().unwrap_or_default();
+                (start..start + 1, None)
+            }
+            TrajectoryError::TooFew { .. } => (
+                text.len()..text.len(),
+                Some("a trajectory needs at least two samples, and at least three if rne must compute derivatives"),
+            ),
+            _ => (header.span.clone(), None),
+        };
+        mistakes.push(span, error.to_string(), help);
+    });
+    Some(Given { trajectory: trajectory.ok()?, derived })
+}
+
+/// The lines below the header: where each starts, and its numbers.
+fn samples<'a>(
+    table: impl Iterator<Item = Result<Row<'a>, Range<usize>>>,
+    header: &Row<'_>,
+    columns: &Columns,
+    mistakes: &mut Mistakes<'_>,
+) -> (Vec<usize>, Vec<Vec<f64>>) {
+    let asked = columns.asked(header.cells.len());
+    let (mut starts, mut samples) = (Vec::new(), Vec::new());
+    for line in table {
+        match line {
+            Ok(row) if samples.len() == MOST => {
+                let message = format!("the file has more than {MOST} samples");
+                mistakes.push(row.span, message, Some("give a file with a part of the samples, or with every tenth"));
+                break;
+            }
+            _ if mistakes.are_enough() => break,
+            Ok(row) => {
+                starts.push(row.span.start);
+                samples.push(numbers(header, &row, &asked, mistakes));
+            }
+            Err(span) => mistakes.push(span, OPEN_QUOTE, None),
         }
     }
+    (starts, samples)
 }
 
 fn names(quantity: &str, dof: usize) -> Vec<String> {

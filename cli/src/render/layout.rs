@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
 use unicode_width::UnicodeWidthStr;
 
-use crate::palette::{QUIET, TITLE};
+use crate::palette::{QUIET, Style, TITLE, WARNING};
 
 /// Columns of a page of text.
 pub(crate) const PAGE: usize = 80;
@@ -72,6 +72,21 @@ pub(crate) fn shortened(text: &str, to: usize) -> String {
     let most = |end: &usize| width(&text[..*end]) < to;
     let end = text.char_indices().map(|(at, _)| at).take_while(most).last().unwrap_or(0);
     format!("{}…", text[..end].trim_end())
+}
+
+/// A note for standard error.
+pub(crate) fn note(what: &str) -> String {
+    remark("note", TITLE, what)
+}
+
+/// A warning for standard error.
+pub(crate) fn warning(what: &str) -> String {
+    remark("warning", WARNING, what)
+}
+
+fn remark(word: &str, style: Style, what: &str) -> String {
+    let indent = " ".repeat(word.len() + 2);
+    format!("{style}{word}{style:#}: {}\n", wrap(what, PAGE - indent.len(), &indent))
 }
 
 /// Words put into lines of a width; lines after the first start with `indent`.

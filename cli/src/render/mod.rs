@@ -2,6 +2,7 @@
 
 pub(crate) mod answer;
 pub(crate) mod base_parameters;
+mod counts;
 pub(crate) mod equations;
 pub(crate) mod heading;
 pub(crate) mod highlight;

@@ -141,42 +141,10 @@ fn sentence(robot: &Robot, event: &Event, has_runs: bool, names: &LogNames<'_>) 
         }
         Cause::Payload if event.value < 0.0 => format!("payload: {value}: the tip has lost mass"),
         Cause::Payload => format!("payload: {value} at the tip"),
-        Cause::Sensor if event.parameter == "delay" => format!(
-            "sensors: the efforts are {value} behind the positions, before {:.3}",
-            // no minus before zero
-            (1e3 * event.baseline_value).round() / 1e3 + 0.0
-        ),
-        Cause::Sensor if event.parameter == "frozen" => {
-            let value = with_unit(&rounded(event.value, 3), unit);
-            format!("sensor of {joint}: the effort stays at {value}, although the joint moves: the channel is frozen")
-        }
-        Cause::Sensor if event.parameter == "frozen_position" => {
-            let value = with_unit(&rounded(event.value, 3), unit);
-            format!(
-                "sensor of {joint}: the position stays at {value}, although the velocity says that the joint moves: \
-                 the channel is frozen; rne looks for no other event, because the model needs this position"
-            )
-        }
-        Cause::Sensor if event.parameter == "exchanged" => {
-            let others: Vec<String> =
-                event.others.iter().map(|joint| one_line(robot.coordinate_name(*joint))).collect();
-            let other = others.join(", ");
-            format!(
-                "sensors: the efforts of {joint} and {other} look exchanged; the other results hold for the efforts \
-                 exchanged back"
-            )
-        }
-        Cause::Sensor if event.parameter == "gain" => {
-            format!("sensor of {joint}: the effort is {value} of the torque{}", gain(event))
-        }
-        Cause::Sensor => format!(
-            "sensor of {joint}: the effort has an offset of {value}, before {}",
-            rounded(event.baseline_value, 3)
-        ),
+        Cause::Sensor => sensor(robot, event, &joint, &value),
         Cause::Contact => {
-            let others: Vec<String> =
-                event.others.iter().map(|joint| one_line(robot.coordinate_name(*joint))).collect();
-            let too = if others.is_empty() { String::new() } else { format!(" (also at {})", others.join(", ")) };
+            let others = others(robot, event);
+            let too = if others.is_empty() { others } else { format!(" (also at {others})") };
             format!("contact at {joint}{too}: external torque up to {} {unit}", rounded(event.value, 3))
         }
         Cause::Model => format!(
@@ -186,6 +154,47 @@ fn sentence(robot: &Robot, event: &Event, has_runs: bool, names: &LogNames<'_>) 
         ),
     };
     format!("{what}; {}", times(event, has_runs, names))
+}
+
+/// The joints of an event beside its own.
+fn others(robot: &Robot, event: &Event) -> String {
+    event.others.iter().map(|joint| one_line(robot.coordinate_name(*joint))).collect::<Vec<_>>().join(", ")
+}
+
+/// What is wrong with a sensor of a joint.
+fn sensor(robot: &Robot, event: &Event, joint: &str, value: &str) -> String {
+    match event.parameter {
+        "delay" => format!(
+            "sensors: the efforts are {value} behind the positions, before {:.3}",
+            // no minus before zero
+            (1e3 * event.baseline_value).round() / 1e3 + 0.0
+        ),
+        "frozen" => {
+            let value = with_unit(&rounded(event.value, 3), event.unit);
+            format!("sensor of {joint}: the effort stays at {value}, although the joint moves: the channel is frozen")
+        }
+        "frozen_position" => {
+            let value = with_unit(&rounded(event.value, 3), event.unit);
+            format!(
+                "sensor of {joint}: the position stays at {value}, although the velocity says that the joint moves: \
+                 the channel is frozen; rne looks for no other event, because the model needs this position"
+            )
+        }
+        "exchanged" => {
+            let other = others(robot, event);
+            format!(
+                "sensors: the efforts of {joint} and {other} look exchanged; the other results hold for the efforts \
+                 exchanged back"
+            )
+        }
+        "gain" => {
+            format!("sensor of {joint}: the effort is {value} of the torque{}", gain(event))
+        }
+        _ => format!(
+            "sensor of {joint}: the effort has an offset of {value}, before {}",
+            rounded(event.baseline_value, 3)
+        ),
+    }
 }
 
 fn friction(parameter: &str) -> &'static str {

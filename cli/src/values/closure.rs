@@ -30,10 +30,10 @@ pub(crate) fn closed(robot: &Robot, q: &[f64], guess: Option<&[f64]>) -> Result<
     let (names, name) = (names.join(", "), &robot.name);
     if let Some(guess) = guess {
         let found = newton(&arm, q, guess.to_vec()).ok_or_else(|| {
-            Failure::usage(format_args!(
+            usage_error!(
                 "--passive leads to no positions of {names} that close the loops of {name} at these positions --q: \
                  the loops may be open at all of them. Give another guess, or other positions"
-            ))
+            )
         });
         return found.map(|passive| without_turns(robot, passive));
     }
@@ -51,11 +51,11 @@ pub(crate) fn closed(robot: &Robot, q: &[f64], guess: Option<&[f64]>) -> Result<
     }
     let end = nearest.map_or_else(Vec::new, |(_, end)| end);
     let end = end.into_iter().map(six_digits).collect::<Vec<_>>().join(", ");
-    Err(Failure::usage(format_args!(
+    Err(usage_error!(
         "no assembly of {name} that was found reaches these positions --q: the nearest one ends at a singular \
          position, or the loops open, at q = {end}. Give other positions, or with --passive a guess of {names} for \
          another assembly"
-    )))
+    ))
 }
 
 /// A note where the loops are close to a singular position: positions of few digits then give torques of fewer, and

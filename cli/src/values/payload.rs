@@ -13,12 +13,12 @@ pub(super) const PAYLOAD: &str =
 pub(crate) fn payload(List(values): &List) -> Result<Payload<f64>, Failure> {
     if values.len() != 4 && values.len() != 10 {
         let found = values.len();
-        return Err(Failure::usage(format_args!("--payload needs 10 or 4 numbers, not {found}: {PAYLOAD}")));
+        return Err(usage_error!("--payload needs 10 or 4 numbers, not {found}: {PAYLOAD}"));
     }
     let mut all = [0.0; 10];
     all.iter_mut().zip(values).for_each(|(number, value)| *number = *value);
     let payload = Payload::from_array(all);
-    payload.check().map_err(|error| Failure::usage(format_args!("--payload: {error}")))?;
-    payload.inertia.check_of_payload().map_err(|error| Failure::usage(format_args!("--payload: {error}")))?;
+    payload.check().map_err(|error| usage_error!("--payload: {error}"))?;
+    payload.inertia.check_of_payload().map_err(|error| usage_error!("--payload: {error}"))?;
     Ok(payload)
 }

@@ -132,7 +132,7 @@ pub(crate) struct State {
 impl State {
     /// Checks that the function's arguments, all of them and no others, are there.
     pub(crate) fn new(function: Function, given: &Given, robot: &Robot) -> Result<Self, Failure> {
-        use Argument::{Accelerations, Base, Positions, Rates, Torques};
+        use Argument::{Accelerations, Positions, Rates, Torques};
         let joints: Vec<&str> = robot.independent_joints().map(|joint| joint.name.as_str()).collect();
         let which = if robot.closed.is_empty() { "" } else { " that is not dependent" };
         let per_joint = format!("one number for each joint of {}{which}: {}", robot.name, joints.join(", "));
@@ -153,29 +153,11 @@ impl State {
         let payload = match &given.payload {
             Some(list) => Some(payload(list)?),
             None if function.takes(Argument::Payload) => {
-                return Err(Failure::usage(format_args!("{function} needs --payload, {PAYLOAD}")));
+                return Err(usage_error!("{function} needs --payload, {PAYLOAD}"));
             }
             None => None,
         };
-        let axes = "three numbers x,y,z, in the axes of frame 0";
-        let of_base = |name, list: &Option<List>| {
-            let kind = match name {
-                "--base-velocity" => Argument::BaseTwist,
-                "--base-omega" if function.takes(Argument::BaseVelocity) => Argument::BaseVelocity,
-                "--base-omega" if function.takes(Argument::BaseTwist) => Argument::BaseTwist,
-                _ => Base,
-            };
-            let list = argument(function, name, list.as_ref(), kind, 3, axes)?;
-            Ok::<_, Failure>(list.map_or([0.0; 3], |list| triple(&list, 0)))
-        };
-        let base = BaseMotion {
-            omega: of_base("--base-omega", &given.base_omega)?,
-            omega_dot: of_base("--base-omega-dot", &given.base_omega_dot)?,
-            velocity: of_base("--base-velocity", &given.base_velocity)?,
-            acceleration: of_base("--base-acceleration", &given.base_acceleration)?,
-            // a base that only moves stays under the gravity of the file
-            gravity: if given.gravity.is_some() { of_base("--gravity", &given.gravity)? } else { robot.gravity },
-        };
+        let base = motion_of_base(function, given, robot)?;
         let rows = "nine numbers, row by row; its columns are the axes of frame 0 in the world";
         let base_rotation = match given.base_rotation.as_ref() {
             // the world has the axes of frame 0
@@ -271,6 +253,29 @@ fn passive(function: Function, list: Option<&List>, q: Option<&[f64]>, robot: &R
     }
 }
 
+/// The motion of the base, at rest where it is not given, and gravity.
+fn motion_of_base(function: Function, given: &Given, robot: &Robot) -> Result<BaseMotion<f64>, Failure> {
+    let axes = "three numbers x,y,z, in the axes of frame 0";
+    let of_base = |name, list: &Option<List>| {
+        let kind = match name {
+            "--base-velocity" => Argument::BaseTwist,
+            "--base-omega" if function.takes(Argument::BaseVelocity) => Argument::BaseVelocity,
+            "--base-omega" if function.takes(Argument::BaseTwist) => Argument::BaseTwist,
+            _ => Argument::Base,
+        };
+        let list = argument(function, name, list.as_ref(), kind, 3, axes)?;
+        Ok::<_, Failure>(list.map_or([0.0; 3], |list| triple(&list, 0)))
+    };
+    Ok(BaseMotion {
+        omega: of_base("--base-omega", &given.base_omega)?,
+        omega_dot: of_base("--base-omega-dot", &given.base_omega_dot)?,
+        velocity: of_base("--base-velocity", &given.base_velocity)?,
+        acceleration: of_base("--base-acceleration", &given.base_acceleration)?,
+        // a base that only moves stays under the gravity of the file
+        gravity: if given.gravity.is_some() { of_base("--gravity", &given.gravity)? } else { robot.gravity },
+    })
+}
+
 /// The numbers of a pose in words.
 const POSE: &str = "position and rotation of frame 0 in the world: x,y,z,roll,pitch,yaw; or the rows of the rotation \
                     matrix, then x,y,z";
@@ -302,7 +307,7 @@ fn rotation(name: &str, numbers: &[f64]) -> Result<[[f64; 3]; 3], Failure> {
     if (Pose { rotation, translation: [0.0; 3] }).is_rigid() {
         return Ok(rotation);
     }
-    Err(Failure::usage(format_args!("{name} is no rotation: {ROTATION}")))
+    Err(usage_error!("{name} is no rotation: {ROTATION}"))
 }
 
 pub(super) fn triple(list: &[f64], from: usize) -> [f64; 3] {
@@ -323,11 +328,11 @@ fn argument(
 ) -> Result<Option<Vec<f64>>, Failure> {
     match list {
         None if !function.takes(kind) => Ok(None),
-        None => Err(Failure::usage(format_args!("{function} needs {name}, {what}"))),
+        None => Err(usage_error!("{function} needs {name}, {what}")),
         Some(_) if !function.takes(kind) => Err(not_taken(function, name, kind)),
         Some(List(values)) if values.len() != expected => {
             let (found, numbers) = (values.len(), if expected == 1 { "number" } else { "numbers" });
-            Err(Failure::usage(format_args!("{name} needs {expected} {numbers}, not {found}: {what}")))
+            Err(usage_error!("{name} needs {expected} {numbers}, not {found}: {what}"))
         }
         Some(List(values)) => Ok(Some(values.clone())),
     }
@@ -385,5 +390,5 @@ pub(super) fn not_taken(function: Function, name: &str, kind: Argument) -> Failu
         [] => String::new(),
         _ => "; `rne explain arguments` lists the functions that do".to_owned(),
     };
-    Failure::usage(format_args!("{function} takes no {name}{hint}"))
+    usage_error!("{function} takes no {name}{hint}")
 }

@@ -43,11 +43,11 @@ pub(super) fn tip_wrenches(
     }
     let mut wrenches = vec![Wrench::zero(); names.len()];
     if given.is_empty() && !function.is_of_floating_base() {
-        return Err(Failure::usage(format_args!(
+        return Err(usage_error!(
             "{function} needs --tip-wrench NAME=fx,fy,fz,nx,ny,nz for at least one tip of {}: `{}`",
             robot.name,
             names.join("`, `")
-        )));
+        ));
     }
     for (index, TipWrench { tip, numbers: List(numbers) }) in given.iter().enumerate() {
         if let Some(two) = robot.two_tips(tip) {
@@ -56,21 +56,21 @@ pub(super) fn tip_wrenches(
         let Some(place) = names.iter().position(|name| name == tip) else {
             if robot.frames.iter().any(|frame| frame.name == *tip) {
                 let listed = if robot.tips.is_empty() { tip.clone() } else { format!("{}, {tip}", names.join(", ")) };
-                return Err(Failure::usage(format_args!(
+                return Err(usage_error!(
                     "`{tip}` is a frame of {}, but not a tip; list it under `tips` of the robot file: tips: [{listed}]",
                     robot.name
-                )));
+                ));
             }
             let meant = nearest_name(tip, &names).map(|meant| format!("; did you mean `{meant}`?"));
-            return Err(Failure::usage(format_args!(
+            return Err(usage_error!(
                 "{} has no tip `{tip}`; its tips are `{}`{}",
                 robot.name,
                 names.join("`, `"),
                 meant.unwrap_or_default()
-            )));
+            ));
         };
         if given[..index].iter().any(|other| other.tip == *tip) {
-            return Err(Failure::usage(format_args!("--tip-wrench gives the wrench at `{tip}` twice")));
+            return Err(usage_error!("--tip-wrench gives the wrench at `{tip}` twice"));
         }
         wrenches[place] = Wrench { force: triple(numbers, 0), moment: triple(numbers, 3) };
     }

@@ -153,11 +153,7 @@ fn forward(rows: &[Row], links: &[Placed], state: &State, misprints: &[Misprint]
     let mut r_prev = Vector3::zeros();
     for (i, (row, link)) in rows.iter().zip(links).enumerate() {
         let (rate, rate_dot) = (state.qd[i], state.qdd[i]);
-        let qt = match i {
-            _ if misprints.contains(&Misprint::E2WrongQ) => link.turn.transpose(),
-            0 => Matrix3::identity(), // Q_0
-            _ => links[i - 1].turn_back,
-        };
+        let qt = turn_from_before(links, i, misprints);
 
         // Step 1, R: ω_i = Q_{i-1}ᵀ ω_{i-1} + θ̇_i e_i   P: without θ̇_i e_i
         let omega = match row.kind {
@@ -205,6 +201,15 @@ fn forward(rows: &[Row], links: &[Placed], state: &State, misprints: &[Misprint]
         (prev, r_prev) = (this, link.r);
     }
     all
+}
+
+/// Q_{i-1}ᵀ
+fn turn_from_before(links: &[Placed], i: usize, misprints: &[Misprint]) -> Matrix3<f64> {
+    match i {
+        _ if misprints.contains(&Misprint::E2WrongQ) => links[i].turn.transpose(),
+        0 => Matrix3::identity(),
+        _ => links[i - 1].turn_back,
+    }
 }
 
 /// Steps 6 and 7.

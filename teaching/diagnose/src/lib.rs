@@ -23,6 +23,7 @@
 
 mod computation;
 pub mod lecture;
+mod links;
 mod misprint;
 mod observation;
 mod order;

@@ -2,11 +2,12 @@
 
 use std::f64::consts::PI;
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
-use rne_model::{Convention, Inertia, Joint, JointKind, Link, Robot, Row, Transform};
+use nalgebra::{Rotation3, Vector3};
+use rne_model::{Convention, Inertia, JointKind, Robot, Transform};
 
 use crate::computation::{Computation, WrenchAxes, is_of_lecture};
 use crate::lecture::Misprint;
+use crate::links::{each_link, move_com, shifted, untwist};
 use crate::order;
 use crate::typo::Typo;
 
@@ -242,7 +243,8 @@ impl Slip {
         named.into_iter().chain(branches).filter(is_new).collect()
     }
 
-    /// The slips that are looked for alone, beside [`Typo`]s: two coordinates in each other's place.
+    /// The exchanges of two joints in all lists. There are many, so each is tried as the only slip, as a [`Typo`] is, and
+    /// in no pair of slips.
     pub(crate) fn alone(robot: &Robot) -> impl Iterator<Item = Self> {
         let known: Vec<Vec<usize>> = Self::orders(robot).into_iter().map(|slip| slip.order(robot)).collect();
         let dof = robot.dof();
@@ -278,19 +280,10 @@ impl Slip {
     pub(crate) fn make(self, of: &mut Computation) {
         let robot = &mut of.robot;
         match self {
-            Self::OtherConvention => {
-                robot.convention = match robot.convention {
-                    Convention::Standard => Convention::Modified,
-                    Convention::Modified => Convention::Standard,
-                }
-            }
+            Self::OtherConvention => robot.convention = other(robot.convention),
             Self::GravityReversed => robot.gravity = robot.gravity.map(|g| -g),
             Self::NoGravity => robot.gravity = [0.0; 3],
-            Self::GravityAlong(axis, reversed) => {
-                let size = Vector3::from(robot.gravity).norm();
-                robot.gravity = [0.0; 3];
-                robot.gravity[axis] = if reversed { -size } else { size };
-            }
+            Self::GravityAlong(axis, reversed) => turn_gravity(robot, axis, reversed),
             Self::GravityInWorld => {
                 robot.gravity = rotation(&robot.base).inverse_transform_vector(&robot.gravity.into()).into();
             }
@@ -300,12 +293,7 @@ impl Slip {
                 let Inertia { xy, xz, yz, .. } = link.inertia;
                 link.inertia = Inertia { xy: -xy, xz: -xz, yz: -yz, ..link.inertia };
             }),
-            Self::InertiaNotTwisted => {
-                for Joint { row: Row { dh, link, .. }, .. } in &mut robot.joints {
-                    let turn = Rotation3::from_axis_angle(&Vector3::x_axis(), -dh.alpha.radians);
-                    link.inertia = tensor(turn * Matrix3::from(link.inertia.rows()) * turn.inverse());
-                }
-            }
+            Self::InertiaNotTwisted => untwist(robot),
             Self::ComReversed => each_link(robot, |link| link.com = link.com.map(|c| -c)),
             Self::ComFromOtherEnd => move_com(robot, 1.0),
             Self::ComOfOtherEnd => move_com(robot, -1.0),
@@ -318,12 +306,8 @@ impl Slip {
             Self::JointReversed(joint) => of.reversed.push(joint),
             Self::NoVelocities => of.velocity_factor = 0.0,
             Self::NoAccelerations => of.acceleration_factor = 0.0,
-            Self::NoFirstSlide => {
-                let slides = robot.rows().next().is_some_and(|row| row.kind == JointKind::Prismatic);
-                if slides && robot.convention == Convention::Modified {
-                    of.first_factor = 0.0;
-                }
-            }
+            Self::NoFirstSlide if slides_first(robot) => of.first_factor = 0.0,
+            Self::NoFirstSlide => {}
             Self::RotorInertia => robot.rotors = true,
             Self::MotorTorques => of.motor_torques = true,
             Self::WrenchReversed => of.wrench_factor = -1.0,
@@ -341,10 +325,7 @@ impl Slip {
                 of.order_of_state = self.order(robot);
                 of.order_of_torques.clone_from(&of.order_of_state);
             }
-            Self::FollowerReversed(joint) => {
-                let coupling = robot.joints.get_mut(joint).and_then(|joint| joint.coupling.as_mut());
-                coupling.into_iter().flat_map(|it| &mut it.follows).for_each(|(_, ratio)| *ratio = -*ratio);
-            }
+            Self::FollowerReversed(joint) => reverse_follower(robot, joint),
             Self::WrenchInWorld => of.wrench_axes = WrenchAxes::World,
             Self::WrenchInBase => of.wrench_axes = WrenchAxes::Base,
             Self::WrenchAboutWorld => of.wrench_axes = WrenchAxes::AboutWorld,
@@ -354,6 +335,29 @@ impl Slip {
             Self::Typo(typo) => typo.make(robot),
         }
     }
+}
+
+fn other(convention: Convention) -> Convention {
+    match convention {
+        Convention::Standard => Convention::Modified,
+        Convention::Modified => Convention::Standard,
+    }
+}
+
+/// Whether the first joint of a modified table slides.
+fn slides_first(robot: &Robot) -> bool {
+    let is_first_prismatic = robot.rows().next().is_some_and(|row| row.kind == JointKind::Prismatic);
+    is_first_prismatic && robot.convention == Convention::Modified
+}
+
+fn turn_gravity(robot: &mut Robot, axis: usize, reversed: bool) {
+    let size = Vector3::from(std::mem::take(&mut robot.gravity)).norm();
+    robot.gravity[axis] = if reversed { -size } else { size };
+}
+
+fn reverse_follower(robot: &mut Robot, joint: usize) {
+    let coupling = robot.joints.get_mut(joint).and_then(|joint| joint.coupling.as_mut());
+    coupling.into_iter().flat_map(|it| &mut it.follows).for_each(|(_, ratio)| *ratio = -*ratio);
 }
 
 /// Whether a placement does not turn.
@@ -368,33 +372,4 @@ fn close(a: &[f64; 3], b: &[f64; 3]) -> bool {
 pub(crate) fn rotation(transform: &Transform) -> Rotation3<f64> {
     let [roll, pitch, yaw] = transform.rpy.map(|angle| angle.radians);
     Rotation3::from_euler_angles(roll, pitch, yaw)
-}
-
-fn each_link(robot: &mut Robot, change: impl Fn(&mut Link)) {
-    robot.joints.iter_mut().for_each(|joint| change(&mut joint.row.link));
-}
-
-/// The inertia with a multiple of m (c² 1 - c cᵀ) added.
-fn shifted(link: &Link, times: f64) -> Inertia {
-    let (c, own) = (Vector3::from(link.com), Matrix3::from(link.inertia.rows()));
-    tensor(own + (Matrix3::identity() * c.norm_squared() - c * c.transpose()) * (link.mass * times))
-}
-
-fn tensor(j: Matrix3<f64>) -> Inertia {
-    Inertia { xx: j[(0, 0)], yy: j[(1, 1)], zz: j[(2, 2)], xy: j[(0, 1)], xz: j[(0, 2)], yz: j[(1, 2)] }
-}
-
-/// Moves each centre of mass by a multiple of the vector to the other end of its link. Where a joint slides there, or
-/// there is no joint, the link has no other end.
-fn move_com(robot: &mut Robot, times: f64) {
-    let rows: Vec<_> = robot.rows().map(|row| (row.kind, row.dh)).collect();
-    let far = robot.convention == Convention::Modified;
-    for (index, joint) in robot.joints.iter_mut().enumerate() {
-        let Some((JointKind::Revolute, dh)) = rows.get(index + usize::from(far)) else { continue };
-        // from frame i-1 to frame i: in frame i in a standard table, in frame i-1 in a modified one
-        let (s, c) = (dh.alpha.sin, dh.alpha.cos);
-        let way = if far { [dh.a, -dh.d * s, dh.d * c] } else { [-dh.a, -dh.d * s, -dh.d * c] };
-        let com = &mut joint.row.link.com;
-        (0..3).for_each(|axis| com[axis] += times * way[axis]);
-    }
 }

@@ -12,6 +12,7 @@ impl Slip {
             Convention::Standard => ["standard", "modified", "far", "near"],
             Convention::Modified => ["modified", "standard", "near", "far"],
         };
+        let is_about_com = reference(robot) == InertiaReference::Com;
         match self {
             Self::OtherConvention => {
                 format!("the rows are read in the {other} convention; the file has the {this} convention")
@@ -20,22 +21,16 @@ impl Slip {
                 let sign = if reversed { "-" } else { "" };
                 format!("gravity points along {sign}{} of frame 0", ["x", "y", "z"][axis.min(2)])
             }
-            Self::InertiaAboutOrigin => match reference(robot) {
-                InertiaReference::Com => {
-                    "inertias about the centre of mass are read as inertias about the frame's origin"
-                }
-                InertiaReference::Origin => "the parallel axis term is subtracted from the inertias twice",
+            Self::InertiaAboutOrigin if is_about_com => {
+                "inertias about the centre of mass are read as inertias about the frame's origin".to_owned()
             }
-            .to_owned(),
-            Self::InertiaShifted => match reference(robot) {
-                InertiaReference::Com => {
-                    "inertias about the frame's origin are used in place of inertias about the centre of mass"
-                }
-                InertiaReference::Origin => {
-                    "inertias about the frame's origin are read as inertias about the centre of mass"
-                }
+            Self::InertiaAboutOrigin => "the parallel axis term is subtracted from the inertias twice".to_owned(),
+            Self::InertiaShifted if is_about_com => {
+                "inertias about the frame's origin are used in place of inertias about the centre of mass".to_owned()
             }
-            .to_owned(),
+            Self::InertiaShifted => {
+                "inertias about the frame's origin are read as inertias about the centre of mass".to_owned()
+            }
             Self::ComFromOtherEnd => {
                 format!(
                     "the file's centres of mass are measured from the {far} end of the link, not from its {near} end"
@@ -63,8 +58,7 @@ impl Slip {
                 format!("the joints {one} and {other} are exchanged in all lists")
             }
             Self::FollowerReversed(joint) => {
-                let follows = follows(robot, joint);
-                let names: Vec<&str> = follows.iter().map(|(joint, _)| robot.joints[*joint].name.as_str()).collect();
+                let names: Vec<&str> = follows(robot, joint).iter().map(|(at, _)| joint_name(robot, *at)).collect();
                 let follower = joint_name(robot, joint);
                 format!("the joint {follower} follows {} with the other sign", names.join(" and "))
             }

@@ -1,6 +1,6 @@
 //! Bounds that leave the axes: what is shown of them, and what is written at the edge.
 
-use crate::chart::Curve;
+use crate::elements::Curve;
 use crate::scale::significant;
 
 /// The axes are at most this many times as long as the curves need, so that bounds that are near are seen.

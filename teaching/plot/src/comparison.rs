@@ -2,7 +2,7 @@
 
 use rne_model::{Joint, Robot};
 
-use crate::chart::subscript;
+use crate::elements::subscript;
 use crate::panels::{Panel, PanelCurve, panels};
 
 /// Measured and predicted torques of an arm.

@@ -21,6 +21,7 @@
 mod chart;
 mod clipped;
 mod comparison;
+mod elements;
 mod history;
 mod panels;
 mod parts;

@@ -1,9 +1,8 @@
 //! A picture of panels below each other's times: curves of a joint each, limits, and stretches that are marked.
 
-use crate::chart::{
-    COLOURS, Curve, HEAD, PANEL, Place, QUIET, SIDE, Svg, TEXT, Ticks, WIDTH, axes, pixels, shortened, width_of,
-};
+use crate::chart::{COLOURS, HEAD, PANEL, Place, QUIET, SIDE, Ticks, axes};
 use crate::clipped::{clipped, edges, room};
+use crate::elements::{Curve, Svg, TEXT, WIDTH, pixels, shortened, width_of};
 
 /// A curve of a panel.
 #[derive(Clone, Copy, Debug)]

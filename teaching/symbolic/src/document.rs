@@ -2,18 +2,17 @@
 
 use std::collections::BTreeSet;
 
-use rne_model::JointKind;
 use unicode_width::UnicodeWidthStr as _;
 
 use crate::ClosedForm;
 use crate::collected::Sum;
 use crate::equations::Equations;
+use crate::letters::letters;
 use crate::lines::Pieces;
 use crate::notation::{Notation, Script};
 use crate::polynomial::Polynomial;
 use crate::recursion;
-use crate::symbol::{Angle, Symbol};
-use crate::table::Table;
+use crate::symbol::Symbol;
 use crate::written::{COLUMNS, Written};
 
 /// A torque of more lines is given by its parts alone.
@@ -237,130 +236,4 @@ fn gravity(composer: &Composer<'_>, written: &Written) -> Section {
 pub(crate) fn used<'p>(polynomials: impl Iterator<Item = &'p Polynomial>) -> BTreeSet<Symbol> {
     let terms = polynomials.filter_map(Polynomial::terms).flatten();
     terms.flat_map(|(monomial, _)| monomial.0.iter().map(|(symbol, _)| *symbol)).collect()
-}
-
-/// The section on the meaning of the letters.
-pub(crate) fn letters(composer: &Composer<'_>, table: &Table, used: &BTreeSet<Symbol>) -> Option<Section> {
-    let notation = &composer.notation;
-    let value = |index: usize| -> Option<(String, String)> {
-        let constant = table.constants.0.get(index)?;
-        let names: Vec<String> = std::iter::once(notation.constant(index))
-            .chain(constant.also.iter().map(|name| notation.named(name)))
-            .collect();
-        Some((format!("{} = {}", names.join(" = "), number(constant.value)), constant.unit.to_owned()))
-    };
-    let constants: Vec<usize> = used.iter().filter_map(|symbol| constant(*symbol)).collect();
-    let listed = |is_parameter: bool| -> Vec<(String, String)> {
-        let chosen = constants.iter().filter(|index| table.constants.0[**index].is_parameter == is_parameter);
-        chosen.filter_map(|index| value(*index)).collect()
-    };
-    let mut items = Vec::new();
-    for (title, list) in [("Parameters of the file:", listed(true)), ("Numbers of the table:", listed(false))] {
-        if !list.is_empty() {
-            items.push(Item::Words(words(title)));
-            items.push(Item::List(list));
-        }
-    }
-    let names: Vec<&str> = constants
-        .iter()
-        .map(|index| &table.constants.0[*index])
-        .filter(|constant| !constant.is_parameter)
-        .map(|constant| constant.name.as_str())
-        .collect();
-    let has = |start: char, inside: &str| names.iter().any(|name| name.starts_with(start) && name.contains(inside));
-    let mut meanings = Vec::new();
-    if ['x', 'y', 'z'].iter().any(|axis| has(*axis, "_C")) {
-        meanings.push("x_C, y_C, z_C: centre of mass, in the link frame of the table");
-    }
-    if table.rows.iter().any(|row| !row.first_moment.is_zero()) && has('m', "mc") {
-        meanings.push("mcx, mcy, mcz: first moment of a link without mass, in the link frame of the table");
-    }
-    if has('I', "_") {
-        meanings.push("I: inertia about the centre of mass, in link axes");
-    }
-    if has('J', "_") {
-        meanings.push("J: inertia about the origin of the link frame, in link axes");
-    }
-    items.extend(meanings.into_iter().map(|meaning| Item::Words(words(&format!("{meaning}.")))));
-    let slides: Vec<usize> = (0..table.rows.len()).filter(|i| table.rows[*i].kind == JointKind::Prismatic).collect();
-    if !slides.is_empty() {
-        let names: Vec<String> = slides.iter().map(|joint| notation.variable(*joint, 0)).collect();
-        let text = ["Where θ stands for all joint variables, that of a sliding joint is d: ", "."];
-        let [before, after] = text.map(|text| script_words(notation, text));
-        items.push(Item::Words(vec![before, names.join(", "), after]));
-    }
-    let mut angles = Vec::new();
-    for (angle, turn) in &table.angles {
-        let is_used = used.contains(&Symbol::Sine(*angle)) || used.contains(&Symbol::Cosine(*angle));
-        let constant = self::angle(turn);
-        match angle {
-            Angle::Joint(joint) if turn.radians != 0.0 && is_used => {
-                let q = notation.indexed("q", &(joint + 1).to_string());
-                let constant =
-                    if constant.starts_with('-') { constant.replacen('-', "- ", 1) } else { format!("+ {constant}") };
-                let unit = if turn.right.is_some() { "" } else { "rad" };
-                angles.push((
-                    format!("{} = {q} {}", notation.angle(*angle), script(notation, &constant)),
-                    unit.to_owned(),
-                ));
-            }
-            Angle::Twist(_) | Angle::Turn(_) if is_used => {
-                angles
-                    .push((format!("{} = {}", notation.angle(*angle), script(notation, &constant)), "rad".to_owned()));
-            }
-            _ => {}
-        }
-    }
-    for (joint, row) in table.rows.iter().enumerate() {
-        let is_used = used.contains(&Symbol::Position(joint));
-        if row.kind == JointKind::Prismatic && !row.d_constant.is_zero() && is_used {
-            let q = notation.indexed("q", &(joint + 1).to_string());
-            let constant = table.offsets.get(joint).copied().unwrap_or(0.0);
-            let sign = if constant < 0.0 { '-' } else { '+' };
-            let text = format!("{} = {q} {sign} {}", notation.variable(joint, 0), number(constant.abs()));
-            angles.push((text, "m".to_owned()));
-        }
-    }
-    if !angles.is_empty() {
-        items.push(Item::Words(words("Angles and lengths of the table, by the joint variables q:")));
-        items.push(Item::List(angles));
-    }
-    (!items.is_empty()).then(|| Section { title: words("Where"), items })
-}
-
-fn constant(symbol: Symbol) -> Option<usize> {
-    match symbol {
-        Symbol::Constant(index) => Some(index),
-        _ => None,
-    }
-}
-
-/// A number of the file.
-fn number(value: f64) -> String {
-    format!("{value}")
-}
-
-/// Words without Greek letters, which a page has in mathematics alone.
-fn script_words(notation: &Notation<'_>, text: &str) -> String {
-    if notation.script == Script::Latex { text.replace('θ', "theta") } else { text.to_owned() }
-}
-
-fn script(notation: &Notation<'_>, text: &str) -> String {
-    if notation.script == Script::Latex { text.replace('π', r"\pi") } else { text.to_owned() }
-}
-
-/// A constant angle: a right one as a multiple of π.
-fn angle(turn: &rne_model::Angle) -> String {
-    let quarters = (turn.radians / std::f64::consts::FRAC_PI_2).round();
-    if turn.right.is_none() || quarters.abs() > 4.0 || quarters == 0.0 {
-        return number(turn.radians);
-    }
-    let sign = if quarters < 0.0 { "-" } else { "" };
-    let magnitude = match quarters.abs() {
-        1.0 => "π/2",
-        2.0 => "π",
-        3.0 => "3π/2",
-        _ => "2π",
-    };
-    format!("{sign}{magnitude}")
 }

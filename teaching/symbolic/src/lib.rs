@@ -36,6 +36,7 @@ mod equations;
 mod factor;
 mod lagrange;
 mod latex;
+mod letters;
 mod lines;
 mod notation;
 mod parameters;

@@ -6,7 +6,8 @@ use rne_model::{Convention, JointKind, one_line};
 
 use crate::collected::Collector;
 use crate::derivation::Derivation;
-use crate::document::{Composer, Item, Section, letters, used, words};
+use crate::document::{Composer, Item, Section, used, words};
+use crate::letters::letters;
 use crate::lines::Pieces;
 use crate::notation::{Notation, Script};
 use crate::polynomial::Polynomial;
@@ -95,56 +96,18 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
     sections.push(Section { title: forward_title, items: forward });
     let backward_title = title(["Backward, ", "i", " from the last to 1, ", "k = i + 1", "; the tip is free"]);
     sections.push(Section { title: backward_title, items: backward });
-    let mut collector = Collector::new(composer.notation.constants);
-    let mut seen: Vec<Polynomial> = form.table.gravity.0.to_vec();
-    let mut items = Vec::new();
-    let mut vector = |left: &str, index: usize, vector: &Vector, seen: &mut Vec<Polynomial>| {
-        seen.extend(vector.0.iter().cloned());
-        // in print vectors are bold, for d is a letter of the table too
-        let left = |notation: &Notation<'_>| match notation.script {
-            Script::Latex if left.len() == 1 => notation.indexed(&format!("\\mathbf {left}"), &index.to_string()),
-            _ => notation.indexed(left, &index.to_string()),
-        };
-        let sums: Vec<_> = vector.0.iter().filter_map(|component| collector.collected(component)).collect();
-        composer.formula(left, Pieces::components(&sums, &composer.notation))
+    let mut constants = LinkFormulas {
+        composer,
+        collector: Collector::new(composer.notation.constants),
+        seen: Vec::new(),
+        items: Vec::new(),
     };
-    items.push(vector("g", 0, &form.table.gravity, &mut seen));
-    let constants = [Quantity::D, Quantity::R, Quantity::Inertia, Quantity::MasslessMoment];
-    let constants = Derivation::at_rest(&form.table, &constants);
-    let links = constants.iter().flat_map(|constants| form.table.rows.iter().map(move |row| (constants, row)));
-    for (i, (link, row)) in links.enumerate() {
-        let index = i + 1;
-        let before = match form.table.convention {
-            Convention::Standard => i.checked_sub(1).and_then(|p| form.table.rows.get(p)).map(|row| (row, i)),
-            Convention::Modified => Some((row, i)),
-        };
-        let turns = composer.both(|notation| turns(notation, before, row, i));
-        items.push(composer.formula(|notation| notation.indexed("R", &index.to_string()), Pieces::of_terms(&[turns])));
-        items.push(vector("d", index, &link.vector(Quantity::D, index), &mut seen));
-        if index < form.joints() {
-            items.push(vector("r", index, &link.vector(Quantity::R, index), &mut seen));
-        }
-        let own = |notation: &Notation<'_>| notation.indexed("m", &index.to_string());
-        let mass = written::polynomial(&form.table, &row.mass);
-        if mass != own(&composer.plain) {
-            let sums = Collector::new(composer.notation.constants).collected(&row.mass);
-            items.extend(sums.map(|sum| composer.formula(own, Pieces::of(&sum, &composer.notation))));
-        }
-        seen.extend([row.mass.clone(), row.rotor.clone()]);
-        let Matrix(rows) = link.matrix(Quantity::Inertia, index);
-        let diagonal = Vector([0, 1, 2].map(|axis| rows[axis].0[axis].clone()));
-        let products = Vector([rows[0].0[1].clone(), rows[0].0[2].clone(), rows[1].0[2].clone()]);
-        if !diagonal.is_zero() || !products.is_zero() {
-            items.push(vector("(Ixx, Iyy, Izz)", index, &diagonal, &mut seen));
-        }
-        if !products.is_zero() {
-            items.push(vector("(Ixy, Ixz, Iyz)", index, &products, &mut seen));
-        }
-        let first_moment = link.vector(Quantity::MasslessMoment, index);
-        if !first_moment.is_zero() {
-            items.push(vector("h", index, &first_moment, &mut seen));
-        }
+    constants.vector("g", 0, &form.table.gravity);
+    let quantities = [Quantity::D, Quantity::R, Quantity::Inertia, Quantity::MasslessMoment];
+    if let Ok(link) = Derivation::at_rest(&form.table, &quantities) {
+        (1..=form.table.rows.len()).for_each(|index| constants.link(form, &link, index));
     }
+    let LinkFormulas { seen, mut items, .. } = constants;
     let is_revolute = |row: &&Row| row.kind == JointKind::Revolute;
     if script == Script::Unicode && form.table.rows.iter().filter(is_revolute).any(|row| !row.d.is_zero()) {
         items.push(Item::Words(words(
@@ -154,6 +117,65 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
     sections.push(Section { title: words("Of each link, in the frame at its joint, z along the joint's axis"), items });
     sections.extend(letters(composer, &form.table, &used(seen.iter())));
     sections
+}
+
+/// Formulas of the constants of links, and the polynomials in them.
+struct LinkFormulas<'c> {
+    composer: &'c Composer<'c>,
+    collector: Collector<'c>,
+    seen: Vec<Polynomial>,
+    items: Vec<Item>,
+}
+
+impl LinkFormulas<'_> {
+    /// Adds a vector with an index.
+    fn vector(&mut self, left: &str, index: usize, vector: &Vector) {
+        self.seen.extend(vector.0.iter().cloned());
+        // in print vectors are bold, for d is a letter of the table too
+        let left = |notation: &Notation<'_>| match notation.script {
+            Script::Latex if left.len() == 1 => notation.indexed(&format!("\\mathbf {left}"), &index.to_string()),
+            _ => notation.indexed(left, &index.to_string()),
+        };
+        let sums: Vec<_> = vector.0.iter().filter_map(|component| self.collector.collected(component)).collect();
+        self.items.push(self.composer.formula(left, Pieces::components(&sums, &self.composer.notation)));
+    }
+
+    /// Adds what the recursion takes of a link, counted from 1.
+    fn link(&mut self, form: &ClosedForm, link: &Derivation, index: usize) {
+        let (composer, rows) = (self.composer, &form.table.rows);
+        let i = index - 1;
+        let row = &rows[i];
+        let before = match form.table.convention {
+            Convention::Standard => i.checked_sub(1).and_then(|p| rows.get(p)).map(|row| (row, i)),
+            Convention::Modified => Some((row, i)),
+        };
+        let turns = composer.both(|notation| turns(notation, before, row, i));
+        let left = |notation: &Notation<'_>| notation.indexed("R", &index.to_string());
+        self.items.push(composer.formula(left, Pieces::of_terms(&[turns])));
+        self.vector("d", index, &link.vector(Quantity::D, index));
+        if index < form.joints() {
+            self.vector("r", index, &link.vector(Quantity::R, index));
+        }
+        let own = |notation: &Notation<'_>| notation.indexed("m", &index.to_string());
+        if written::polynomial(&form.table, &row.mass) != own(&composer.plain) {
+            let sums = Collector::new(composer.notation.constants).collected(&row.mass);
+            self.items.extend(sums.map(|sum| composer.formula(own, Pieces::of(&sum, &composer.notation))));
+        }
+        self.seen.extend([row.mass.clone(), row.rotor.clone()]);
+        let Matrix(rows) = link.matrix(Quantity::Inertia, index);
+        let diagonal = Vector([0, 1, 2].map(|axis| rows[axis].0[axis].clone()));
+        let products = Vector([rows[0].0[1].clone(), rows[0].0[2].clone(), rows[1].0[2].clone()]);
+        if !diagonal.is_zero() || !products.is_zero() {
+            self.vector("(Ixx, Iyy, Izz)", index, &diagonal);
+        }
+        if !products.is_zero() {
+            self.vector("(Ixy, Ixz, Iyz)", index, &products);
+        }
+        let first_moment = link.vector(Quantity::MasslessMoment, index);
+        if !first_moment.is_zero() {
+            self.vector("h", index, &first_moment);
+        }
+    }
 }
 
 /// Why there is no closed form, and of a serial arm what follows.

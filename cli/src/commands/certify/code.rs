@@ -44,62 +44,90 @@ pub(super) fn build(
     bytes: &[u8],
     folder: &Path,
 ) -> Result<Code, Failure> {
-    let write = |file: &str, text: &str| fs::write(folder.join(file), text).map_err(Failure::input);
     let stem = stem(arguments, robot);
-    let code = arguments.c_code(robot, programs, bytes, Precision::Single)?;
-    let (header, c_source) = (format!("{stem}.h"), format!("{stem}.c"));
-    let gcc = if arguments.lang == Language::C { compiler } else { "arm-none-eabi-gcc" };
-    let flags = arguments.cpu.flags();
-    write(&header, code.header())?;
-    write("board.c", board::SOURCE)?;
-    write("board.h", board::HEADER)?;
-    write("board.ld", board::LINKER_SCRIPT)?;
-    let compile = |options: &[&str], files: &[&str]| {
-        toolchain::text(Command::new(gcc).current_dir(folder).args(options).args(flags).args(files))
-    };
-    let cpu = format!("target-cpu={}", arguments.cpu.name());
+    let c = arguments.c_code(robot, programs, bytes, Precision::Single)?;
+    let header = format!("{stem}.h");
+    let is_c = arguments.lang == Language::C;
+    let gcc = if is_c { compiler } else { "arm-none-eabi-gcc" };
+    let build = Build { folder, gcc, flags: arguments.cpu.flags() };
+    build.write(&header, c.header())?;
+    build.write("board.c", board::SOURCE)?;
+    build.write("board.h", board::HEADER)?;
+    build.write("board.ld", board::LINKER_SCRIPT)?;
     let more: Vec<&str> = arguments.cc_options.split_whitespace().collect();
-    let (source, object, text, options, hashes);
-    match arguments.lang {
-        Language::C => {
-            text = code.source(&header);
-            write(&c_source, &text)?;
-            let own = [&board::OPTIONS[..], &["-ffunction-sections", "-fstack-usage", "-c"]].concat();
-            // behind those of the processor, as the certificate lists them
-            compile(&own, &[&more[..], &[&c_source]].concat())?;
-            options = [&board::OPTIONS[..], &["-ffunction-sections"], &flags, &more].concat();
-            hashes = BTreeMap::from([
-                (header.clone(), sha256(code.header().as_bytes())),
-                (c_source.clone(), sha256(text.as_bytes())),
-            ]);
-            object = format!("{stem}.o");
-            source = c_source;
-        }
-        Language::Rust => {
-            text = rne_emit::rust_file_with_sin_cos(robot, programs);
-            write("arm.rs", &text)?;
-            write("lib.rs", &rust_library(robot.dof(), programs, calls))?;
-            let target = ["--target", "thumbv7em-none-eabihf", "--edition", "2024"];
-            options = [&target[..], &["-Copt-level=3", "-Cpanic=abort", "-C", &cpu], &more].concat();
-            let mut command = Command::new(compiler);
-            command.current_dir(folder).args(&options);
-            command.args(["--crate-type", "lib", "--crate-name", "arm", "--emit", "obj=arm.o", "lib.rs"]);
-            // rustc says what to do if the target is not installed
-            toolchain::text(&mut command)?;
-            hashes = BTreeMap::from([(format!("{stem}.rs"), sha256(text.as_bytes()))]);
-            object = "arm.o".to_owned();
-            source = format!("{stem}.rs");
-        }
-    }
+    let (source, text) = if is_c {
+        (format!("{stem}.c"), c.source(&header))
+    } else {
+        (format!("{stem}.rs"), rne_emit::rust_file_with_sin_cos(robot, programs))
+    };
+    let mut hashes = BTreeMap::from([(source.clone(), sha256(text.as_bytes()))]);
+    let (object, options) = if is_c {
+        hashes.insert(header.clone(), sha256(c.header().as_bytes()));
+        build.write(&source, &text)?;
+        (format!("{stem}.o"), build.c(&source, &more)?)
+    } else {
+        build.write("arm.rs", &text)?;
+        build.write("lib.rs", &rust_library(robot.dof(), programs, calls))?;
+        ("arm.o".to_owned(), build.rust(compiler, &format!("target-cpu={}", arguments.cpu.name()), &more)?)
+    };
     let image = |call: &Call| {
         let (cases, elf) = (format!("{}_cases.c", call.function), format!("{}.elf", call.function));
-        write(&cases, &board::cases(&header, robot.dof(), call))?;
-        link(&compile, &[&cases, &object], &elf)?;
+        build.write(&cases, &board::cases(&header, robot.dof(), call))?;
+        build.link(&[&cases, &object], &elf)?;
         Ok(elf)
     };
     let images = calls.iter().map(image).collect::<Result<_, Failure>>()?;
-    let options = options.iter().map(|&option| option.to_owned()).collect();
     Ok(Code { source, hashes, text, images, options })
+}
+
+/// A folder in which code is compiled for a processor.
+struct Build<'a> {
+    folder: &'a Path,
+    gcc: &'a str,
+    /// Options of gcc for the processor.
+    flags: [&'static str; 4],
+}
+
+impl Build<'_> {
+    fn write(&self, file: &str, text: &str) -> Result<(), Failure> {
+        fs::write(self.folder.join(file), text).map_err(Failure::input)
+    }
+
+    fn compile(&self, options: &[&str], files: &[&str]) -> Result<(), Failure> {
+        let mut command = Command::new(self.gcc);
+        toolchain::text(command.current_dir(self.folder).args(options).args(self.flags).args(files)).map(drop)
+    }
+
+    /// Compiles a source in C; returns the options as the certificate lists them.
+    fn c(&self, source: &str, more: &[&str]) -> Result<Vec<String>, Failure> {
+        let own = [&board::OPTIONS[..], &["-ffunction-sections", "-fstack-usage", "-c"]].concat();
+        // behind those of the processor, as the certificate lists them
+        self.compile(&own, &[more, &[source]].concat())?;
+        Ok(owned(&[&board::OPTIONS[..], &["-ffunction-sections"], &self.flags, more].concat()))
+    }
+
+    /// Compiles the library in Rust; returns the options.
+    fn rust(&self, compiler: &str, cpu: &str, more: &[&str]) -> Result<Vec<String>, Failure> {
+        let target = ["--target", "thumbv7em-none-eabihf", "--edition", "2024"];
+        let options = [&target[..], &["-Copt-level=3", "-Cpanic=abort", "-C", cpu], more].concat();
+        let mut command = Command::new(compiler);
+        command.current_dir(self.folder).args(&options);
+        command.args(["--crate-type", "lib", "--crate-name", "arm", "--emit", "obj=arm.o", "lib.rs"]);
+        // rustc says what to do if the target is not installed
+        toolchain::text(&mut command)?;
+        Ok(owned(&options))
+    }
+
+    /// Links files with the program of the board, which is GNU C.
+    fn link(&self, files: &[&str], elf: &str) -> Result<(), Failure> {
+        let options =
+            ["-std=gnu99", "-O2", "-ffp-contract=off", "-nostartfiles", "-Wl,--gc-sections", "-T", "board.ld"];
+        self.compile(&[&options[..], &["-o", elf]].concat(), &[&["board.c"], files].concat())
+    }
+}
+
+fn owned(options: &[&str]) -> Vec<String> {
+    options.iter().map(|&option| option.to_owned()).collect()
 }
 
 /// The name of the files without their endings.
@@ -107,16 +135,6 @@ pub(super) fn stem(arguments: &Arguments, robot: &Robot) -> String {
     let file = arguments.source.as_ref().unwrap_or(&arguments.file);
     let stem = file.file_stem().filter(|_| !is_stream(file));
     stem.map_or_else(|| robot.name.clone(), |stem| stem.to_string_lossy().into_owned())
-}
-
-/// Links files with the program of the board, which is GNU C.
-fn link(
-    compile: &impl Fn(&[&str], &[&str]) -> Result<String, Failure>,
-    files: &[&str],
-    elf: &str,
-) -> Result<(), Failure> {
-    let options = ["-std=gnu99", "-O2", "-ffp-contract=off", "-nostartfiles", "-Wl,--gc-sections", "-T", "board.ld"];
-    compile(&[&options[..], &["-o", elf]].concat(), &[&["board.c"], files].concat()).map(drop)
 }
 
 /// The emitted Rust as a library with a function for C for each program.
@@ -148,28 +166,28 @@ pub(super) fn emulate(
 ) -> Result<Emulation, Failure> {
     let said = toolchain::emulated(core, folder, elf)?;
     let printed = board::Printed::read(&said)
-        .ok_or_else(|| Failure::input(format_args!("QEMU prints what the program does not print:\n{said}")))?;
+        .ok_or_else(|| input_error!("QEMU prints what the program does not print:\n{said}"))?;
     if printed.instructions != instructions {
-        return Err(Failure::input(format_args!(
+        return Err(input_error!(
             "QEMU executes {} instructions in a call, but the listing shows {instructions}",
             printed.instructions
-        )));
+        ));
     }
     if printed.results.len() != board::STATES as usize {
-        return Err(Failure::input(format_args!(
+        return Err(input_error!(
             "QEMU prints the results of {} states instead of {}",
             printed.results.len(),
             board::STATES
-        )));
+        ));
     }
     for (number, found) in (0..board::STATES).zip(&printed.results) {
         let expected = subject.expected(robot, number);
         let expected: Option<Vec<u32>> = expected.map(|numbers| numbers.iter().map(|x| x.to_bits()).collect());
         if expected.as_ref() != Some(found) {
-            return Err(Failure::input(format_args!(
+            return Err(input_error!(
                 "at state {number}, the results in QEMU, {found:08x?}, do not have the bits of this computer, {:08x?}",
                 expected.unwrap_or_default()
-            )));
+            ));
         }
     }
     let machine = core.machine().to_owned();

@@ -44,10 +44,10 @@ impl Subject<'_> {
     pub(super) fn refused(&self, fault: &NoFigures) -> Failure {
         match (self, fault) {
             (Self::Program(program), NoFigures::NotStraight(..)) if program.function == Function::ActuatorTorques => {
-                Failure::input(format_args!(
+                input_error!(
                     "the robot file has dry friction, and its code branches over the sign of each velocity; \
                  {TYPED}--friction{TYPED:#} certifies the smooth law of friction. {fault}"
-                ))
+                )
             }
             _ => Failure::input(fault),
         }
@@ -58,10 +58,10 @@ impl Subject<'_> {
     pub(super) fn call(&self, prefix: &str, robot: &Robot) -> Result<Call, Failure> {
         let dof = robot.dof();
         if dof > board::MOST_JOINTS {
-            return Err(Failure::usage(format_args!(
+            return Err(usage_error!(
                 "rne certify takes arms with at most {} joints; this arm has {dof}",
                 board::MOST_JOINTS
-            )));
+            ));
         }
         Ok(match self {
             Self::Program(program) => program_call(program, prefix, &accuracy::passive(robot)),

@@ -1,17 +1,18 @@
-//! The tools that `rne certify` uses if they are installed: QEMU and cppcheck.
+//! The tools of `rne certify`: a compiler with its `objdump`, and QEMU and cppcheck if they are installed.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use clap::ValueEnum;
 
-use crate::commands::certify::Language;
+use crate::commands::certify::{Arguments, Language};
 use crate::commands::toolchain;
 use crate::outcome::Failure;
 use crate::palette::{TITLE, TYPED};
 
 /// A tool that the certificate uses if it is installed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(in crate::commands) enum Tool {
+pub(crate) enum Tool {
     Qemu,
     Cppcheck,
 }
@@ -58,7 +59,7 @@ pub(super) fn versions(lang: Language, required: &[Tool]) -> Result<([Option<Str
             let missing = tool.is_missing();
             if required.contains(&tool) {
                 let option = format!("--require {}", tool.name());
-                return Err(Failure::input(format_args!("{missing} ({TYPED}{option}{TYPED:#} asks for it)")));
+                return Err(input_error!("{missing} ({TYPED}{option}{TYPED:#} asks for it)"));
             }
             let _ = writeln!(notes, "{TITLE}note{TITLE:#}: {missing}");
         }
@@ -66,4 +67,23 @@ pub(super) fn versions(lang: Language, required: &[Tool]) -> Result<([Option<Str
     };
     let versions = [version(Tool::Qemu)?, version(Tool::Cppcheck)?];
     Ok((versions, notes))
+}
+
+/// The compiler, its `objdump`, and the versions of both and of rne.
+pub(super) fn compiler(arguments: &Arguments) -> Result<(String, String, BTreeMap<String, String>), Failure> {
+    let compiler = arguments.cc.clone().unwrap_or_else(|| arguments.lang.compiler().to_owned());
+    let version = match arguments.lang {
+        Language::C => toolchain::version_of_gcc(&compiler)?,
+        Language::Rust => toolchain::version(&compiler)?,
+    };
+    let objdump = match arguments.lang {
+        Language::C => toolchain::objdump_of(&compiler),
+        Language::Rust => toolchain::objdump_of(""),
+    };
+    let tools = BTreeMap::from([
+        ("rne".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
+        (compiler.clone(), version),
+        (objdump.clone(), toolchain::version(&objdump)?),
+    ]);
+    Ok((compiler, objdump, tools))
 }

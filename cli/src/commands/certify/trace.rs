@@ -26,11 +26,11 @@ pub(super) fn check_options(arguments: &Arguments, functions: &[Function]) -> Re
     if arguments.lang == Language::C && functions.iter().any(|function| CHECKED.contains(function)) {
         return Ok(());
     }
-    Err(Failure::usage(format_args!(
+    Err(usage_error!(
         "{TYPED}--evidence{TYPED:#} is for code in C with one of {}, which the checker computes; give one of them in \
          {TYPED}--function{TYPED:#}",
         CHECKED.map(Function::name).join(", ")
-    )))
+    ))
 }
 
 /// The keys of the robot file that the checker does not support.
@@ -60,10 +60,10 @@ pub(super) fn write(
     let mut functions = Vec::new();
     for program in checked.clone() {
         let Some(derivation) = compiler.derivation(program)? else {
-            return Err(Failure::usage(format_args!(
+            return Err(usage_error!(
                 "{TYPED}--evidence{TYPED:#} is for {TYPED}--form reduced{TYPED:#}: the constants of this code are \
                  rounded one operation after another, so they have no exact expressions"
-            )));
+            ));
         };
         functions.push(function(program, &derivation, &prefix));
     }
@@ -90,18 +90,8 @@ pub(super) fn write(
         (evidence.join(format!("{stem}.trace.json")), trace),
     ];
     for (path, text) in &files {
-        let is_other = match output_file::existing(path) {
-            Existing::Nothing => false,
-            Existing::Text(found) => {
-                found != *text
-                    && !arguments.force
-                    && !found.contains(rne_emit::GENERATED)
-                    && !found.contains("\"steps\"")
-            }
-            _ => true,
-        };
-        if is_other {
-            return Err(Failure::usage(format_args!("{} is not changed: rne did not write it", path.display())));
+        if !may_be_replaced(path, text, arguments.force) {
+            return Err(usage_error!("{} is not changed: rne did not write it", path.display()));
         }
     }
     output_file::replace_all(&files)?;
@@ -112,6 +102,17 @@ pub(super) fn write(
         "{TITLE}note{TITLE:#}: check_c.py does not support robots with {}, so it does not check this code\n",
         unsupported.join(", ")
     ))
+}
+
+/// Whether nothing is at the place of a file, or this text, or what rne wrote, or any text that `force` gives up.
+fn may_be_replaced(path: &Path, text: &str, force: bool) -> bool {
+    match output_file::existing(path) {
+        Existing::Nothing => true,
+        Existing::Text(found) => {
+            found == text || force || found.contains(rne_emit::GENERATED) || found.contains("\"steps\"")
+        }
+        _ => false,
+    }
 }
 
 /// The constants of a function with their expressions.

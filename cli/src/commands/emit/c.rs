@@ -6,6 +6,7 @@ use rne_codegen::Program;
 use rne_emit::{Additions, CCode, ConstantTooLarge, JointFriction, NoFriction, Origin, Precision, Prefix};
 use rne_model::Robot;
 
+use crate::commands::emit::Language;
 use crate::commands::eval::golden;
 use crate::files::input_file::is_stream;
 use crate::files::output_file::is_standard_output;
@@ -13,63 +14,59 @@ use crate::outcome::Failure;
 use crate::palette::TYPED;
 
 /// A header's file.
-pub(in crate::commands) struct Header {
-    pub(in crate::commands) path: PathBuf,
+pub(crate) struct Header {
+    pub(crate) path: PathBuf,
     /// Without the folder, as the source includes it.
-    pub(in crate::commands) name: String,
+    pub(crate) name: String,
 }
 
 /// The header beside a source of C.
-pub(in crate::commands) fn header_beside(source: &Path) -> Result<Header, Failure> {
+pub(crate) fn header_beside(source: &Path) -> Result<Header, Failure> {
     let extension = source.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     let path = source.with_extension("h");
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
     // what ends an `#include "…"`
     let name = name.filter(|name| !name.contains(['"', '\\', '\n', '\r', char::REPLACEMENT_CHARACTER]));
     match name {
-        _ if extension.is_empty() && !is_standard_output(source) => Err(Failure::usage(format_args!(
+        _ if extension.is_empty() && !is_standard_output(source) => Err(usage_error!(
             "{} is no name of a source file in C, beside which the header is written; name it {TYPED}{}{TYPED:#}",
             source.display(),
             source.with_extension("c").display()
-        ))),
-        _ if extension == "h" => Err(Failure::usage(format_args!(
+        )),
+        _ if extension == "h" => Err(usage_error!(
             "{} is the name of a header, which is written next to the source; name the source: {TYPED}{}{TYPED:#}",
             source.display(),
             source.with_extension("c").display()
-        ))),
+        )),
         Some(name) => Ok(Header { path, name }),
-        None => Err(Failure::usage(format_args!(
+        None => Err(usage_error!(
             "{} is not a name of a source file whose header can be included; name a file, such as \
              {TYPED}robot.c{TYPED:#}",
             source.display()
-        ))),
+        )),
     }
 }
 
 /// The contents of a file of C beside the programs, and the robot file that it names.
 #[allow(clippy::struct_excessive_bools)] // options of commands
-pub(in crate::commands) struct Request<'a> {
-    pub(in crate::commands) file: &'a Path,
-    pub(in crate::commands) bytes: &'a [u8],
-    pub(in crate::commands) prefix: Option<&'a Prefix>,
-    pub(in crate::commands) precision: Precision,
-    pub(in crate::commands) friction: bool,
-    pub(in crate::commands) limits: bool,
-    pub(in crate::commands) names: bool,
-    pub(in crate::commands) rollout: bool,
-    pub(in crate::commands) casadi: bool,
-    pub(in crate::commands) acados: bool,
-    pub(in crate::commands) runge_kutta: bool,
-    pub(in crate::commands) tests: bool,
-    pub(in crate::commands) ascii: bool,
+pub(crate) struct Request<'a> {
+    pub(crate) file: &'a Path,
+    pub(crate) bytes: &'a [u8],
+    pub(crate) prefix: Option<&'a Prefix>,
+    pub(crate) precision: Precision,
+    pub(crate) friction: bool,
+    pub(crate) limits: bool,
+    pub(crate) names: bool,
+    pub(crate) rollout: bool,
+    pub(crate) casadi: bool,
+    pub(crate) acados: bool,
+    pub(crate) runge_kutta: bool,
+    pub(crate) tests: bool,
+    pub(crate) ascii: bool,
 }
 
 /// The code, with the tests that are asked for.
-pub(in crate::commands) fn c_code(
-    request: &Request<'_>,
-    robot: &Robot,
-    programs: &[Program],
-) -> Result<CCode, Failure> {
+pub(crate) fn c_code(request: &Request<'_>, robot: &Robot, programs: &[Program]) -> Result<CCode, Failure> {
     let &Request { file, precision, limits, names, casadi, acados, runge_kutta, .. } = request;
     let prefix = request.prefix.cloned().unwrap_or_else(|| Prefix::of(robot));
     let origin = origin(request);
@@ -89,11 +86,11 @@ pub(in crate::commands) fn c_code(
         let has_follower = robot.joints.iter().any(|joint| joint.limits.effort.is_some());
         let follower =
             if has_follower { ", but for joints that follow others and have no torque of their own" } else { "" };
-        return Err(Failure::input(format_args!(
+        return Err(input_error!(
             "{}: no joint has an effort limit{follower}; write it in `limits` of the joint, for example `limits: \
              {{effort: 40}}` (N m or N)",
             file.display()
-        )));
+        ));
     }
     let code = rne_emit::c_code_with(robot, programs, precision, &prefix, &additions)
         .map_err(|error| too_large(request, &error))?;
@@ -106,18 +103,9 @@ pub(in crate::commands) fn c_code(
     Ok(if request.ascii { code.in_ascii() } else { code })
 }
 
-/// A language of processors of graphics.
-#[derive(Clone, Copy)]
-pub(in crate::commands) enum ForGpu {
-    /// A header for CUDA and C++.
-    Cuda,
-    /// Kernels.
-    Ptx,
-}
-
-/// Code for processors of graphics.
-pub(in crate::commands) fn for_gpu(
-    language: ForGpu,
+/// Kernels in PTX, or else a header for CUDA and C++.
+pub(super) fn for_gpu(
+    language: Language,
     request: &Request<'_>,
     robot: &Robot,
     programs: &[Program],
@@ -126,8 +114,8 @@ pub(in crate::commands) fn for_gpu(
     let additions = Additions { origin: Some(&origin), rollout: request.rollout, ..Additions::default() };
     let prefix = request.prefix.cloned().unwrap_or_else(|| Prefix::of(robot));
     let text = match language {
-        ForGpu::Cuda => rne_emit::cuda(robot, programs, &prefix, &additions),
-        ForGpu::Ptx => rne_emit::ptx(robot, programs, request.precision, &prefix, &additions),
+        Language::Ptx => rne_emit::ptx(robot, programs, request.precision, &prefix, &additions),
+        _ => rne_emit::cuda(robot, programs, &prefix, &additions),
     };
     text.map_err(|error| too_large(request, &error))
 }
@@ -141,19 +129,19 @@ fn origin(request: &Request<'_>) -> Origin {
 
 fn too_large(request: &Request<'_>, error: &ConstantTooLarge) -> Failure {
     let file = request.file.display();
-    Failure::input(format_args!("{file}: {error}. {TYPED}rne emit --real double{TYPED:#} can store this number"))
+    input_error!("{file}: {error}. {TYPED}rne emit --real double{TYPED:#} can store this number")
 }
 
 /// The friction of the joints; an error says where to write what is missing.
-pub(in crate::commands) fn friction(file: &Path, robot: &Robot) -> Result<Vec<JointFriction>, Failure> {
+pub(crate) fn friction(file: &Path, robot: &Robot) -> Result<Vec<JointFriction>, Failure> {
     JointFriction::of(robot).map_err(|why| {
         let file = file.display();
         match why {
-            NoFriction::RunTime(_) => Failure::usage(format_args!(
+            NoFriction::RunTime(_) => usage_error!(
                 "{file}: {why}. Leave this parameter out of {TYPED}--run-time{TYPED:#}, or leave out \
                  {TYPED}--friction{TYPED:#}"
-            )),
-            _ => Failure::input(format_args!("{file}: {why}")),
+            ),
+            _ => input_error!("{file}: {why}"),
         }
     })
 }

@@ -165,7 +165,7 @@ pub(crate) fn file(robot: &Robot, states: u16, settings: &[String]) -> Result<St
         let numbers = [&state.q, &state.qd, &state.qdd, &torques].into_iter().flatten();
         let numbers: Vec<String> = numbers.copied().map(exact_digits).collect();
         if torques.iter().any(|torque| !torque.is_finite()) {
-            return Err(Failure::input(format_args!("a torque of {} overflows", robot.name)));
+            return Err(input_error!("a torque of {} overflows", robot.name));
         }
         text.push_str(&numbers.join(","));
         text.push('\n');

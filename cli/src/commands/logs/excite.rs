@@ -10,10 +10,10 @@ use rne_identify::{
     AskedLimits, Excitation, ExcitationError, ExcitationOptions, ExcitationProgress, Fourier, JointUse, MotionLimits,
     excite,
 };
-use rne_machine::{CompiledArm, Form};
-use rne_model::{Joint, Robot, exact_digits, one_line};
+use rne_model::{Robot, exact_digits, one_line};
 use rne_plot::{Panel, PanelCurve, panels};
 
+use crate::commands::logs::gravity_load::beyond_effort;
 use crate::files::chosen_arm::{Carried, check_unknown_rotors};
 use crate::files::file_name::{self, Format};
 use crate::files::interruption;
@@ -24,7 +24,7 @@ use crate::files::robot_file::{self, Shape};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TITLE, WARNING};
 use crate::remedy;
-use crate::render::layout::{Align, PAGE, push_table, shortened, wrap};
+use crate::render::layout::{Align, PAGE, note, push_table, shortened, wrap};
 use crate::values::numbers::{List, checked, rounded};
 
 /// Samples of a trajectory, at most: some hundred megabytes of an arm of six joints.
@@ -107,11 +107,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = arguments.carried.of(robot_file::robot(&arguments.file, Shape::Coupled)?)?;
     check_unknown_rotors(&robot, arguments.rotors)?;
     if arguments.seconds * arguments.rate > MOST {
-        return Err(Failure::usage(format_args!(
+        return Err(usage_error!(
             "{} s at {} Hz are more than {MOST} samples; use a lower --rate",
             exact_digits(arguments.seconds),
             exact_digits(arguments.rate)
-        )));
+        ));
     }
     let sources = [arguments.file.as_path()];
     let out = arguments.output.as_deref();
@@ -158,105 +158,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     })
 }
 
-fn failure(error: &ExcitationError) -> Failure {
+/// The failure for a motion that is not found.
+pub(super) fn failure(error: &ExcitationError) -> Failure {
     let text = remedy::of_excitation(error);
     if error.is_of_request() { Failure::usage(text) } else { Failure::input(text) }
-}
-
-/// No motion is within the effort limits: where gravity alone is beyond them, a slower one is no way out.
-fn beyond_effort(robot: &Robot, limits: &[MotionLimits], error: &ExcitationError) -> Failure {
-    let none = "no motion was found within the effort limits";
-    let Some(loads) = Load::all(robot, limits) else { return failure(error) };
-    let [Some(middle), Some(least), Some(most)] = [
-        loads.first(),
-        loads.iter().reduce(|least, load| if load.part < least.part * (1.0 - SAME) { load } else { least }),
-        loads.iter().reduce(|most, load| if load.part > most.part * (1.0 + SAME) { load } else { most }),
-    ] else {
-        return failure(error);
-    };
-    let helps = "neither a slower motion nor a smaller --range helps";
-    Failure::input(if least.part > 1.0 {
-        let name = one_line(robot.coordinate_name(least.joint));
-        format!(
-            "{none}: {}, and gravity needs no less at {POSITIONS} positions within the limits, so {helps}: check the \
-             effort limit of {name} and the masses that this joint carries",
-            least.words(robot, limits)
-        )
-    } else if middle.part > 1.0 {
-        format!(
-            "{none}: {}, which is the middle of the limits, so {helps}; set position limits in the robot file around a \
-             posture that needs less",
-            middle.words(robot, limits)
-        )
-    } else if most.part > 1.0 {
-        format!(
-            "{}; {}; use a smaller --range to avoid this posture",
-            remedy::of_excitation(error),
-            most.words(robot, limits)
-        )
-    } else {
-        return failure(error);
-    })
-}
-
-/// Positions at which gravity is looked at.
-const POSITIONS: u32 = 2000;
-
-/// Torques that differ by no more are rounding.
-const SAME: f64 = 1e-9;
-
-/// Load by gravity at rest on the joint that has the least effort to spare.
-struct Load {
-    q: Vec<f64>,
-    joint: usize,
-    /// N m or N
-    needed: f64,
-    /// Part of the joint's effort limit, 0 to 1.
-    part: f64,
-}
-
-impl Load {
-    /// At positions that fill what the limits allow, the first of them in its middle: multiples of powers of the root
-    /// of x^(n + 1) = x + 1 for n joints, without their whole parts (Roberts, The Unreasonable Effectiveness of
-    /// Quasirandom Sequences, 2018). None where there are no effort limits.
-    fn all(robot: &Robot, limits: &[MotionLimits]) -> Option<Vec<Self>> {
-        let arm = CompiledArm::from_robot(robot).in_form(Form::SevenSteps);
-        let power = f64::from(u32::try_from(robot.dof() + 1).ok()?);
-        let root = (0..60).fold(2.0_f64, |root, _| (1.0 + root).powf(1.0 / power));
-        let at = |number: u32| {
-            let mut step = 1.0;
-            let of_joint = limits.iter().map(|limits| {
-                step /= root;
-                let (lower, upper) = limits.position;
-                lower + (upper - lower) * (0.5 + f64::from(number) * step).fract()
-            });
-            of_joint.collect::<Vec<f64>>()
-        };
-        (0..POSITIONS).map(|number| Self::of(&arm, limits, at(number))).collect()
-    }
-
-    fn of(arm: &CompiledArm, limits: &[MotionLimits], q: Vec<f64>) -> Option<Self> {
-        let torques = arm.gravity_torques(&q).ok()?;
-        let parts = torques.iter().zip(limits).map(|(torque, limits)| Some((torque.abs(), limits.effort?)));
-        let parts = parts.enumerate().filter_map(|(joint, part)| Some((joint, part?)));
-        let (joint, (needed, limit)) = parts.max_by(|(_, a), (_, b)| (a.0 / a.1).total_cmp(&(b.0 / b.1)))?;
-        Some(Self { q, joint, needed, part: needed / limit })
-    }
-
-    fn words(&self, robot: &Robot, limits: &[MotionLimits]) -> String {
-        let position = |(joint, q): (&Joint, &f64)| {
-            format!("{} {} {}", one_line(&joint.name), rounded(*q, 3), joint.row.kind.position_unit())
-        };
-        let positions: Vec<String> = robot.independent_joints().zip(&self.q).map(position).collect();
-        format!(
-            "gravity alone needs {} of {} {} of {} at {}",
-            rounded(self.needed, 3),
-            limits[self.joint].effort.map_or_else(String::new, |limit| rounded(limit, 3)),
-            robot.coordinate_kind(self.joint).effort_unit(),
-            one_line(robot.coordinate_name(self.joint)),
-            positions.join(", ")
-        )
-    }
 }
 
 fn asked(arguments: &Arguments) -> AskedLimits {
@@ -335,10 +240,11 @@ fn account(arguments: &Arguments, robot: &Robot, found: &Excitation) -> String {
     if excited < found.bases.len() {
         not_excited(&mut text, found);
     }
-    let note = "the arm must stand at `start` first. Collisions are not checked, only these limits \
-                are, so try the trajectory in a simulator or at low speed first";
-    let _ = writeln!(text, "\n{TITLE}note{TITLE:#}: {}", wrap(note, PAGE - 6, "      "));
-    text
+    text + "\n"
+        + &note(
+            "the arm must stand at `start` first. Collisions are not checked, only these limits are, so try the \
+             trajectory in a simulator or at low speed first",
+        )
 }
 
 fn joints(text: &mut String, robot: &Robot, found: &Excitation) {

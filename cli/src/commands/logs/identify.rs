@@ -4,13 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rne_identify::{
-    Identification, IdentificationReply, JointError, JudgedPart, MotionError, Options, Part, Payload, Prediction,
-    Purpose, Verdict, identify,
+    Identification, IdentificationReply, JointError, Options, Part, Payload, Purpose, Verdict, identify,
 };
-use rne_logs::Motion;
 use rne_model::{Robot, one_line};
-use rne_plot::{Comparison, comparison_svg};
 
+use crate::commands::logs::judged::Judged;
 use crate::commands::logs::prediction_errors::errors_table;
 use crate::commands::logs::residuals;
 use crate::files::chosen_arm::check_unknown_rotors;
@@ -21,16 +19,13 @@ use crate::files::output_file::{
 };
 use crate::files::robot_file::{self, Shape};
 use crate::outcome::{Failure, Outcome};
-use crate::palette::{TITLE, TYPED, WARNING};
+use crate::palette::{TITLE, TYPED};
 use crate::render::identified_parameters;
-use crate::render::layout::{PAGE, wrap};
+use crate::render::layout::{self, PAGE, note, wrap};
 use crate::render::payload::{WordedPayload, link_with_tip};
 use crate::render::verdict::{TIED, Worded};
 use crate::values::log_arguments::LogArguments;
 use crate::values::numbers::{checked, rounded};
-
-/// States of a picture.
-const DRAWN: u64 = 4000;
 
 /// Identify link parameters and friction of an arm from its logs
 #[derive(Args)]
@@ -94,164 +89,189 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let sources: Vec<&Path> = arguments.logs.iter().map(PathBuf::as_path).chain([arguments.file.as_path()]).collect();
     check_places(arguments, &sources)?;
-    let robot = robot_file::robot(&arguments.file, Shape::Coupled)?;
-    check_unknown_rotors(&robot, arguments.rotors)?;
+    let robot = &robot_file::robot(&arguments.file, Shape::Coupled)?;
+    check_unknown_rotors(robot, arguments.rotors)?;
     // a file is judged by all that the log has
     let purpose = if arguments.judge { Purpose::Judge } else { Purpose::Fit };
-    let log = MotionLog::open(&arguments.logs, &robot, &arguments.reading, purpose)?;
-    let mut remark = log.remark(PAGE);
+    let log = &MotionLog::open(&arguments.logs, robot, &arguments.reading, purpose)?;
+    let task = Task { arguments, sources: &sources, robot, log, remark: log.remark() };
     if arguments.judge {
-        let judged = Judged::of(&robot, &log, Part::All)?;
-        let verdict = Verdict::of_file(&robot, &judged.errors);
+        task.judge()
+    } else if arguments.payload {
+        task.payload()
+    } else {
+        task.identify()
+    }
+}
+
+/// A robot file and logs of the arm, with the remarks on them.
+struct Task<'a> {
+    arguments: &'a Arguments,
+    /// The files that are read, so no result is written there.
+    sources: &'a [&'a Path],
+    robot: &'a Robot,
+    log: &'a MotionLog,
+    remark: String,
+}
+
+impl Task<'_> {
+    /// Computes how well the robot file predicts the torques of the log.
+    fn judge(mut self) -> Result<Outcome, Failure> {
+        let Self { arguments, robot, log, .. } = self;
+        let judged = Judged::of(robot, log, Part::All)?;
+        let verdict = Verdict::of_file(robot, &judged.errors);
         let about = format!("{} on {}", one_line(&robot.name), log.words());
-        draw(arguments, &robot, &log, &judged, [about, "the whole log".to_owned()], &sources, &mut remark)?;
-        tabulate(arguments, &robot, &log, &[(Part::All, false)], &mut remark)?;
+        self.draw(robot, &judged, &about, "the whole log")?;
+        self.tabulate(robot, &[(Part::All, false)])?;
         if arguments.json {
-            let reply = IdentificationReply::of_file(&robot, &verdict, logs(arguments), log.cutoff(), judged.extent);
-            return Ok(Outcome { remark, ..Outcome::json(&reply)? });
+            let reply = IdentificationReply::of_file(robot, &verdict, logs(arguments), log.cutoff(), judged.extent);
+            return Ok(Outcome { remark: self.remark, ..Outcome::json(&reply)? });
         }
-        let worded = Worded { verdict: &verdict, robot: &robot, file: &arguments.file, held_out: "", rows: 0 };
-        let mut text = worded.below(&heading(&robot, &log));
+        let worded = Worded { verdict: &verdict, robot, file: &arguments.file, held_out: "", rows: 0 };
+        let mut text = worded.below(&heading(robot, log));
         if arguments.all {
-            let unknown = Identification::not_excited(&robot);
-            text += &errors_table(&robot, &log, &judged.errors, &unknown, "errors on the log");
+            text += &errors_table(robot, log, &judged.errors, &Identification::not_excited(robot), "errors on the log");
         } else {
             text += &worded.errors(log.cutoff());
         }
-        return Ok(Outcome { text, remark, remark_last: true, ..Outcome::default() });
+        Ok(Outcome { text, remark: self.remark, remark_last: true, at_fault: false })
     }
-    if arguments.payload {
-        return payload(arguments, &robot, &log, &sources, remark);
-    }
-    let options = options(arguments, log.cutoff());
-    let (training, held) = match arguments.hold_out {
-        Some(part) => (Part::Before(1.0 - part), Some(Part::From(1.0 - part))),
-        None => (Part::All, None),
-    };
-    let found = identify(&robot, options, arguments.pull, |take| log.pass(training, take))?;
-    let held_out = held.map(|part| Judged::of(&found.robot, &log, part)).transpose()?;
-    let verdict = Verdict::of(&found, held_out.as_ref().map(|held_out| &held_out.errors[..]));
-    let place = held_out.as_ref().map_or_else(String::new, |held_out| held_out.words(&log));
-    let worded =
-        Worded { verdict: &verdict, robot: &found.robot, file: &arguments.file, held_out: &place, rows: found.rows };
-    if arguments.plot.is_some() {
-        let title = format!("{} identified from {}", one_line(&robot.name), log.words());
-        let (part, about) = match &held_out {
-            Some(_) => (None, format!("held-out part of the log, {place}")),
-            None => (Some(Judged::of(&found.robot, &log, Part::All)?), "the data of the identification".to_owned()),
-        };
-        if let Some(drawn) = part.as_ref().or(held_out.as_ref()) {
-            draw(arguments, &found.robot, &log, drawn, [title, about], &sources, &mut remark)?;
-        }
-    }
-    let parts = match held {
-        Some(held) => vec![(training, false), (held, true)],
-        None => vec![(training, false)],
-    };
-    tabulate(arguments, &found.robot, &log, &parts, &mut remark)?;
-    remark += &worded.offsets().map_or_else(String::new, |what| note(&what));
-    for what in warnings(&found).into_iter().chain(worded.grown()) {
-        remark += &warning(&what);
-    }
-    let text = if arguments.json {
-        let held_out = held_out.as_ref().map(|held_out| held_out.extent);
-        Outcome::json(&IdentificationReply::of(&found, &verdict, logs(arguments), log.cutoff(), held_out))?.text
-    } else {
-        account(arguments, &worded, &found, &log, held_out.as_ref())
-    };
-    if !found.is_anything_excited() {
-        let not_written = match &arguments.output {
-            Some(path) => format!(", so {} is not written", one_line(&path.display().to_string())),
-            None => String::new(),
-        };
-        let what = format!("nothing is excited: the log determines no link and no friction of this arm{not_written}");
-        remark += &warning(&what);
-        return Ok(Outcome { text, remark, remark_last: true, at_fault: true });
-    }
-    if let Some(path) = &arguments.output {
-        let file = found.robot_file(&log.words());
-        if is_standard_output(path) {
-            // what is not the file is a remark then
-            return Ok(Outcome { text: file, remark: remark + &text, ..Outcome::default() });
-        }
-        remark += &output_file::write_new(path, &file, &sources, arguments.force)?;
-    }
-    Ok(Outcome { text, remark, remark_last: true, ..Outcome::default() })
-}
 
-/// Identifies the payload of a robot whose links are known.
-fn payload(
-    arguments: &Arguments,
-    robot: &Robot,
-    log: &MotionLog,
-    sources: &[&Path],
-    mut remark: String,
-) -> Result<Outcome, Failure> {
-    if robot.joints.iter().all(|joint| joint.row.link.mass == 0.0) {
-        let file = one_line(&arguments.file.display().to_string());
-        return Err(Failure::input(format_args!(
-            "no link of {file} has a mass, so a payload cannot be told from the links: identify the links from a log \
-             without payload first, {TYPED}rne identify {file} LOG -o identified.yaml{TYPED:#}"
-        )));
-    }
-    let found = Payload::identify(robot, log.cutoff(), |take| log.pass(Part::All, take))?;
-    let with = if found.is_there() { found.added_to(robot) } else { None };
-    let without = Judged::of(robot, log, Part::All)?;
-    let judged = with.as_ref().map(|with| Judged::of(with, log, Part::All)).transpose()?;
-    let worded = WordedPayload {
-        robot,
-        payload: &found,
-        errors: &without.errors,
-        with: judged.as_ref().map(|judged| &judged.errors[..]),
-    };
-    let text = if arguments.json {
-        Outcome::json(&worded.reply(logs(arguments), log.cutoff(), without.extent))?.text
-    } else {
-        let mut text = worded.below(&heading(robot, log));
-        if arguments.all {
-            let unknown = Identification::not_excited(robot);
-            text += &errors_table(robot, log, &without.errors, &unknown, "errors of FILE on the log");
-            if let Some(judged) = &judged {
-                text += &errors_table(robot, log, &judged.errors, &unknown, "errors with the payload on the log");
+    /// Identifies links, rotors and friction.
+    fn identify(mut self) -> Result<Outcome, Failure> {
+        let Self { arguments, log, .. } = self;
+        let (training, held) = match arguments.hold_out {
+            Some(part) => (Part::Before(1.0 - part), Some(Part::From(1.0 - part))),
+            None => (Part::All, None),
+        };
+        let found =
+            identify(self.robot, options(arguments, log.cutoff()), arguments.pull, |take| log.pass(training, take))?;
+        let robot = &found.robot;
+        let held_out = held.map(|part| Judged::of(robot, log, part)).transpose()?;
+        let verdict = Verdict::of(&found, held_out.as_ref().map(|held_out| &held_out.errors[..]));
+        let place = held_out.as_ref().map_or_else(String::new, |held_out| held_out.words(log));
+        let worded = Worded { verdict: &verdict, robot, file: &arguments.file, held_out: &place, rows: found.rows };
+        if arguments.plot.is_some() {
+            let title = format!("{} identified from {}", one_line(&robot.name), log.words());
+            match &held_out {
+                Some(held_out) => {
+                    self.draw(robot, held_out, &title, &format!("held-out part of the log, {place}"))?;
+                }
+                None => {
+                    self.draw(robot, &Judged::of(robot, log, Part::All)?, &title, "the data of the identification")?;
+                }
             }
         }
-        text
-    };
-    let drawn = with.as_ref().unwrap_or(robot);
-    let title = format!("{} on {}", one_line(&robot.name), log.words());
-    let about = if with.is_some() { "predicted with the payload" } else { "predicted without a payload" };
-    draw(arguments, drawn, log, judged.as_ref().unwrap_or(&without), [title, about.to_owned()], sources, &mut remark)?;
-    tabulate(arguments, drawn, log, &[(Part::All, false)], &mut remark)?;
-    let is_lost = found.is_there() && with.is_none();
-    if !found.mass.is_excited || is_lost {
-        let why = if is_lost {
-            &format!(
+        let parts: Vec<(Part, bool)> = [(training, false)].into_iter().chain(held.map(|held| (held, true))).collect();
+        self.tabulate(robot, &parts)?;
+        self.remark += &worded.offsets().map_or_else(String::new, |what| note(&what));
+        for what in warnings(&found).into_iter().chain(worded.grown()) {
+            self.remark += &warning(&what);
+        }
+        let text = if arguments.json {
+            let held_out = held_out.as_ref().map(|held_out| held_out.extent);
+            Outcome::json(&IdentificationReply::of(&found, &verdict, logs(arguments), log.cutoff(), held_out))?.text
+        } else {
+            account(arguments, &worded, &found, log, held_out.as_ref())
+        };
+        if !found.is_anything_excited() {
+            let what = "nothing is excited: the log determines no link and no friction of this arm";
+            return Ok(self.not_written(text, what, ", so "));
+        }
+        self.written(text, || found.robot_file(&log.words()))
+    }
+
+    /// Identifies the payload of a robot whose links are known.
+    fn payload(mut self) -> Result<Outcome, Failure> {
+        let Self { arguments, robot, log, .. } = self;
+        if robot.joints.iter().all(|joint| joint.row.link.mass == 0.0) {
+            let file = one_line(&arguments.file.display().to_string());
+            return Err(input_error!(
+                "no link of {file} has a mass, so a payload cannot be told from the links: identify the links from a \
+                 log without payload first, {TYPED}rne identify {file} LOG -o identified.yaml{TYPED:#}"
+            ));
+        }
+        let found = Payload::identify(robot, log.cutoff(), |take| log.pass(Part::All, take))?;
+        let with = if found.is_there() { found.added_to(robot) } else { None };
+        let without = Judged::of(robot, log, Part::All)?;
+        let judged = with.as_ref().map(|with| Judged::of(with, log, Part::All)).transpose()?;
+        let errors = judged.as_ref().map(|judged| &judged.errors[..]);
+        let worded = WordedPayload { robot, payload: &found, errors: &without.errors, with: errors };
+        let text = if arguments.json {
+            Outcome::json(&worded.reply(logs(arguments), log.cutoff(), without.extent))?.text
+        } else {
+            let mut text = worded.below(&heading(robot, log));
+            if arguments.all {
+                let unknown = Identification::not_excited(robot);
+                text += &errors_table(robot, log, &without.errors, &unknown, "errors of FILE on the log");
+                if let Some(errors) = errors {
+                    text += &errors_table(robot, log, errors, &unknown, "errors with the payload on the log");
+                }
+            }
+            text
+        };
+        let drawn = with.as_ref().unwrap_or(robot);
+        let title = format!("{} on {}", one_line(&robot.name), log.words());
+        let about = if with.is_some() { "predicted with the payload" } else { "predicted without a payload" };
+        self.draw(drawn, judged.as_ref().unwrap_or(&without), &title, about)?;
+        self.tabulate(drawn, &[(Part::All, false)])?;
+        if found.is_there() && with.is_none() {
+            let what = format!(
                 "according to the log, {} and the payload together have a negative mass, so FILE and the log are not \
                  from the same arm",
                 link_with_tip(robot)
-            )
-        } else {
-            "the log does not determine the mass of a payload: record a motion in which gravity or accelerations load \
-             the joints"
-        };
-        let not_written = match &arguments.output {
-            Some(path) => format!("; {} is not written", one_line(&path.display().to_string())),
-            None => String::new(),
-        };
-        remark += &warning(&format!("{why}{not_written}"));
-        return Ok(Outcome { text, remark, remark_last: true, at_fault: true });
-    }
-    if let Some(path) = &arguments.output {
-        if with.is_none() {
-            remark += &warning("the log shows no payload, so the file is written with the links of FILE");
+            );
+            return Ok(self.not_written(text, &what, "; "));
         }
-        let file = found.robot_file(drawn, with.is_some(), &log.words());
-        if is_standard_output(path) {
-            return Ok(Outcome { text: file, remark: remark + &text, ..Outcome::default() });
+        if !found.mass.is_excited {
+            let what = "the log does not determine the mass of a payload: record a motion in which gravity or \
+                        accelerations load the joints";
+            return Ok(self.not_written(text, what, "; "));
         }
-        remark += &output_file::write_new(path, &file, sources, arguments.force)?;
+        if arguments.output.is_some() && with.is_none() {
+            self.remark += &warning("the log shows no payload, so the file is written with the links of FILE");
+        }
+        self.written(text, || found.robot_file(drawn, with.is_some(), &log.words()))
     }
-    Ok(Outcome { text, remark, remark_last: true, ..Outcome::default() })
+
+    /// Draws the measured and the predicted torques of a part of the log, where a picture is asked for.
+    fn draw(&mut self, robot: &Robot, judged: &Judged, title: &str, about: &str) -> Result<(), Failure> {
+        if let Some(path) = &self.arguments.plot {
+            let svg = judged.picture(robot, self.log, title, about)?;
+            self.remark += &output_file::write_new(path, &svg, self.sources, self.arguments.force)?;
+        }
+        Ok(())
+    }
+
+    /// Writes the torques of parts of the log, each marked as held out or not, as a table.
+    fn tabulate(&mut self, robot: &Robot, parts: &[(Part, bool)]) -> Result<(), Failure> {
+        if let Some(path) = &self.arguments.csv {
+            self.remark += &residuals::write(path, robot, self.log, parts)?;
+        }
+        Ok(())
+    }
+
+    /// The outcome without a robot file, and why there is none.
+    fn not_written(self, text: String, why: &str, before: &str) -> Outcome {
+        let path = self.arguments.output.as_ref().map(|path| one_line(&path.display().to_string()));
+        let not_written = path.map_or_else(String::new, |path| format!("{before}{path} is not written"));
+        let remark = self.remark + &warning(&format!("{why}{not_written}"));
+        Outcome { text, remark, remark_last: true, at_fault: true }
+    }
+
+    /// The outcome with the robot file, where it is asked for.
+    fn written(self, text: String, file: impl Fn() -> String) -> Result<Outcome, Failure> {
+        let mut remark = self.remark;
+        match &self.arguments.output {
+            // what is not the file is a remark then
+            Some(path) if is_standard_output(path) => {
+                return Ok(Outcome { text: file(), remark: remark + &text, ..Outcome::default() });
+            }
+            Some(path) => remark += &output_file::write_new(path, &file(), self.sources, self.arguments.force)?,
+            None => {}
+        }
+        Ok(Outcome { text, remark, remark_last: true, at_fault: false })
+    }
 }
 
 /// The verdict, the errors and, with `--all`, every number.
@@ -285,43 +305,11 @@ fn heading(robot: &Robot, log: &MotionLog) -> String {
 }
 
 fn warning(what: &str) -> String {
-    format!("{WARNING}warning{WARNING:#}: {}\n", wrap(what, PAGE - 9, "         ").replace(TIED, " "))
-}
-
-fn note(what: &str) -> String {
-    format!("{TITLE}note{TITLE:#}: {}\n", wrap(what, PAGE - 6, "      "))
+    layout::warning(what).replace(TIED, " ")
 }
 
 fn logs(arguments: &Arguments) -> Vec<String> {
     arguments.logs.iter().map(|log| log.display().to_string()).collect()
-}
-
-/// A part of a log on which a robot was judged.
-struct Judged {
-    part: Part,
-    errors: Vec<JointError>,
-    extent: JudgedPart,
-}
-
-impl Judged {
-    fn of(robot: &Robot, log: &MotionLog, part: Part) -> Result<Self, Failure> {
-        let mut prediction = Prediction::new(robot, Some(log.cutoff()));
-        let mut extent = JudgedPart::default();
-        log.pass(part, &mut |motion| {
-            extent.add(motion);
-            prediction.absorb(motion)
-        })?;
-        Ok(Self { part, errors: prediction.errors(), extent })
-    }
-
-    /// The part in words, such as `from 13.5 s on`.
-    fn words(&self, log: &MotionLog) -> String {
-        match self.extent.from {
-            // times of several runs may begin anew
-            Some(from) if log.runs() == 1 => format!("from {from:.1} s on"),
-            _ => format!("the last {} of {} states", self.extent.states, log.states()),
-        }
-    }
 }
 
 /// Warnings about a log.
@@ -361,12 +349,12 @@ fn check_places(arguments: &Arguments, sources: &[&Path]) -> Result<(), Failure>
         && will_be_same(output, plot)
     {
         let shown = one_line(&plot.display().to_string());
-        return Err(Failure::usage(format_args!("{shown} is both the robot file and the picture; name two files")));
+        return Err(usage_error!("{shown} is both the robot file and the picture; name two files"));
     }
     if arguments.json && arguments.output.as_deref().is_some_and(is_standard_output) {
-        return Err(Failure::usage(format_args!(
+        return Err(usage_error!(
             "{TYPED}--json{TYPED:#} and {TYPED}-o -{TYPED:#} both write to standard output; name a file for the robot"
-        )));
+        ));
     }
     let csv = arguments.csv.as_deref();
     for (other, kind) in [(output, "the robot file"), (plot, "the picture")] {
@@ -374,7 +362,7 @@ fn check_places(arguments: &Arguments, sources: &[&Path]) -> Result<(), Failure>
             && will_be_same(csv, other)
         {
             let shown = one_line(&csv.display().to_string());
-            return Err(Failure::usage(format_args!("{shown} is both the table and {kind}; name two files")));
+            return Err(usage_error!("{shown} is both the table and {kind}; name two files"));
         }
     }
     check_picture(plot)?;
@@ -396,60 +384,4 @@ fn options(arguments: &Arguments, cutoff: f64) -> Options {
     options.rotors = arguments.rotors;
     options.cutoff = Some(cutoff);
     options
-}
-
-/// Writes the torques of parts of the log, each marked as held out or not, as a table.
-fn tabulate(
-    arguments: &Arguments,
-    robot: &Robot,
-    log: &MotionLog,
-    parts: &[(Part, bool)],
-    remark: &mut String,
-) -> Result<(), Failure> {
-    if let Some(path) = &arguments.csv {
-        *remark += &residuals::write(path, robot, log, parts)?;
-    }
-    Ok(())
-}
-
-/// Draws a part of the log; a title, and what is below it.
-fn draw(
-    arguments: &Arguments,
-    robot: &Robot,
-    log: &MotionLog,
-    judged: &Judged,
-    [title, about]: [String; 2],
-    sources: &[&Path],
-    remark: &mut String,
-) -> Result<(), Failure> {
-    let Some(path) = &arguments.plot else { return Ok(()) };
-    let stride = usize::try_from(judged.extent.states.div_ceil(DRAWN)).unwrap_or(usize::MAX).max(1);
-    let prediction = Prediction::new(robot, Some(log.cutoff()));
-    let (mut time, mut pairs) = (Vec::new(), vec![Vec::new(); robot.dof()]);
-    log.pass(judged.part, &mut |motion: &Motion| {
-        time.extend(motion.time.iter().step_by(stride));
-        for (all, of) in pairs.iter_mut().zip(prediction.pairs(motion)?) {
-            all.extend(of.into_iter().step_by(stride));
-        }
-        Ok::<(), MotionError>(())
-    })?;
-    let side = |of: fn(&(f64, f64)) -> f64| -> Vec<Vec<f64>> {
-        pairs.iter().map(|pairs: &Vec<(f64, f64)>| pairs.iter().map(of).collect()).collect()
-    };
-    let (measured, predicted) = (side(|pair| pair.0), side(|pair| pair.1));
-    // the number of the table
-    let notes: Vec<String> = judged.errors.iter().map(|error| format!("error {:.1} %", 100.0 * error.error)).collect();
-    let svg = comparison_svg(
-        robot,
-        &Comparison {
-            title: &title,
-            about: &format!("{about}; both torques low-passed at {:.1} Hz", log.cutoff()),
-            time: &time,
-            measured: &measured,
-            predicted: &predicted,
-            notes: &notes,
-        },
-    );
-    *remark += &output_file::write_new(path, &svg, sources, arguments.force)?;
-    Ok(())
 }

@@ -17,8 +17,8 @@ use crate::files::output_file::{Replacement, check_new, is_standard_output, unwr
 use crate::files::reading;
 use crate::files::robot_file::{self, Shape};
 use crate::outcome::{Failure, Outcome};
-use crate::palette::{GOOD, TITLE, TYPED};
-use crate::render::layout::{PAGE, wrap};
+use crate::palette::{GOOD, TYPED};
+use crate::render::layout;
 use crate::render::log_groups::{self, Group};
 use crate::render::log_report::{self, Described};
 use crate::values::log_arguments::{LogArguments, failure};
@@ -83,9 +83,7 @@ impl Arguments {
     /// Describes the rows of each text in a column.
     fn describe_each(&self, column: &str, is_result_shown: bool) -> Result<Vec<Group>, Failure> {
         let options = self.reading.options();
-        let bar = reading::bar("read", is_result_shown);
-        let values = Log::values(&self.files, column, &options, |share| reading::show(&bar, share));
-        bar.finish_and_clear();
+        let values = Log::values(&self.files, column, &options, reading::progress(is_result_shown));
         let described = |value: &str| {
             let mut options = options.clone();
             options.select.push((column.to_owned(), value.to_owned()));
@@ -105,10 +103,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         return Err(Failure::usage(what));
     }
     if arguments.raw && arguments.reading.cutoff.is_some() {
-        return Err(Failure::usage(format_args!(
+        return Err(usage_error!(
             "{TYPED}--raw{TYPED:#} writes the samples without a filter, and {TYPED}--cutoff{TYPED:#} is the cut-off of \
              the filter; leave one of these options out"
-        )));
+        ));
     }
     let out = arguments.out.as_deref();
     let mut format = Format::Csv;
@@ -118,10 +116,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         check_new(path, None, &sources, arguments.force)?;
         format = motion_file::format(path, arguments.raw)?;
         if format == Format::Npy && arguments.by.is_some() {
-            return Err(Failure::usage(format_args!(
+            return Err(usage_error!(
                 "{TYPED}--by{TYPED:#} writes a column of texts, and an array has only numbers; name a file that ends \
                  with {TYPED}.csv{TYPED:#} or {TYPED}.parquet{TYPED:#}"
-            )));
+            ));
         }
     }
     let manner = Manner { format, is_raw: arguments.raw, is_by_order: arguments.robot.is_some(), label: None };
@@ -176,7 +174,7 @@ fn written(
             // `rne log … -o - | head` has read enough
             Err(Stopped::Unwritable(error)) if error.kind() == io::ErrorKind::BrokenPipe => 1,
             Err(Stopped::Unwritable(error)) => {
-                return Err(Failure::input(format_args!("the output cannot be written: {error}")));
+                return Err(input_error!("the output cannot be written: {error}"));
             }
             Err(Stopped::Unreadable(error)) => return Err(failure(&error, &[])),
             Ok(states) => states,
@@ -224,8 +222,7 @@ fn about(logs: &[Written<'_>], manner: Manner<'_>) -> String {
     {
         notes.push(format!("the time 0 s of the file is {}", origin.rfc3339()));
     }
-    let line = |note: String| format!("{TITLE}note{TITLE:#}: {}\n", wrap(&note, PAGE - 6, "      "));
-    notes.into_iter().map(line).collect()
+    notes.iter().map(|what| layout::note(what)).collect()
 }
 
 fn write_file(logs: &[Written<'_>], manner: Manner<'_>, path: &Path) -> Result<u64, Failure> {

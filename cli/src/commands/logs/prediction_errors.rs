@@ -10,6 +10,7 @@ use crate::files::motion_log::MotionLog;
 use crate::outcome::Failure;
 use crate::palette::{GOOD, QUIET, TITLE, WARNING};
 use crate::render::layout::{Align, PAGE, columns, shortened, wrap};
+use crate::render::verdict::tenths;
 use crate::values::numbers::rounded;
 
 /// How far the torques of a robot are from those of a part of a log, by joint.
@@ -31,19 +32,13 @@ pub(crate) fn errors_table(
     heading.extend(SPEEDS.map(|speed| format!("≤ {speed}")));
     heading.push("faster".to_owned());
     let mut cells = vec![heading];
-    // of an effort that does not change there is no part
-    let percent = |part: f64| match 100.0 * part {
-        percent if percent.is_nan() => "-".to_owned(),
-        percent if percent < 1000.0 => format!("{percent:.1} %"),
-        _ => "> 999 %".to_owned(),
-    };
     let (mut filtered, mut unfiltered) = (Vec::new(), Vec::new());
     for (at, (joint, error)) in robot.joints.iter().zip(errors).enumerate() {
         let unit = joint.row.kind.effort_unit();
         let mut line = vec![
             format!("  {}", shortened(&one_line(&joint.name), 14)),
-            percent(error.error),
-            percent(error.unfiltered),
+            tenths(error.error),
+            tenths(error.unfiltered),
             rounded(error.residual, 3),
             unit.to_owned(),
         ];
@@ -55,7 +50,7 @@ pub(crate) fn errors_table(
         unfiltered.push(error.unfiltered);
         cells.push(line);
     }
-    cells.push(vec!["  median".to_owned(), percent(median(filtered)), percent(median(unfiltered))]);
+    cells.push(vec!["  median".to_owned(), tenths(median(filtered)), tenths(median(unfiltered))]);
     let mut align = vec![Align::Left, Align::Right, Align::Right, Align::Right, Align::Left];
     align.extend([Align::Right; 4]);
     align.push(Align::Left);

@@ -1,13 +1,14 @@
 //! `rne watch`: what has changed about an arm, by its logs.
 
+mod trend;
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rne_identify::{ArmLogRemark, Identification, Part, Purpose};
-use rne_logs::{LabelValue, Log};
 use rne_model::{Robot, one_line};
-use rne_watch::{Baseline, Changes, Report, Settings, Trend, TrendReply, WatchError, WatchReply, changes, svg, watch};
+use rne_watch::{Baseline, Report, Settings, WatchError, WatchReply, svg, watch};
 
 use crate::commands::logs::prediction_errors::{errors_table, prediction};
 use crate::files::file_name::Format;
@@ -16,11 +17,11 @@ use crate::files::output_file;
 use crate::files::reading;
 use crate::files::robot_file::{self, Shape};
 use crate::outcome::{Failure, Outcome};
-use crate::palette::{QUIET, TITLE, TYPED, WARNING};
-use crate::render::layout::{PAGE, wrap};
+use crate::palette::{QUIET, TITLE, TYPED};
+use crate::render::layout::{PAGE, note, warning, wrap};
 use crate::render::watch_dates::{LogName, LogNames};
 use crate::render::watch_report;
-use crate::values::log_arguments::{self, LogArguments};
+use crate::values::log_arguments::LogArguments;
 use crate::values::numbers::{above_zero, rounded};
 
 /// Find changes of an arm in its logs: friction, payload, contacts
@@ -97,14 +98,24 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let inputs = arguments.logs.iter().chain(&arguments.quiet).chain(&arguments.baseline).chain([&arguments.file]);
     let sources: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     check_places(arguments, &sources)?;
-    let robot = robot_file::robot(&arguments.file, Shape::Coupled)?;
-    let settings = Settings { gain: arguments.gain, hold: arguments.hold, false_alarms: arguments.false_alarms };
-    let mut remark = String::new();
-    let known = known_baseline(arguments, &robot, &settings, &sources, &mut remark)?;
+    let robot = &robot_file::robot(&arguments.file, Shape::Coupled)?;
+    let settings = &Settings { gain: arguments.gain, hold: arguments.hold, false_alarms: arguments.false_alarms };
+    let mut task = Task { arguments, sources: &sources, robot, settings, remark: String::new() };
+    let known = task.known()?;
     match &arguments.by {
-        Some(by) => trend(arguments, &robot, known, by, &sources, remark),
-        None => events(arguments, &robot, known, &settings, &sources, remark),
+        Some(by) => task.trend(known, by),
+        None => task.events(known),
     }
+}
+
+/// A robot file and logs of the arm, with the remarks on them.
+struct Task<'a> {
+    arguments: &'a Arguments,
+    /// The files that are read, so no result is written there.
+    sources: &'a [&'a Path],
+    robot: &'a Robot,
+    settings: &'a Settings,
+    remark: String,
 }
 
 /// A baseline, with the words for where it comes from.
@@ -116,329 +127,156 @@ struct Known {
     remarks: Vec<ArmLogRemark>,
 }
 
-/// The baseline of quiet logs, or of a file.
-fn known_baseline(
-    arguments: &Arguments,
-    robot: &Robot,
-    settings: &Settings,
-    sources: &[&Path],
-    remark: &mut String,
-) -> Result<Option<Known>, Failure> {
-    if let Some(path) = &arguments.baseline {
-        let shown = path.display().to_string();
-        if path.is_dir() || is_log(path) {
-            return Err(Failure::usage(format_args!(
-                "{} is a log, and {TYPED}--baseline{TYPED:#} reads a file that {TYPED}--save-baseline{TYPED:#} wrote; \
-                 give a log with {TYPED}--quiet{TYPED:#}",
-                one_line(&shown)
-            )));
+impl Task<'_> {
+    /// The baseline of quiet logs, or of a file.
+    fn known(&mut self) -> Result<Option<Known>, Failure> {
+        let Self { arguments, robot, .. } = *self;
+        if let Some(path) = &arguments.baseline {
+            let shown = path.display().to_string();
+            if path.is_dir() || is_log(path) {
+                return Err(usage_error!(
+                    "{} is a log, and {TYPED}--baseline{TYPED:#} reads a file that {TYPED}--save-baseline{TYPED:#} \
+                     wrote; give a log with {TYPED}--quiet{TYPED:#}",
+                    one_line(&shown)
+                ));
+            }
+            let bytes = rne_model::read_file(path).map_err(|error| output_file::unreadable(path, &error))?;
+            let text = String::from_utf8_lossy(&bytes);
+            let baseline = Baseline::from_yaml(&shown, &text, robot).map_err(|report| Failure::from(&report))?;
+            let words = format!("{} ({:.1} s)", one_line(&shown), baseline.duration);
+            let name = LogName::several(format!("the logs of {}", one_line(&shown)));
+            return Ok(Some(Known { baseline, words, name, remarks: Vec::new() }));
         }
-        let bytes = rne_model::read_file(path).map_err(|error| output_file::unreadable(path, &error))?;
-        let text = String::from_utf8_lossy(&bytes);
-        let baseline = Baseline::from_yaml(&shown, &text, robot).map_err(|report| Failure::from(&report))?;
-        let words = format!("{} ({:.1} s)", one_line(&shown), baseline.duration);
-        let name = LogName::several(format!("the logs of {}", one_line(&shown)));
-        return Ok(Some(Known { baseline, words, name, remarks: Vec::new() }));
-    }
-    if arguments.quiet.is_empty() {
-        return Ok(None);
-    }
-    let quiet = MotionLog::open(&arguments.quiet, robot, &arguments.reading, Purpose::Watch)?;
-    *remark += &quiet.remark(PAGE);
-    let bar = reading::bar("read", false);
-    let baseline = Baseline::of_logs(robot, quiet.log(), settings, &mut |share| reading::show(&bar, share))
-        .map_err(|error| watch_failure(&error, &quiet.words()))?;
-    let joints = unexplained(robot, &prediction(robot, &quiet, Part::All)?);
-    if !joints.is_empty() {
-        warn(
-            remark,
-            &format!(
+        if arguments.quiet.is_empty() {
+            return Ok(None);
+        }
+        let quiet = MotionLog::open(&arguments.quiet, robot, &arguments.reading, Purpose::Watch)?;
+        self.remark += &quiet.remark();
+        let baseline = Baseline::of_logs(robot, quiet.log(), self.settings, &mut reading::progress(false))
+            .map_err(|error| watch_failure(&error, &quiet.words()))?;
+        let joints = unexplained(robot, &prediction(robot, &quiet, Part::All)?);
+        if !joints.is_empty() {
+            self.remark += &warning(&format!(
                 "the model explains nothing of the torques of {} in the quiet log: {}",
                 names(robot, &joints),
                 doubt(robot, "is it a log of this arm?")
-            ),
-        );
+            ));
+        }
+        if let Some(path) = &arguments.save_baseline {
+            self.write(path, &baseline.to_yaml(robot, &quiet.words()))?;
+        }
+        let name = LogName::of(&arguments.quiet, "the quiet logs");
+        Ok(Some(Known { baseline, words: quiet.words(), name, remarks: quiet.log().remarks().to_vec() }))
     }
-    if let Some(path) = &arguments.save_baseline {
-        let text = baseline.to_yaml(robot, &quiet.words());
-        *remark += &output_file::write_new(path, &text, sources, arguments.force)?;
-    }
-    let name = LogName::of(&arguments.quiet, "the quiet logs");
-    Ok(Some(Known { baseline, words: quiet.words(), name, remarks: quiet.log().remarks().to_vec() }))
-}
 
-fn warn(remark: &mut String, what: &str) {
-    let _ = writeln!(remark, "{WARNING}warning{WARNING:#}: {}", wrap(what, PAGE - 9, "         "));
-}
+    /// Writes a file that is no source.
+    fn write(&mut self, path: &Path, text: &str) -> Result<(), Failure> {
+        self.remark += &output_file::write_new(path, text, self.sources, self.arguments.force)?;
+        Ok(())
+    }
 
-/// Opens logs with the low-pass of a baseline.
-fn open(arguments: &Arguments, group: &Group, robot: &Robot, known: Option<&Known>) -> Result<MotionLog, Failure> {
-    let mut reading = arguments.reading.clone();
-    if let Some((column, text)) = &group.rows {
-        reading = reading.with_rows(column, text);
+    /// The changes of the logs, joined to one, as text, as JSON or as CSV.
+    fn events(mut self, known: Option<Known>) -> Result<Outcome, Failure> {
+        let Self { arguments, robot, settings, .. } = self;
+        let log = match &known {
+            Some(known) => MotionLog::open_beside(&arguments.logs, robot, &arguments.reading, known.baseline.cutoff)?,
+            None => MotionLog::open(&arguments.logs, robot, &arguments.reading, Purpose::Watch)?,
+        };
+        self.remark += &log.remark_beside(known.as_ref().map_or(&[], |known| &known.remarks));
+        let known = known.map_or_else(|| of_robot_file(robot, &log), Ok)?;
+        let report =
+            watch(robot, &known.baseline, log.log(), settings, arguments.plot.is_some(), &mut reading::progress(false))
+                .map_err(|error| watch_failure(&error, &log.words()))?;
+        if let Some(path) = &arguments.plot {
+            self.write(path, &svg(robot, &report, settings, &log.words()))?;
+            if report.is_cut {
+                self.remark += &note("the picture ends where the time of the logs goes back");
+            }
+        }
+        let judged = log.judged()?;
+        let errors = prediction(robot, &judged, Part::All)?;
+        let mut unexplained = unexplained(robot, &errors);
+        unexplained.retain(|joint| !has_faulty_channel(&report, *joint));
+        self.warn(&report, &unexplained);
+        let at_fault = !(report.events.is_empty() && unexplained.is_empty());
+        if let Some(path) = &arguments.csv {
+            let table = watch_report::parameters_csv(robot, &known.baseline, &report.changes);
+            if output_file::is_standard_output(path) {
+                return Ok(Outcome { text: table, remark: self.remark, at_fault, ..Outcome::default() });
+            }
+            self.write(path, &table)?;
+        }
+        if arguments.json {
+            let Known { baseline, words, .. } = &known;
+            let reply = WatchReply::of(robot, log.words(), log.read_to(), words, baseline, &report, &errors);
+            return Ok(Outcome { remark: self.remark, at_fault, ..Outcome::json(&reply)? });
+        }
+        let mut text = self.account(&known, &log, &report);
+        if arguments.all {
+            text += &watch_report::parameters(robot, &known.baseline, &report.changes);
+            text += &errors_table(robot, &judged, &errors, &Identification::not_excited(robot), "errors on the log");
+        }
+        Ok(Outcome { text, remark: self.remark, at_fault, remark_last: true })
     }
-    match known {
-        Some(known) => MotionLog::open_beside(&group.paths, robot, &reading, known.baseline.cutoff),
-        None => MotionLog::open(&group.paths, robot, &reading, Purpose::Watch),
-    }
-}
 
-/// The baseline that is known, or that of the log itself against the robot file.
-fn baseline_of(robot: &Robot, known: Option<Known>, log: &MotionLog) -> Result<Known, Failure> {
-    if let Some(known) = known {
-        return Ok(known);
-    }
-    let bar = reading::bar("read", false);
-    let baseline =
-        Baseline::of_file(robot, log.log(), &mut |share| reading::show(&bar, share)).map_err(|error| match error {
-            WatchError::ShortBaseline { .. } => Failure::input(format_args!(
-                "{}: {error}. A longer log of the arm without any fault, given with {TYPED}--quiet{TYPED:#}, can be \
-                 its baseline",
-                log.words()
-            )),
-            error => watch_failure(&error, &log.words()),
-        })?;
-    let name = LogName::several("the quiet logs".to_owned());
-    Ok(Known { baseline, words: "the robot file".to_owned(), name, remarks: Vec::new() })
-}
-
-fn events(
-    arguments: &Arguments,
-    robot: &Robot,
-    known: Option<Known>,
-    settings: &Settings,
-    sources: &[&Path],
-    mut remark: String,
-) -> Result<Outcome, Failure> {
-    let all = Group { name: String::new(), paths: arguments.logs.clone(), rows: None };
-    let log = open(arguments, &all, robot, known.as_ref())?;
-    remark += &log.remark_beside(known.as_ref().map_or(&[], |known| &known.remarks), PAGE);
-    let Known { baseline, words, name, .. } = baseline_of(robot, known, &log)?;
-    let bar = reading::bar("read", false);
-    let report =
-        watch(robot, &baseline, log.log(), settings, arguments.plot.is_some(), &mut |share| reading::show(&bar, share))
-            .map_err(|error| watch_failure(&error, &log.words()))?;
-    drop(bar);
-    if let Some(path) = &arguments.plot {
-        remark += &draw(path, arguments, robot, &report, settings, &log.words(), sources)?;
-    }
-    let ratio = report.changes.effort_ratio;
-    if !UNIT.contains(&ratio) {
-        warn(
-            &mut remark,
-            &format!(
+    /// Warns of what makes events doubtful.
+    fn warn(&mut self, report: &Report, unexplained: &[usize]) {
+        let Self { arguments, robot, .. } = *self;
+        let ratio = report.changes.effort_ratio;
+        if !UNIT.contains(&ratio) {
+            self.remark += &warning(&format!(
                 "the efforts are {} times as large as in the quiet log: do they have another unit, or another torque \
                  constant? Then the events mean nothing",
                 rounded(ratio, 2)
-            ),
-        );
-    }
-    if arguments.logs.len() > 1 && arguments.quiet.is_empty() && arguments.baseline.is_none() {
-        warn(
-            &mut remark,
-            "the logs are joined to one, so a change between them can be hidden; --quiet names the log to compare \
-             with, and --by log compares each with the first",
-        );
-    }
-    let judged = log.judged()?;
-    let errors = prediction(robot, &judged, Part::All)?;
-    let mut unexplained = unexplained(robot, &errors);
-    unexplained.retain(|joint| !has_faulty_channel(&report, *joint));
-    if !unexplained.is_empty() {
-        let names = names(robot, &unexplained);
-        let what = doubt(robot, "does FILE describe this arm, with its friction?");
-        warn(&mut remark, &format!("the model explains nothing of the torques of {names}: {what}"));
-    }
-    let at_fault = !(report.events.is_empty() && unexplained.is_empty());
-    if let Some(path) = &arguments.csv {
-        let table = watch_report::parameters_csv(robot, &baseline, &report.changes);
-        if output_file::is_standard_output(path) {
-            return Ok(Outcome { text: table, remark, at_fault, ..Outcome::default() });
+            ));
         }
-        remark += &output_file::write_new(path, &table, sources, arguments.force)?;
-    }
-    if arguments.json {
-        let reply = WatchReply::of(robot, log.words(), log.read_to(), &words, &baseline, &report, &errors);
-        return Ok(Outcome { remark, at_fault, ..Outcome::json(&reply)? });
-    }
-    let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), baseline.cutoff);
-    let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&about, PAGE, "  "));
-    let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(&format!("compared with: {words}"), PAGE, "  "));
-    let names = LogNames { log: LogName::of(&arguments.logs, "the logs"), quiet: &name };
-    text += &watch_report::events(robot, &baseline, &report, log.runs() > 1, &names);
-    if arguments.all {
-        text += &watch_report::parameters(robot, &baseline, &report.changes);
-        text += &errors_table(robot, &judged, &errors, &Identification::not_excited(robot), "errors on the log");
-    }
-    Ok(Outcome { text, remark, at_fault, remark_last: true })
-}
-
-fn draw(
-    path: &Path,
-    arguments: &Arguments,
-    robot: &Robot,
-    report: &Report,
-    settings: &Settings,
-    about: &str,
-    sources: &[&Path],
-) -> Result<String, Failure> {
-    let picture = svg(robot, report, settings, about);
-    let mut remark = output_file::write_new(path, &picture, sources, arguments.force)?;
-    if report.is_cut {
-        let _ = writeln!(remark, "{TITLE}note{TITLE:#}: the picture ends where the time of the logs goes back");
-    }
-    Ok(remark)
-}
-
-/// Logs that are compared as one, or some rows of them.
-struct Group {
-    name: String,
-    paths: Vec<PathBuf>,
-    /// The column and the text of the rows that are read; all rows without.
-    rows: Option<(String, String)>,
-}
-
-impl Group {
-    /// `friday.mcap`, `the logs of 2026-11-27`, `the rows of pick`.
-    fn log_name(&self) -> LogName {
-        match &self.rows {
-            Some(_) => LogName::several(format!("the rows of {}", one_line(&self.name))),
-            None => LogName::of(&self.paths, &format!("the logs of {}", self.name)),
+        if arguments.logs.len() > 1 && arguments.quiet.is_empty() && arguments.baseline.is_none() {
+            self.remark += &warning(
+                "the logs are joined to one, so a change between them can be hidden; --quiet names the log to compare \
+                 with, and --by log compares each with the first",
+            );
+        }
+        if !unexplained.is_empty() {
+            let names = names(robot, unexplained);
+            let what = doubt(robot, "does FILE describe this arm, with its friction?");
+            self.remark += &warning(&format!("the model explains nothing of the torques of {names}: {what}"));
         }
     }
+
+    /// The events below a heading.
+    fn account(&self, Known { baseline, words, name, .. }: &Known, log: &MotionLog, report: &Report) -> String {
+        let robot = self.robot;
+        let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), baseline.cutoff);
+        let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&about, PAGE, "  "));
+        let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(&format!("compared with: {words}"), PAGE, "  "));
+        let names = LogNames { log: LogName::of(&self.arguments.logs, "the logs"), quiet: name };
+        text + &watch_report::events(robot, baseline, report, log.runs() > 1, &names)
+    }
 }
 
-/// The groups of a trend, in the order of the logs.
-fn groups(arguments: &Arguments, robot: &Robot, known: Option<&Known>, by: &str) -> Result<Vec<Group>, Failure> {
-    if !["log", "day"].contains(&by) {
-        let bar = reading::bar("read", false);
-        let options = arguments.reading.options();
-        let values = Log::values(&arguments.logs, by, &options, |share| reading::show(&bar, share))
-            .map_err(|error| log_arguments::failure(&error, &[]))?;
-        let group = |found: LabelValue| Group {
-            paths: arguments.logs.clone(),
-            rows: Some((by.to_owned(), found.value.clone())),
-            name: found.value,
-        };
-        return Ok(values.into_iter().map(group).collect());
-    }
-    let mut groups: Vec<Group> = Vec::new();
-    for path in &arguments.logs {
-        let name = one_line(&path.file_name().unwrap_or(path.as_os_str()).to_string_lossy());
-        let mut group = Group { name, paths: vec![path.clone()], rows: None };
-        if by == "day" {
-            let day = open(arguments, &group, robot, known)?.day();
-            group.name = day.ok_or_else(|| {
-                Failure::usage(format_args!(
-                    "the times of {} are not dates, so it belongs to no day; {TYPED}--by log{TYPED:#} compares the \
-                     logs one by one",
-                    group.name
-                ))
-            })?;
-        }
-        match groups.iter_mut().find(|known| by == "day" && known.name == group.name) {
-            Some(of) => of.paths.push(path.clone()),
-            None => groups.push(group),
-        }
-    }
-    Ok(groups)
-}
-
-/// The baseline of the first group, with which the others are compared if nothing else is known.
-fn of_first(arguments: &Arguments, robot: &Robot, group: &Group) -> Result<Known, Failure> {
-    let log = open(arguments, group, robot, None)?;
-    let structure = Baseline::structure(robot, log.cutoff());
-    let bar = reading::bar("read", false);
-    let baseline = Baseline::of_parameters(&structure, log.log(), &mut |share| reading::show(&bar, share))
-        .map_err(|error| watch_failure(&error, &log.words()))?;
-    let (words, name) = (format!("the first, {}", group.name), group.log_name());
-    Ok(Known { baseline, words, name, remarks: Vec::new() })
-}
-
-fn trend(
-    arguments: &Arguments,
-    robot: &Robot,
-    known: Option<Known>,
-    by: &str,
-    sources: &[&Path],
-    mut remark: String,
-) -> Result<Outcome, Failure> {
-    let groups = groups(arguments, robot, known.as_ref(), by)?;
-    let mut known = if let Some(known) = known {
-        known
-    } else {
-        let first = groups.first().ok_or_else(|| Failure::input("the logs have no rows"))?;
-        of_first(arguments, robot, first)?
-    };
-    let structure = Baseline::structure(robot, known.baseline.cutoff);
-    let mut trend = Trend::new(&structure, &known.baseline);
-    let (mut events, mut names) = (Vec::new(), Vec::new());
-    let mut first_failure = None;
-    for group in groups {
-        let mut compare = || -> Result<Changes, Failure> {
-            let log = open(arguments, &group, robot, Some(&known))?;
-            remark += &log.remark_beside(&known.remarks, PAGE);
-            known.remarks.extend(log.log().remarks().iter().cloned());
-            let bar = reading::bar("read", false);
-            changes(&structure, &known.baseline, log.log(), &mut |share| reading::show(&bar, share))
-                .map_err(|error| watch_failure(&error, &log.words()))
-        };
-        match compare() {
-            Ok(found) => {
-                names.push(group.log_name());
-                trend.push(group.name, &found);
-                events.push(found.events);
-            }
-            // one log of many, such as that of a morning on which the arm stood still
-            Err(failure) if failure.is_of_input() => {
-                trend.left_out.push((group.name, failure.sentence()));
-                first_failure.get_or_insert(failure);
-            }
-            Err(failure) => return Err(failure),
-        }
-    }
-    if let Some(failure) = first_failure.filter(|_| trend.rows.is_empty()) {
-        return Err(failure);
-    }
-    for (name, reason) in &trend.left_out {
-        warn(&mut remark, &format!("{name} is not compared: {reason}"));
-    }
-    let at_fault = events.iter().any(|events| !events.is_empty()) || !trend.left_out.is_empty();
-    let what = if ["log", "day"].contains(&by) { by } else { "group" };
-    let plural = if trend.rows.len() == 1 { "" } else { "s" };
-    let about = format!("{} {what}{plural} compared with {}", trend.rows.len(), known.words);
-    if let Some(path) = &arguments.plot {
-        remark += &output_file::write_new(path, &trend.svg(robot, &about), sources, arguments.force)?;
-    }
-    if arguments.csv.as_deref().is_some_and(output_file::is_standard_output) {
-        return Ok(Outcome { text: trend.csv(robot), remark, at_fault, ..Outcome::default() });
-    }
-    if let Some(path) = &arguments.csv {
-        remark += &output_file::write_new(path, &trend.csv(robot), sources, arguments.force)?;
-    }
-    if arguments.json {
-        return Ok(Outcome {
-            remark,
-            at_fault,
-            ..Outcome::json(&TrendReply::of(robot, &known.words, &trend, &events))?
-        });
-    }
-    let head = format!("{}: {about}", one_line(&robot.name));
-    let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&head, PAGE, "  "));
-    let names: Vec<LogNames<'_>> = names.into_iter().map(|log| LogNames { log, quiet: &known.name }).collect();
-    text += &watch_report::trend(robot, &trend, &events, &names);
-    Ok(Outcome { text, remark, at_fault, remark_last: true })
+/// The baseline of a log against the robot file, where nothing else is known.
+fn of_robot_file(robot: &Robot, log: &MotionLog) -> Result<Known, Failure> {
+    let baseline = Baseline::of_file(robot, log.log(), &mut reading::progress(false)).map_err(|error| match error {
+        WatchError::ShortBaseline { .. } => input_error!(
+            "{}: {error}. A longer log of the arm without any fault, given with {TYPED}--quiet{TYPED:#}, can be \
+                 its baseline",
+            log.words()
+        ),
+        error => watch_failure(&error, &log.words()),
+    })?;
+    let name = LogName::several("the quiet logs".to_owned());
+    Ok(Known { baseline, words: "the robot file".to_owned(), name, remarks: Vec::new() })
 }
 
 /// Whether what is written can be, before any log is read.
 fn check_places(arguments: &Arguments, sources: &[&Path]) -> Result<(), Failure> {
     let quiet = arguments.quiet.iter();
     if let Some(both) = quiet.clone().find(|quiet| arguments.logs.iter().any(|log| is_within(log, quiet))) {
-        return Err(Failure::usage(format_args!(
+        return Err(usage_error!(
             "{} is also watched: {TYPED}--quiet{TYPED:#} needs another log, without disturbances, so name one or leave \
              the option out",
             one_line(&both.display().to_string())
-        )));
+        ));
     }
     output_file::check_picture(arguments.plot.as_deref())?;
     let csv = arguments.csv.clone().filter(|path| !output_file::is_standard_output(path));
@@ -467,8 +305,8 @@ fn doubt(robot: &Robot, question: &'static str) -> &'static str {
     }
 }
 
-/// N m or N: what is left of an effort where nothing is.
-const NOTHING: f64 = 1e-9;
+/// The largest residual, N m or N, of an effort that the model reproduces up to rounding.
+const ROUNDING: f64 = 1e-9;
 
 /// Whether an event says already that a channel of a joint is wrong, so that the model cannot explain its torques.
 fn has_faulty_channel(report: &Report, joint: usize) -> bool {
@@ -488,8 +326,8 @@ fn unexplained(robot: &Robot, errors: &[rne_identify::JointError]) -> Vec<usize>
     // what is no number is no prediction
     let found = each.filter(|(_, (error, unknown))| {
         // an effort that does not change, and is what the model says, is explained
-        let is_nothing = error.deviation == 0.0 && error.residual <= NOTHING;
-        !unknown && !is_nothing && (error.error >= 1.0 || error.error.is_nan())
+        let is_reproduced = error.deviation == 0.0 && error.residual <= ROUNDING;
+        !unknown && !is_reproduced && (error.error >= 1.0 || error.error.is_nan())
     });
     found.map(|(joint, _)| joint).collect()
 }

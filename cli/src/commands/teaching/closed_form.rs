@@ -69,7 +69,7 @@ impl Wanted {
         let joints = match self.first {
             Some(joint) if joint == 0 || joint > checked.robot.dof() => {
                 let (name, dof) = (&checked.robot.name, checked.robot.dof());
-                return Err(Failure::usage(format_args!("{name} has {dof} joints; --first takes 1 to {dof}")));
+                return Err(usage_error!("{name} has {dof} joints; --first takes 1 to {dof}"));
             }
             first => first.unwrap_or(checked.robot.dof()),
         };

@@ -180,7 +180,7 @@ fn observation(arguments: &Arguments, robot: &Robot) -> Result<(Observation, Vec
     if tau.len() != robot.dof() {
         let (found, joints) = (tau.len(), robot.dof());
         let numbers = if joints == 1 { "number" } else { "numbers" };
-        return Err(Failure::usage(format_args!("--tau needs {joints} {numbers}, one for each joint, not {found}")));
+        return Err(usage_error!("--tau needs {joints} {numbers}, one for each joint, not {found}"));
     }
     let function = match arguments.wrench {
         Some(_) => Function::InverseDynamicsWithWrench,

@@ -78,11 +78,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let functions = Function::ALL.iter().map(|function| function.name());
         let meant = did_you_mean(word, topics.iter().copied().chain(functions))
             .map_or_else(String::new, |meant| format!(" (did you mean {TYPED}{meant}{TYPED:#}?)"));
-        Failure::usage(format_args!(
+        usage_error!(
             "there is no topic `{word}`{meant}; expected {}, a function such as mass_matrix, a link parameter such as \
              Jzz3, or a name in the code of a robot and its file, as in {TYPED}rne explain w2_z puma560{TYPED:#}",
             topics.join(", ")
-        ))
+        )
     })?;
     Ok(Outcome::text(arguments.letters.page(&text, PAGE)))
 }
@@ -150,11 +150,11 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
     let beyond = number.is_some_and(|joint| joint > robot.dof());
     let joints = if robot.dof() == 1 { "1 joint".to_owned() } else { format!("{} joints", robot.dof()) };
     let meant = if beyond { format!(", which has {joints}") } else { meant };
-    Err(Failure::usage(format_args!(
+    Err(usage_error!(
         "there is no name `{name}` in {function}, form {form}, of {}{meant}; {TYPED}rne show{TYPED:#} prints the \
          code, {TYPED}--form{TYPED:#} and {TYPED}--function{TYPED:#} choose another",
         robot.name
-    )))
+    ))
 }
 
 /// Explains a function by its name: what it computes, and the options of `rne eval` for its arguments.
@@ -260,7 +260,7 @@ fn swapped(name: &str, path: &Path) -> Option<Failure> {
     let is_robot = rne_convert::shipped_at(Path::new(name)).is_some() || Path::new(name).is_file();
     (is_robot && !path.exists()).then(|| {
         let asked = path.display();
-        Failure::usage(format_args!("the name comes first, then the robot: {TYPED}rne explain {asked} {name}{TYPED:#}"))
+        usage_error!("the name comes first, then the robot: {TYPED}rne explain {asked} {name}{TYPED:#}")
     })
 }
 

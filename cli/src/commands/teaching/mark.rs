@@ -111,14 +111,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             one.name_owner(owner);
         }
     }
-    let mut files: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-    for one in marked.iter().filter(|one| one.mark.is_ok()) {
-        files.entry(&one.student).or_default().push(&one.file);
-    }
-    for (student, files) in files.iter().filter(|(_, files)| files.len() > 1) {
-        let _ =
-            writeln!(remark, "note: {} has several files: {}", marks::shown(student), marks::shown(&files.join(", ")));
-    }
+    remark += &several_files(&marked);
     let all_for_another = marked.iter().filter(|one| one.mark.is_ok()).all(Marked::is_for_another_state);
     if all_for_another && marked.iter().any(|one| one.mark.is_ok()) {
         let option = if arguments.states.seed.is_some() { "--seed" } else { "--states" };
@@ -135,15 +128,29 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { text, remark, remark_last: true, at_fault })
 }
 
+/// Notes on students with several files.
+fn several_files(marked: &[Marked]) -> String {
+    let mut remark = String::new();
+    let mut files: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for one in marked.iter().filter(|one| one.mark.is_ok()) {
+        files.entry(&one.student).or_default().push(&one.file);
+    }
+    for (student, files) in files.iter().filter(|(_, files)| files.len() > 1) {
+        let _ =
+            writeln!(remark, "note: {} has several files: {}", marks::shown(student), marks::shown(&files.join(", ")));
+    }
+    remark
+}
+
 /// The worksheets of a folder: its files `.csv`, by their names.
 fn worksheets_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let unreadable = |error| Failure::input(format_args!("the folder {} cannot be read: {error}", folder.display()));
+    let unreadable = |error| input_error!("the folder {} cannot be read: {error}", folder.display());
     let entries = std::fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>).map_err(unreadable)?;
     let is_sheet = |path: &PathBuf| path.extension().is_some_and(|end| end.eq_ignore_ascii_case("csv"));
     let mut files: Vec<PathBuf> = entries.iter().map(std::fs::DirEntry::path).filter(is_sheet).collect();
     files.sort();
     if files.is_empty() {
-        return Err(Failure::input(format_args!("the folder {} has no worksheet: no file .csv", folder.display())));
+        return Err(input_error!("the folder {} has no worksheet: no file .csv", folder.display()));
     }
     Ok(files)
 }

@@ -68,7 +68,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let history = TorqueHistory::new(&robot, &trajectory).map_err(Failure::usage)?;
     if let Some(sample) = history.overflows() {
         let time = exact_digits(trajectory.time[sample]);
-        return Err(Failure::input(format_args!("a torque overflows at {time} s: the motion is too fast")));
+        return Err(input_error!("a torque overflows at {time} s: the motion is too fast"));
     }
     let text =
         if arguments.csv { csv(&robot, &trajectory, &history) } else { svg(&robot, &trajectory, &history, &about) };
@@ -92,18 +92,18 @@ fn is_named_for(path: &Path, csv: bool) -> Result<(), Failure> {
     let shown = path.display();
     match (extension.as_str(), csv) {
         ("", _) | ("svg", false) | ("csv" | "txt", true) => Ok(()),
-        ("csv", false) => Err(Failure::usage(format_args!(
-            "{shown} has the name of a CSV file; add {TYPED}--csv{TYPED:#} to write numbers"
-        ))),
-        (_, false) => Err(Failure::usage(format_args!(
+        ("csv", false) => {
+            Err(usage_error!("{shown} has the name of a CSV file; add {TYPED}--csv{TYPED:#} to write numbers"))
+        }
+        (_, false) => Err(usage_error!(
             "{shown} does not have the name of an SVG, the only picture format; name it {TYPED}{}{TYPED:#}, and \
              convert it with a browser, Inkscape or LibreOffice",
             path.with_extension("svg").display()
-        ))),
-        (_, true) => Err(Failure::usage(format_args!(
+        )),
+        (_, true) => Err(usage_error!(
             "{shown} does not have the name of a CSV file, which --csv writes; name it {TYPED}{}{TYPED:#}",
             path.with_extension("csv").display()
-        ))),
+        )),
     }
 }
 
@@ -123,7 +123,7 @@ fn motion(arguments: &Arguments, robot: &Robot) -> Result<(Trajectory, String), 
     let least = Trajectory::least_duration(robot, &from, &to);
     // tenths of a second, not less than the limits ask for
     let seconds = arguments.duration.unwrap_or_else(|| DURATION.max((least * 10.0).ceil() / 10.0));
-    let too_fast = |_| Failure::input(format_args!("in {seconds:e} s a speed overflows: the motion is too fast"));
+    let too_fast = |_| input_error!("in {seconds:e} s a speed overflows: the motion is too fast");
     let trajectory = Trajectory::quintic(&from, &to, seconds, SAMPLES).map_err(too_fast)?;
     let fast = if seconds < least {
         format!(", faster than speed limits allow ({} s)", rounded(least, 2))

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rne_codegen::plan::Trick;
-use rne_codegen::{self as codegen, Form, Function, Quantity, Step};
+use rne_codegen::{self as codegen, Form, Function, Program, Quantity, Step};
 use rne_emit::Selection;
 use rne_inspection::Inspection;
 use rne_model::Robot;
@@ -89,7 +89,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.closed_form.is_asked_for() {
         return arguments.closed_form.run(&arguments.file, letters, |robot| arguments.rotors.of(robot));
     }
-    let file = arguments.file.display().to_string();
     let is_listing = !(arguments.base_parameters || arguments.json || arguments.equations);
     let shape = if is_listing { Shape::Closed } else { Shape::Coupled };
     let robot = arguments.rotors.robot(&arguments.file, shape)?;
@@ -103,32 +102,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         return inspected(arguments, &robot, joint);
     }
 
-    let mut keep = arguments.keep.clone();
-    if arguments.step == Some(Step::Velocity) && !keep.contains(&Kept::Velocity) {
-        keep.push(Kept::Velocity);
-    }
-    let quantities: Vec<Quantity> = keep.iter().map(|kept| kept.quantity()).collect();
-    if arguments.form == Form::SevenSteps && !arguments.without.is_empty() {
-        return Err(Failure::usage(format_args!(
-            "the seven steps use no tricks; use `--without` only with {TYPED}--form reduced{TYPED:#}"
-        )));
-    }
-    let program = match arguments.form {
-        Form::SevenSteps => codegen::Compiler::new(&robot)
-            .with_intermediates(&quantities)
-            .compile(function, arguments.form)
-            .map_err(|error| Failure::compile(&file, &error))?,
-        form @ Form::Reduced if keep.is_empty() => {
-            Compiler::new(&arguments.file, &robot).without(&arguments.without).compile(function, form)?
-        }
-        form @ Form::Reduced => {
-            return Err(Failure::usage(format_args!(
-                "only the seven steps have {}; the form {form} computes only torques",
-                keep[0].words()
-            )));
-        }
-    };
-
+    let keep = kept(arguments);
+    let program = program(arguments, &robot, function, &keep)?;
     let mut text = letters.page(&heading::robot(&robot), PAGE);
     let _ = writeln!(text, "\n{}", heading::counts(&program));
     if program.outputs.len() > function.layout(rne_codegen::sizes_of(&robot)).len() {
@@ -169,6 +144,37 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome::text(text))
 }
 
+/// The quantities that are computed on request: step 3 is the velocity, which torques do not need.
+fn kept(arguments: &Arguments) -> Vec<Kept> {
+    let mut keep = arguments.keep.clone();
+    if arguments.step == Some(Step::Velocity) && !keep.contains(&Kept::Velocity) {
+        keep.push(Kept::Velocity);
+    }
+    keep
+}
+
+/// The program of a function in the form that is asked for, with the quantities that are kept.
+fn program(arguments: &Arguments, robot: &Robot, function: Function, keep: &[Kept]) -> Result<Program, Failure> {
+    let quantities: Vec<Quantity> = keep.iter().map(|kept| kept.quantity()).collect();
+    if arguments.form == Form::SevenSteps && !arguments.without.is_empty() {
+        return Err(usage_error!(
+            "the seven steps use no tricks; use `--without` only with {TYPED}--form reduced{TYPED:#}"
+        ));
+    }
+    match arguments.form {
+        Form::SevenSteps => codegen::Compiler::new(robot)
+            .with_intermediates(&quantities)
+            .compile(function, arguments.form)
+            .map_err(|error| Failure::compile(&arguments.file.display().to_string(), &error)),
+        form @ Form::Reduced if keep.is_empty() => {
+            Compiler::new(&arguments.file, robot).without(&arguments.without).compile(function, form)
+        }
+        form @ Form::Reduced => {
+            Err(usage_error!("only the seven steps have {}; the form {form} computes only torques", keep[0].words()))
+        }
+    }
+}
+
 /// The inspection, as JSON or as lines.
 fn inspected(arguments: &Arguments, robot: &Robot, joint: Option<usize>) -> Result<Outcome, Failure> {
     let file = arguments.file.display().to_string();
@@ -180,9 +186,9 @@ fn inspected(arguments: &Arguments, robot: &Robot, joint: Option<usize>) -> Resu
             .map_err(|error| Failure::compile(&file, &error))?,
         Form::Reduced if arguments.json => Compiler::new(&arguments.file, robot).compile(function, form)?,
         Form::Reduced => {
-            return Err(Failure::usage(format_args!(
+            return Err(usage_error!(
                 "only the seven steps have equations to fold; `rne explain tricks` explains the form {form}"
-            )));
+            ));
         }
     };
     let inspection = Inspection::new(robot, &program);

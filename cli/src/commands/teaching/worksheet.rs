@@ -95,8 +95,7 @@ fn students(arguments: &Arguments, of_states: Vec<String>) -> Result<Vec<String>
     let mut students = arguments.students.clone();
     if let Some(path) = &arguments.class {
         let name = input_file::name(path);
-        let unreadable =
-            |error: &dyn std::fmt::Display| Failure::input(format_args!("the names {name} cannot be read: {error}"));
+        let unreadable = |error: &dyn std::fmt::Display| input_error!("the names {name} cannot be read: {error}");
         let bytes = input_file::read(path, LONGEST).map_err(|error| unreadable(&error))?;
         if bytes.len() > LONGEST {
             return Err(unreadable(&format_args!("the file has more than {LONGEST} bytes")));
@@ -119,15 +118,15 @@ fn students(arguments: &Arguments, of_states: Vec<String>) -> Result<Vec<String>
             && !student.ends_with(['.', ' '])
             && student.len() <= 100;
         if !is_file_name {
-            return Err(Failure::usage(format_args!(
+            return Err(usage_error!(
                 "{} cannot be the name of a worksheet; a name has letters, digits, `_`, `-`, `.` and blanks, begins \
                  and ends with a letter, a digit or `_`, and has at most 100 bytes",
                 quoted(student)
-            )));
+            ));
         }
         // file systems may not distinguish ADA from ada
         if !seen.insert(student.to_lowercase()) {
-            return Err(Failure::usage(format_args!("the student {} is named twice", quoted(student))));
+            return Err(usage_error!("the student {} is named twice", quoted(student)));
         }
     }
     Ok(students)

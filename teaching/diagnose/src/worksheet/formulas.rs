@@ -3,11 +3,11 @@
 use std::collections::HashSet;
 
 use nalgebra::{Matrix3, Vector3};
-use rne_model::{Convention, JointKind, Robot, Row};
+use rne_model::{JointKind, Robot, Row};
 use rne_runtime::{BaseMotion, LinkTrace};
 
 use super::quantity::indexed;
-use super::{Axes, Input, Line, Quantity, Situation, Term, first_lever, followed, orientations, symmetric};
+use super::{Axes, Input, Line, Quantity, Situation, Term, first_lever, followed, orientations};
 
 /// The data that the lines are made of.
 pub(super) struct Formulas<'a> {
@@ -21,7 +21,7 @@ pub(super) struct Formulas<'a> {
     pub(super) fixed: &'a [LinkTrace<f64>],
 }
 
-type V = Vector3<f64>;
+pub(super) type V = Vector3<f64>;
 
 /// The axis of a joint where it is (0, 0, 1).
 const AXIS: &str = "e";
@@ -48,17 +48,17 @@ const SUMS: [(Quantity, [&str; 4]); 9] = [
 ];
 
 /// A joint whose lines are written.
-struct Here<'a> {
-    i: usize,
-    kind: JointKind,
-    row: &'a Row,
-    link: &'a LinkTrace<f64>,
+pub(super) struct Here<'a> {
+    pub(super) i: usize,
+    pub(super) kind: JointKind,
+    pub(super) row: &'a Row,
+    pub(super) link: &'a LinkTrace<f64>,
     /// The link before, or the base.
     before: LinkTrace<f64>,
     /// From axes fixed to the link into these.
-    turn: Matrix3<f64>,
-    e: V,
-    q: [f64; 3],
+    pub(super) turn: Matrix3<f64>,
+    pub(super) e: V,
+    pub(super) q: [f64; 3],
 }
 
 /// A vector in a formula, and what goes into it.
@@ -125,102 +125,6 @@ impl Formulas<'_> {
         match self.links.get(joint).filter(|_| self.axes != Axes::Base) {
             Some(next) => list(&(next.rotation_matrix() * V::from(own))),
             None => own.to_vec(),
-        }
-    }
-
-    /// The lines of the inputs of the steps.
-    fn given(&self, here: &Here<'_>, orientations: &[Matrix3<f64>]) -> Vec<Line> {
-        let Here { i, kind, row, link, turn, .. } = here;
-        let i = *i;
-        let slides = *kind == JointKind::Prismatic;
-        let variables = [(Quantity::Theta, row.dh.theta.radians, !slides), (Quantity::Offset, row.dh.d, slides)];
-        let [theta, offset] = variables.map(|(quantity, constant, moves)| {
-            let own = moves.then(|| scalar(&format!("q{i}"), here.q[0]));
-            let formula = match &own {
-                None => "of the row".to_owned(),
-                Some(own) if constant == 0.0 => own.text.clone(),
-                Some(own) => format!("{} + {}", own.text, short(constant)).replace("+ -", "- "),
-            };
-            let terms: Vec<Term> = own.into_iter().chain([scalar("the constant of its row", constant)]).collect();
-            let sum = terms.iter().map(|term| term.values[0]).sum();
-            Line { terms, ..here.line(quantity, vec![sum], &formula) }
-        });
-        let along = offset.values[0];
-        let given = |(quantity, value)| here.line(quantity, vec![value], "given");
-        let mut lines: Vec<Line> =
-            [Quantity::Q, Quantity::Qd, Quantity::Qdd].into_iter().zip(here.q).map(given).collect();
-        lines.extend([theta, offset, given((Quantity::Mass, link.mass))]);
-        lines.push(self.rotation_line(here, orientations));
-        if self.axes == Axes::Base {
-            lines.push(here.line(Quantity::Axis, list(&here.e), &format!("A{i} (0, 0, 1), the z column")));
-        }
-        // from the joint along the row's offset, then to the centre of mass
-        let fixed = &self.fixed[i - 1];
-        let standard = self.robot.convention == Convention::Standard;
-        let along = V::new(if standard { row.dh.a } else { 0.0 }, 0.0, along);
-        let com = V::from(fixed.d) - along;
-        let lever = V::from(fixed.r) + com;
-        let lead = self.lead(i);
-        let turned = |text: &str| format!("{lead}{text}");
-        let along_text = if standard { format!("(a{i}, 0, b{i})") } else { format!("(0, 0, b{i})") };
-        let com_text = if standard { format!("Rx(α{i}) com{i}") } else { format!("com{i}") };
-        let last = i == self.links.len();
-        let lever_text = match (standard, last) {
-            (true, true) => format!("Rx(α{i}) tool"),
-            (false, true) => "tool".to_owned(),
-            (true, false) => String::new(),
-            (false, false) => format!("(a{}, 0, 0)", i + 1),
-        };
-        let whole = |text: String| if lead.is_empty() { text } else { format!("{lead}({text})") };
-        let d_terms = vec![term(&turned(&along_text), &(turn * along)), term(&turned(&com_text), &(turn * com))];
-        lines.push(Line {
-            terms: d_terms,
-            ..here.line(Quantity::D, link.d.to_vec(), &whole(format!("{along_text} + {com_text}")))
-        });
-        let no_lever = lever_text.is_empty() || (last && lever.norm() == 0.0);
-        let r_formula =
-            if no_lever { format!("-{}", turned(&com_text)) } else { whole(format!("{lever_text} - {com_text}")) };
-        let lever_text = if no_lever { "the way to the next joint".to_owned() } else { turned(&lever_text) };
-        let r_terms =
-            vec![term(&lever_text, &(turn * lever)), term(&format!("-{}", turned(&com_text)), &(-(turn * com)))];
-        lines.push(Line { terms: r_terms, ..here.line(Quantity::R, link.r.to_vec(), &r_formula) });
-        let left = turned(&if standard { format!("Rx(α{i})") } else { String::new() });
-        let right = match left.trim_end() {
-            left if left.contains(' ') => "(…)ᵀ".to_owned(),
-            "" => String::new(),
-            left => format!("{left}ᵀ"),
-        };
-        let about = if row.link.has_first_moment() { "the origin" } else { "com" };
-        let formula = format!("{} I {right}, I of the file, about {about}", left.trim_end());
-        let inertia = symmetric(&Matrix3::from(link.inertia).transpose());
-        lines.push(here.line(Quantity::Inertia, inertia, formula.trim_start()));
-        lines
-    }
-
-    fn rotation_line(&self, here: &Here<'_>, orientations: &[Matrix3<f64>]) -> Line {
-        let (i, p) = (here.i, here.i - 1);
-        let standard = self.robot.convention == Convention::Standard;
-        let twist = match (standard, i) {
-            (true, 1) => String::new(),
-            (true, _) => format!("Rx(α{p}) "),
-            (false, _) => format!("Rx(α{i}) "),
-        };
-        let before = if p == 0 { String::new() } else { self.lead(p) };
-        let own = if self.axes == Axes::Joint { String::new() } else { format!("Rz(θ{i})") };
-        let formula = format!("{before}{twist}{own}");
-        let formula = if formula.is_empty() { "1" } else { formula.trim() };
-        match self.axes {
-            Axes::Base => here.line(Quantity::Orientation, rows(&orientations[p]), formula),
-            _ => here.line(Quantity::Rotation, here.link.rotation.concat(), formula),
-        }
-    }
-
-    /// The matrix from axes fixed to a link into these, as it is written before a vector.
-    fn lead(&self, i: usize) -> String {
-        match self.axes {
-            Axes::Link => String::new(),
-            Axes::Joint => format!("Rz(θ{i}) "),
-            Axes::Base => format!("A{i} "),
         }
     }
 
@@ -374,7 +278,7 @@ impl Formulas<'_> {
 }
 
 impl Here<'_> {
-    fn line(&self, quantity: Quantity, values: Vec<f64>, formula: &str) -> Line {
+    pub(super) fn line(&self, quantity: Quantity, values: Vec<f64>, formula: &str) -> Line {
         let (joint, kind, formula) = (self.i, self.kind, formula.to_owned());
         Line { joint, kind, quantity, values, formula, terms: Vec::new(), inputs: Vec::new() }
     }
@@ -404,17 +308,11 @@ fn turned_back(i: usize, text: &str) -> String {
     if text.contains(' ') { format!("R{i}ᵀ ({text})") } else { format!("R{i}ᵀ {text}") }
 }
 
-/// A number in six digits.
-fn short(value: f64) -> String {
-    let value: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    value.to_string()
-}
-
-fn term(text: &str, value: &V) -> Term {
+pub(super) fn term(text: &str, value: &V) -> Term {
     Term { text: text.to_owned(), values: list(value), slips: Vec::new() }
 }
 
-fn scalar(text: &str, value: f64) -> Term {
+pub(super) fn scalar(text: &str, value: f64) -> Term {
     Term { text: text.to_owned(), values: vec![value], slips: Vec::new() }
 }
 
@@ -422,12 +320,8 @@ fn input(symbol: String, values: &[f64], unit: &'static str) -> Input {
     Input { symbol, values: values.to_vec(), unit }
 }
 
-fn list(value: &V) -> Vec<f64> {
+pub(super) fn list(value: &V) -> Vec<f64> {
     value.iter().copied().collect()
-}
-
-fn rows(matrix: &Matrix3<f64>) -> Vec<f64> {
-    matrix.transpose().iter().copied().collect()
 }
 
 /// Rz of an angle.

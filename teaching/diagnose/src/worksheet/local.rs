@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::Line;
+use super::{Line, Term};
 
 /// A way to another value on a line: its description, and all components by it; `None` for components that it does not
 /// describe.
@@ -13,16 +13,34 @@ pub(super) struct Way {
 
 /// All ways, those that explain a whole line first. `component` is the one that differs.
 pub(super) fn ways(line: &Line, component: usize) -> Vec<Way> {
+    let own = line.values[component];
+    let mut ways = of_all_components(line);
+    ways.extend(of_one_component(line, component).into_iter().map(|(says, value)| {
+        let mut values = vec![None; line.values.len()];
+        values[component] = Some(value);
+        Way { says, values }
+    }));
+    // what changes nothing explains nothing
+    ways.retain(|way| way.values[component].is_some_and(|value| (value - own).abs() > 1e-12 * own.abs()));
+    ways
+}
+
+/// The terms of a line, if several of them are not zero.
+fn several(line: &Line) -> impl Iterator<Item = &Term> {
+    let are_several = line.terms.iter().filter(|term| super::norm(&term.values) > 0.0).count() > 1;
+    line.terms.iter().filter(move |_| are_several)
+}
+
+fn of_all_components(line: &Line) -> Vec<Way> {
     let ours = &line.values;
     let mut ways = Vec::new();
     let mut whole =
         |says: String, values: Vec<f64>| ways.push(Way { says, values: values.into_iter().map(Some).collect() });
     let with = |change: &[f64], times: f64| ours.iter().zip(change).map(|(x, y)| x + times * y).collect::<Vec<_>>();
-    let several = line.terms.iter().filter(|term| super::norm(&term.values) > 0.0).count() > 1;
     for term in line.terms.iter().filter(|_| line.terms.len() > 1) {
         whole(format!("the term {} is left out", term.text), with(&term.values, -1.0));
     }
-    for term in line.terms.iter().filter(|_| several) {
+    for term in several(line) {
         whole(format!("the term {} has the other sign", term.text), with(&term.values, -2.0));
     }
     for term in &line.terms {
@@ -31,13 +49,12 @@ pub(super) fn ways(line: &Line, component: usize) -> Vec<Way> {
             whole(says.clone(), with(&change, 1.0));
         }
     }
-    for term in line.terms.iter().filter(|_| several) {
+    for term in several(line) {
         whole(format!("the term {} is counted twice", term.text), with(&term.values, 1.0));
     }
     if ours.len() > 1 {
         whole("all signs are reversed".to_owned(), ours.iter().map(|x| -x).collect());
     }
-    let names = line.quantity.components();
     if let [x, y, z] = ours[..] {
         for (order, values) in [("y, x, z", [y, x, z]), ("x, z, y", [x, z, y]), ("z, y, x", [z, y, x])] {
             whole(format!("two components are exchanged: {order}"), values.to_vec());
@@ -57,33 +74,30 @@ pub(super) fn ways(line: &Line, component: usize) -> Vec<Way> {
             ours.iter().map(|x| x * PI / 180.0).collect(),
         );
     }
-    // of one component alone
-    let mut alone = |says: String, value: f64| {
-        let mut values = vec![None; ours.len()];
-        values[component] = Some(value);
-        ways.push(Way { says, values });
-    };
-    let own = ours[component];
-    alone("the sign is reversed".to_owned(), -own);
+    ways
+}
+
+fn of_one_component(line: &Line, component: usize) -> Vec<(String, f64)> {
+    let (ours, own) = (&line.values, line.values[component]);
+    let names = line.quantity.components();
+    let mut ways = vec![("the sign is reversed".to_owned(), -own)];
     for (other, value) in ours.iter().enumerate().filter(|(other, value)| *other != component && **value != 0.0) {
-        alone(format!("this is component {}", names[other]), *value);
-        alone(format!("this is component {} with the other sign", names[other]), -*value);
+        ways.push((format!("this is component {}", names[other]), *value));
+        ways.push((format!("this is component {} with the other sign", names[other]), -*value));
     }
     for (says, factor) in
         [("ten times as large", 10.0), ("a hundred times as large", 100.0), ("a thousand times as large", 1e3)]
     {
-        alone(format!("it is {says}: check the unit and the decimal point"), own * factor);
+        ways.push((format!("it is {says}: check the unit and the decimal point"), own * factor));
         let small = says.replace("as large", "smaller");
-        alone(format!("it is {small}: check the unit and the decimal point"), own / factor);
+        ways.push((format!("it is {small}: check the unit and the decimal point"), own / factor));
     }
-    alone("it is twice as large".to_owned(), 2.0 * own);
-    alone("it is half as large".to_owned(), 0.5 * own);
-    for term in line.terms.iter().filter(|_| several) {
+    ways.push(("it is twice as large".to_owned(), 2.0 * own));
+    ways.push(("it is half as large".to_owned(), 0.5 * own));
+    for term in several(line) {
         let value = term.values[component];
-        alone(format!("in this component the term {} is left out", term.text), own - value);
-        alone(format!("in this component the term {} has the other sign", term.text), own - 2.0 * value);
+        ways.push((format!("in this component the term {} is left out", term.text), own - value));
+        ways.push((format!("in this component the term {} has the other sign", term.text), own - 2.0 * value));
     }
-    // what changes nothing explains nothing
-    ways.retain(|way| way.values[component].is_some_and(|value| (value - own).abs() > 1e-12 * own.abs()));
     ways
 }

@@ -6,6 +6,7 @@
 mod comparison;
 mod followed;
 mod formulas;
+mod given;
 mod local;
 mod other_axes;
 mod quantity;

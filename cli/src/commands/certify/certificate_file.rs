@@ -1,4 +1,4 @@
-//! `rne certify --check`: a certificate in a file, compared with that of now.
+//! The file of a certificate: it is written, or it is compared with the certificate of now.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -7,26 +7,67 @@ use std::path::Path;
 use rne_certify::certificate::Certificate;
 use rne_certify::sha256;
 
-use crate::files::output_file::{self, Existing};
+use crate::commands::certify::Arguments;
+use crate::files::output_file::{self, Existing, is_standard_output};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TITLE, TYPED};
 
+/// The certificate on standard output or in a file, or the check of a file.
+pub(super) fn written(arguments: &Arguments, certificate: &Certificate) -> Result<Outcome, Failure> {
+    let text = if arguments.json {
+        serde_json::to_string_pretty(certificate).map_err(Failure::input)? + "\n"
+    } else {
+        certificate.page()
+    };
+    if let Some(file) = &arguments.check {
+        if matches!(output_file::existing(file), Existing::Text(found) if !is_ours(&found)) {
+            return Err(input_error!("{} is no certificate of rne", file.display()));
+        }
+        return check(file, &text, certificate);
+    }
+    let Some(out) = arguments.output.as_deref().filter(|out| !is_standard_output(out)) else {
+        return Ok(Outcome::text(text));
+    };
+    match output_file::existing(out) {
+        Existing::Text(found) if !is_ours(&found) && !arguments.force => Err(usage_error!(
+            "{} is no certificate of rne and is not changed; {TYPED}--force{TYPED:#} overwrites it",
+            out.display()
+        )),
+        Existing::Other if !arguments.force => {
+            Err(usage_error!("{} is no certificate of rne and is not changed", out.display()))
+        }
+        Existing::Folder => Err(usage_error!("{} is a folder; name a file", out.display())),
+        Existing::Special => Err(usage_error!("{} is not a regular file", out.display())),
+        Existing::Unreadable(error) => Err(output_file::unreadable(out, &error)),
+        _ => {
+            let remark = output_file::write_all(&[(out, text)])?;
+            let other = code_beside(out, certificate).err().map(|failure| failure.sentence());
+            let note = other.map_or_else(String::new, |other| format!("{TITLE}note{TITLE:#}: {other}\n"));
+            Ok(Outcome::remark(remark + &note))
+        }
+    }
+}
+
+fn is_ours(text: &str) -> bool {
+    text.trim().is_empty()
+        || text.starts_with("# Certificate of `")
+        || text.starts_with("{\n  \"command\": \"rne certify")
+}
+
 /// Compares a file with the certificate of now, line by line, and then the code beside it with its SHA-256.
-pub(super) fn check(file: &Path, text: &str, certificate: &Certificate) -> Result<Outcome, Failure> {
+fn check(file: &Path, text: &str, certificate: &Certificate) -> Result<Outcome, Failure> {
     let shown = file.display();
     let found = match output_file::existing(file) {
         Existing::Text(found) if found.trim().is_empty() => {
-            return Err(Failure::input(format_args!(
-                "{shown} is empty; {TYPED}-o{TYPED:#} writes a certificate there"
-            )));
+            return Err(input_error!("{shown} is empty; {TYPED}-o{TYPED:#} writes a certificate there"));
         }
         Existing::Text(found) => found,
         Existing::Nothing => {
-            return Err(Failure::input(format_args!(
+            return Err(input_error!(
                 "there is no file {shown}; {TYPED}-o {shown}{TYPED:#} in the place of {TYPED}--check{TYPED:#} writes it"
-            )));
+            ));
         }
-        _ => return Err(Failure::input(format_args!("{shown} is no certificate of rne"))),
+        _ => return Err(input_error!("{shown} is no certificate of rne")),
     };
     if found == text {
         let code = code_beside(file, certificate)?;
@@ -54,14 +95,14 @@ pub(super) fn check(file: &Path, text: &str, certificate: &Certificate) -> Resul
         }
         _ => String::new(),
     };
-    Err(Failure::input(format_args!(
+    Err(input_error!(
         "{made_by}{shown} is not what rne would write now; {count} lines differ:\n{}",
         differences.join("\n")
-    )))
+    ))
 }
 
 /// Compares the files of the code beside a file with the hashes of the certificate; says what was compared.
-pub(super) fn code_beside(beside: &Path, certificate: &Certificate) -> Result<String, Failure> {
+fn code_beside(beside: &Path, certificate: &Certificate) -> Result<String, Failure> {
     let mut remark = String::new();
     let is_code = |name: &str| [".c", ".h", ".rs"].iter().any(|end| name.ends_with(end));
     for (name, expected) in certificate.hashes.iter().filter(|(name, _)| is_code(name)) {
@@ -73,12 +114,12 @@ pub(super) fn code_beside(beside: &Path, certificate: &Certificate) -> Result<St
         };
         let hash = sha256(&bytes);
         if hash != *expected {
-            return Err(Failure::input(format_args!(
+            return Err(input_error!(
                 "{shown} is not the code of the certificate: its SHA-256 is {hash} instead of {expected}. This \
                  command writes the code; with {TYPED}--check{TYPED:#} in the place of {TYPED}-o{TYPED:#}, it says \
                  what differs:\n  {}",
                 certificate.emit
-            )));
+            ));
         }
         let _ = writeln!(remark, "{GOOD}up to date:{GOOD:#} {shown}");
     }
