@@ -139,36 +139,24 @@ impl Entries {
     }
 
     fn entry(&mut self, input: ParseStream<'_>) -> syn::Result<()> {
-        if !input.peek(Ident::peek_any) {
-            let meant = input.fork().parse::<LitStr>();
-            let meant = meant.map(|file| format!(": write `path = {:?}`", file.value())).unwrap_or_default();
-            return Err(input.error(format!("a key is missing here{meant}; {}", keys())));
-        }
-        let key = Ident::parse_any(input)?;
+        let key = key(input)?;
         let name = key.to_string();
-        if name == "urdf" {
-            return Err(syn::Error::new(key.span(), of_urdf(input)));
-        }
-        if !KEYS.contains(&name.as_str()) {
-            let meant = did_you_mean(&name, KEYS).map(|meant| format!("; did you mean `{meant}`?"));
-            let message = format!("`{name}` is not a key of `#[robot(…)]`; {}", keys());
-            return Err(syn::Error::new(key.span(), message + &meant.unwrap_or_default()));
-        }
+        let mistake = |message: String| Err(syn::Error::new(key.span(), message));
         if self.seen.contains(&name) {
-            return Err(syn::Error::new(key.span(), format!("`{name}` is given twice")));
+            return mistake(format!("`{name}` is given twice"));
         }
         self.seen.push(name.clone());
+        let has_value = input.peek(Token![=]);
         if matches!(name.as_str(), "rotors" | "inline" | "tests" | "inspect" | "allow_lints") {
             match name.as_str() {
                 "tests" => self.tests = Some(key.span()),
                 "inspect" => self.inspect = Some(key.span()),
                 _ => {}
             }
-            let has_value = input.peek(Token![=]);
             let message = format!("`{name}` takes no value: write `{name}` alone to switch it on, or leave it out");
-            return if has_value { Err(syn::Error::new(key.span(), message)) } else { Ok(()) };
+            return if has_value { mistake(message) } else { Ok(()) };
         }
-        if !input.peek(Token![=]) {
+        if !has_value {
             let example = match name.as_str() {
                 "path" => "\"robots/arm.yaml\"",
                 "yaml" => "\"…\"",
@@ -177,35 +165,55 @@ impl Entries {
                 "max_ops" => "500",
                 _ => "::rne",
             };
-            return Err(syn::Error::new(key.span(), format!("`{name}` needs a value: `{name} = {example}`")));
+            return mistake(format!("`{name}` needs a value: `{name} = {example}`"));
         }
         input.parse::<Token![=]>()?;
         match name.as_str() {
-            "path" | "yaml" | "builtin" => {
-                let text = string(input, &name)?;
-                if self.source.is_some() {
-                    return Err(syn::Error::new(
-                        key.span(),
-                        "give only one of `path` (a robot file), `yaml` (the text of a robot file) and `builtin` (a \
-                         shipped robot)",
-                    ));
-                }
-                self.source = Some(match name.as_str() {
-                    "path" => Source::Path(text),
-                    "yaml" => Source::Yaml(text),
-                    _ => Source::Builtin(text),
-                });
-            }
             "form" => {
                 let text = string(input, &name)?;
                 self.form =
                     Some(text.value().parse().map_err(|unknown| syn::Error::new(text.span(), format!("{unknown}")))?);
             }
             "max_ops" => self.max_ops = Some(limit(input)?),
-            _ => self.krate = Some(path(input)?),
+            "crate" => self.krate = Some(path(input)?),
+            of_source => {
+                let text = string(input, of_source)?;
+                if self.source.is_some() {
+                    return mistake(
+                        "give only one of `path` (a robot file), `yaml` (the text of a robot file) and `builtin` (a \
+                         shipped robot)"
+                            .to_owned(),
+                    );
+                }
+                self.source = Some(match of_source {
+                    "path" => Source::Path(text),
+                    "yaml" => Source::Yaml(text),
+                    _ => Source::Builtin(text),
+                });
+            }
         }
         Ok(())
     }
+}
+
+/// Reads the key of an entry.
+fn key(input: ParseStream<'_>) -> syn::Result<Ident> {
+    if !input.peek(Ident::peek_any) {
+        let meant = input.fork().parse::<LitStr>();
+        let meant = meant.map(|file| format!(": write `path = {:?}`", file.value())).unwrap_or_default();
+        return Err(input.error(format!("a key is missing here{meant}; {}", keys())));
+    }
+    let key = Ident::parse_any(input)?;
+    let name = key.to_string();
+    if name == "urdf" {
+        return Err(syn::Error::new(key.span(), of_urdf(input)));
+    }
+    if !KEYS.contains(&name.as_str()) {
+        let meant = did_you_mean(&name, KEYS).map(|meant| format!("; did you mean `{meant}`?"));
+        let message = format!("`{name}` is not a key of `#[robot(…)]`; {}", keys());
+        return Err(syn::Error::new(key.span(), message + &meant.unwrap_or_default()));
+    }
+    Ok(key)
 }
 
 /// The advice for a URDF, with its name where that is given.

@@ -36,14 +36,7 @@ pub(crate) fn batch(function: Function, input: TokenStream) -> TokenStream {
     let attribute = Attribute::parse(&item, &mut said);
     let parameters = Parameters::of(&item, &mut said);
     let loaded = attribute.source.as_ref().map(|source| load(source, &parameters, &mut said)).unwrap_or_default();
-    let mut refused = Errors::default();
-    if let Some(name) = parameters.names().first() {
-        let message = format!(
-            "a batch needs a robot whose numbers are all known at compile time, but `{name}` is a run-time parameter"
-        );
-        refused.at(&item.ident, message);
-    }
-    let refused = refused.into_tokens();
+    let refused = refusal(&item, &parameters);
     // the sizes of a robot are known where it is only refused
     let robot = loaded.robot.map(|robot| rne_model::Robot { rotors: attribute.rotors, ..robot });
     let sizes = robot.as_ref().map_or_else(Sizes::unknown, |robot| Sizes::of(robot.dof(), robot.tip_count()));
@@ -88,6 +81,15 @@ pub(crate) fn batch(function: Function, input: TokenStream) -> TokenStream {
         }
         #tests
     }
+}
+
+/// The error for a robot with run-time parameters.
+fn refusal(item: &DeriveInput, parameters: &Parameters) -> Option<TokenStream> {
+    let name = parameters.names().into_iter().next()?;
+    let message = format!(
+        "a batch needs a robot whose numbers are all known at compile time, but `{name}` is a run-time parameter"
+    );
+    Some(syn::Error::new_spanned(&item.ident, message).to_compile_error())
 }
 
 /// The name of the trait and the derive.
@@ -192,22 +194,66 @@ fn inputs(name: &'static str, length: usize, krate: &syn::Path) -> (Vec<TokenStr
     (elements(&of, length), vec![quote!(#list::vector(#shown, #count))])
 }
 
+/// The arrays that the code reads.
+#[derive(Default)]
+struct Inputs {
+    /// The arrays of numbers.
+    numbers: Vec<TokenStream>,
+    /// The list of arguments.
+    arguments: Vec<TokenStream>,
+    /// Statements that take the arrays apart for the code.
+    taken: Vec<TokenStream>,
+    /// How many of the arrays must be given.
+    required: usize,
+}
+
+impl Inputs {
+    fn of(program: &Program, krate: &syn::Path) -> Self {
+        let mut all = Self::default();
+        for array in program.arrays_without_parameters() {
+            let length = array.elements.len();
+            let first = all.numbers.len();
+            let places = (first..first + length).map(Literal::usize_unsuffixed);
+            let name = format_ident!("{}", array.name);
+            all.taken.push(quote!(let #name = &[#(inputs[#places]),*];));
+            let (numbers, arguments) = inputs(array.name, length, krate);
+            all.numbers.extend(numbers);
+            all.arguments.extend(arguments);
+            if array.name != "wrenches" {
+                all.required = all.numbers.len();
+            }
+        }
+        all
+    }
+}
+
+/// The arrays of the results as an expression, and the statement before it.
+fn elements(answers: &[Answer]) -> (Option<TokenStream>, TokenStream) {
+    if let [Answer(name, lengths)] = answers
+        && lengths.len() == 1
+    {
+        return (None, format_ident!("{name}").into_token_stream());
+    }
+    let names = answers.iter().map(|Answer(name, _)| format_ident!("{name}")).collect::<Vec<_>>();
+    let parts = answers.iter().zip(&names).map(|(Answer(_, lengths), name)| {
+        let arrays = if lengths.len() == 1 { quote!(#name) } else { quote!(#name.as_flattened_mut()) };
+        // borrowed, for arguments may live differently long
+        quote!(::core::iter::Iterator::map(#arrays.iter_mut(), |numbers| &mut **numbers))
+    });
+    let parts = parts.reduce(|all, part| quote!(::core::iter::Iterator::chain(#all, #part)));
+    let elements = quote!({
+        let mut all = #parts;
+        ::core::array::from_fn(|_| ::core::iter::Iterator::next(&mut all).unwrap_or_default())
+    });
+    (Some(quote!(let (#(mut #names,)*) = (#(#names,)*);)), elements)
+}
+
 /// The call of the loop, with the code.
 fn body(program: &Program, krate: &syn::Path, answers: &[Answer]) -> TokenStream {
     let scalar = quote!(#krate::Scalar);
     let body = rne_emit::Body::new(program, &scalar);
     let body = if program.form == Form::SevenSteps { body } else { body.all_fused() };
-    let (mut numbers, mut arguments, mut taken, mut required) = (Vec::new(), Vec::new(), Vec::new(), 0);
-    for array in program.arrays_without_parameters() {
-        let length = array.elements.len();
-        let places = (numbers.len()..numbers.len() + length).map(Literal::usize_unsuffixed);
-        let name = format_ident!("{}", array.name);
-        taken.push(quote!(let #name = &[#(inputs[#places]),*];));
-        let (of_array, of_list) = inputs(array.name, length, krate);
-        numbers.extend(of_array);
-        arguments.extend(of_list);
-        required = if array.name == "wrenches" { required } else { numbers.len() };
-    }
+    let Inputs { numbers, arguments, taken, required } = Inputs::of(program, krate);
     let is_whole = answers.iter().all(|Answer(_, lengths)| lengths.len() == 1);
     let distinct = body.distinct();
     // what is wanted in any case is written, a zero too
@@ -228,23 +274,7 @@ fn body(program: &Program, krate: &syn::Path, answers: &[Answer]) -> TokenStream
         [rows, columns] => quote!(#krate::batch::Argument::matrix(#name, #rows, #columns)),
         lengths => quote!(#krate::batch::Argument::vector(#name, #(#lengths)*)),
     });
-    let (mutable, elements) = match answers {
-        [Answer(name, lengths)] if lengths.len() == 1 => (None, format_ident!("{name}").into_token_stream()),
-        _ => {
-            let names = answers.iter().map(|Answer(name, _)| format_ident!("{name}")).collect::<Vec<_>>();
-            let parts = answers.iter().zip(&names).map(|(Answer(_, lengths), name)| {
-                let arrays = if lengths.len() == 1 { quote!(#name) } else { quote!(#name.as_flattened_mut()) };
-                // borrowed, for arguments may live differently long
-                quote!(::core::iter::Iterator::map(#arrays.iter_mut(), |numbers| &mut **numbers))
-            });
-            let parts = parts.reduce(|all, part| quote!(::core::iter::Iterator::chain(#all, #part)));
-            let elements = quote!({
-                let mut all = #parts;
-                ::core::array::from_fn(|_| ::core::iter::Iterator::next(&mut all).unwrap_or_default())
-            });
-            (Some(quote!(let (#(mut #names,)*) = (#(#names,)*);)), elements)
-        }
-    };
+    let (mutable, elements) = elements(answers);
     let (angles, statements) = (body.angles(), body.beyond_angles(&outputs));
     let of_angles = &taken[..1]; // positions come first
     quote! {

@@ -37,17 +37,8 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
         let mistake = report.render(false);
         errors.at_span(source.span(), format!("`{}` gives two joints one identifier\n\n{mistake}\n", report.name));
     }
-    let compiled = loaded.robot.and_then(|robot| {
-        let robot = Robot { rotors: attribute.rotors, ..robot };
-        let span = attribute.source.as_ref().map_or_else(Span::call_site, Source::span);
-        let compiler = compiler(&robot, capability, attribute.form, loaded.plan.as_ref(), span, &mut errors)?;
-        if let Some(error) = without_base(&robot, capability).filter(|_| !attribute.allow_lints) {
-            errors.at_span(span, error);
-            return None;
-        }
-        let programs = programs(&robot, capability, attribute.form, &compiler, span, &mut errors)?;
-        Some((robot, programs))
-    });
+    let compiled =
+        loaded.robot.and_then(|robot| compiled(robot, capability, &attribute, loaded.plan.as_ref(), &mut errors));
     let sizes = compiled.as_ref().map(|(robot, _)| rne_codegen::sizes_of(robot));
     let target = Target::new(&item, &attribute, sizes);
     let code = match &compiled {
@@ -88,6 +79,27 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
     let watched = loaded.watched;
     let errors = errors.into_tokens();
     quote!(#errors #warnings #misnamed #watched #plan #code)
+}
+
+/// A robot and the programs of a capability; `None`, and an error in `errors`, where they cannot be compiled.
+fn compiled(
+    robot: Robot,
+    capability: Capability,
+    attribute: &Attribute,
+    plan: Option<&RobotFile>,
+    errors: &mut Errors,
+) -> Option<(Robot, Vec<Program>)> {
+    let robot = Robot { rotors: attribute.rotors, ..robot };
+    let span = attribute.source.as_ref().map_or_else(Span::call_site, Source::span);
+    let compiler = compiler(&robot, capability, attribute.form, plan, span, errors)?;
+    if let Some(error) = without_base(&robot, capability).filter(|_| !attribute.allow_lints) {
+        errors.at_span(span, error);
+        return None;
+    }
+    let programs: Result<Vec<_>, _> =
+        capability.functions().map(|function| compiler.compile(function, attribute.form)).collect();
+    let programs = programs.map_err(|error| errors.at_span(span, not_compiled(&robot.name, &error))).ok()?;
+    Some((robot, programs))
 }
 
 /// The derive of `FrameKinematics`: the functions of the tip that can be taken at a frame, at each frame. No plan has a
@@ -306,18 +318,6 @@ fn without_base(robot: &Robot, capability: Capability) -> Option<String> {
     let refused = capability.functions().find_map(|function| function.check_base(robot).err());
     let meant = if robot.floating_base.is_none() { "a base that has no mass" } else { "a robot with a floating base" };
     refused.map(|error| format!("{error}; or add `allow_lints` to the attribute, for {meant}"))
-}
-
-fn programs(
-    robot: &Robot,
-    capability: Capability,
-    form: Form,
-    compiler: &Compiler<'_>,
-    span: Span,
-    errors: &mut Errors,
-) -> Option<Vec<Program>> {
-    let programs: Result<Vec<_>, _> = capability.functions().map(|function| compiler.compile(function, form)).collect();
-    programs.map_err(|error| errors.at_span(span, not_compiled(&robot.name, &error))).ok()
 }
 
 impl Source {

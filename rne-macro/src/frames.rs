@@ -10,6 +10,12 @@ use crate::error::{Errors, not_compiled};
 use crate::implementation::Target;
 use crate::parameters::Parameters;
 
+/// The documentation of the function `frame`.
+const ABOUT_FRAME: &str = "\
+    The place of a frame, for `jacobian_of` and the other methods of `FrameKinematics`. The name is that of a frame in \
+    the list `frames` of the robot file, or that of a joint for its link frame. In a constant, `{ Self::frame(\"NAME\") }`, an unknown name is a compile error.\n\n# Panics\n\n\
+    Where the robot file has no frame of this name.";
+
 impl Target<'_> {
     /// Everything for the frames of a robot; `None`, and an error in `errors`, where a program cannot be compiled.
     pub(crate) fn frames(
@@ -29,17 +35,7 @@ impl Target<'_> {
             let programs: Result<Vec<Program>, _> =
                 Function::of_frames().map(|function| compiler.compile(function, form)).collect();
             let programs = programs.map_err(|error| errors.at_span(span, not_compiled(&robot.name, &error))).ok()?;
-            let (index, operations) = (Literal::usize_unsuffixed(index), description::operations(&programs));
-            let methods = programs.iter().map(|program| self.method(&robot, program, parameters));
-            implementations.extend(quote! {
-                #[doc = #operations]
-                #[automatically_derived]
-                #[allow(clippy::approx_constant)]
-                #[allow(clippy::inline_always)]
-                impl #impl_generics #krate::AtFrame<#dof, #index> for #ident #type_generics #where_clause {
-                    #(#methods)*
-                }
-            });
+            implementations.extend(self.at_frame(index, &robot, &programs, parameters));
         }
         let names: Vec<&str> = robot.frame_ids().map(|frame| robot.frame_name(frame)).collect();
         let count = robot.frames.len();
@@ -47,16 +43,9 @@ impl Target<'_> {
             let index = Literal::usize_unsuffixed(index);
             quote!(<Self as #krate::AtFrame<#dof, #index>>::pose_at_frame(self, q))
         });
-        let number = self.number();
-        let (listed, described) = (&names[..count], description::values(&names[..count]));
+        let (number, listed, described) = (self.number(), &names[..count], description::values(&names[..count]));
         let unknown = format!(" {}: {}", robot.name, robot.known_frames());
-        let (about, about_names) = (
-            "The place of a frame, for `jacobian_of` and the other methods of `FrameKinematics`. The name is that of a \
-             frame in the list `frames` of the robot file, or that of a joint for its link frame. In a constant, \
-             `{ Self::frame(\"NAME\") }`, an unknown name is a compile error.\n\n# Panics\n\n\
-             Where the robot file has no frame of this name.",
-            format!("Names of the list `frames`, in the order of `frame_poses`.{described}"),
-        );
+        let about_names = format!("Names of the list `frames`, in the order of `frame_poses`.{described}");
         let (vis, length) = (self.visibility(), Literal::usize_unsuffixed(count));
         let (str, usize) = (quote!(::core::primitive::str), quote!(::core::primitive::usize));
         Some(quote! {
@@ -77,7 +66,7 @@ impl Target<'_> {
             impl #impl_generics #ident #type_generics #where_clause {
                 #[doc = #about_names]
                 #vis const FRAME_NAMES: [&'static #str; #length] = [#(#listed),*];
-                #[doc = #about]
+                #[doc = #ABOUT_FRAME]
                 #[must_use]
                 #vis const fn frame(name: &#str) -> #usize {
                     let names = [#(#names),*];
@@ -88,6 +77,24 @@ impl Target<'_> {
                 }
             }
         })
+    }
+
+    /// The implementation of `AtFrame` for one frame.
+    fn at_frame(&self, index: usize, robot: &Robot, programs: &[Program], parameters: &Parameters) -> TokenStream {
+        let (impl_generics, type_generics, where_clause) = self.item.generics.split_for_impl();
+        let (ident, krate) = (&self.item.ident, self.krate);
+        let [dof, index] = [robot.dof(), index].map(Literal::usize_unsuffixed);
+        let operations = description::operations(programs);
+        let methods = programs.iter().map(|program| self.method(robot, program, parameters));
+        quote! {
+            #[doc = #operations]
+            #[automatically_derived]
+            #[allow(clippy::approx_constant)]
+            #[allow(clippy::inline_always)]
+            impl #impl_generics #krate::AtFrame<#dof, #index> for #ident #type_generics #where_clause {
+                #(#methods)*
+            }
+        }
     }
 
     /// A stub for a robot that is not known, as [`Target::stub`]. It has no list of frames: with an unknown length of

@@ -6,6 +6,7 @@
 
 mod attribute;
 mod batch;
+mod constants;
 mod description;
 mod error;
 mod expand;
@@ -17,6 +18,7 @@ mod location;
 mod motors;
 mod own_tests;
 mod parameters;
+mod signature;
 #[cfg(test)]
 mod tests;
 mod tips;

@@ -4,8 +4,9 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 use rne_model::Robot;
 
+use crate::constants::number;
 use crate::description;
-use crate::implementation::{Target, number};
+use crate::implementation::Target;
 
 impl Target<'_> {
     /// The functions between motors and joints; nothing for a robot without the list.

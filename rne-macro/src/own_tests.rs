@@ -8,8 +8,8 @@ use syn::ext::IdentExt;
 use syn::{Data, DeriveInput, Path, PathSegment};
 
 use crate::attribute::Attribute;
+use crate::constants::number;
 use crate::error::{Errors, describe};
-use crate::implementation::number;
 use crate::location::RobotFile;
 use crate::parameters::Parameters;
 
@@ -86,26 +86,7 @@ pub(crate) fn module(
     let module = format_ident!("{}_{}_tests", snake(&ident.unraw().to_string()), snake(trait_name));
     let (import, krate) = seen_from_inside(&attribute.krate);
     let (rotors, seven_steps) = (attribute.rotors, attribute.form == Form::SevenSteps);
-    let functions = functions.map(|function| {
-        let (name, method) = (function.name(), format_ident!("{}", function.name()));
-        let (test, capability) = (format_ident!("{name}_is_that_of_the_runtime"), function.capability().name());
-        let capability = Ident::new(capability, Span::call_site());
-        let arguments = function.arguments().iter().map(|argument| {
-            let name = format_ident!("{}", argument.name());
-            match argument.shape() {
-                Shape::Array(..) => quote!(#krate::testing::array(given.#name)),
-                Shape::Number | Shape::Record(..) => quote!(given.#name),
-            }
-        });
-        quote! {
-            #[::core::prelude::v1::test]
-            fn #test() {
-                #krate::testing::is_that_of_the_runtime(&ROBOT_FILE, #name, |given| {
-                    #krate::testing::numbers(#krate::#capability::#method(&super::#ident {}, #(#arguments),*))
-                });
-            }
-        }
-    });
+    let functions = functions.map(|function| is_that_of_the_runtime(function, ident, &krate));
     let tests = tests.iter().map(|name| {
         let name = Ident::new(name, Span::call_site());
         quote! {
@@ -128,6 +109,28 @@ pub(crate) fn module(
                 #(#functions)*
                 #(#tests)*
             }
+        }
+    }
+}
+
+/// The test that compares a function of a type with the runtime.
+fn is_that_of_the_runtime(function: Function, ident: &Ident, krate: &Path) -> TokenStream {
+    let (name, method) = (function.name(), format_ident!("{}", function.name()));
+    let test = format_ident!("{name}_is_that_of_the_runtime");
+    let capability = format_ident!("{}", function.capability().name());
+    let arguments = function.arguments().iter().map(|argument| {
+        let name = format_ident!("{}", argument.name());
+        match argument.shape() {
+            Shape::Array(..) => quote!(#krate::testing::array(given.#name)),
+            Shape::Number | Shape::Record(..) => quote!(given.#name),
+        }
+    });
+    quote! {
+        #[::core::prelude::v1::test]
+        fn #test() {
+            #krate::testing::is_that_of_the_runtime(&ROBOT_FILE, #name, |given| {
+                #krate::testing::numbers(#krate::#capability::#method(&super::#ident {}, #(#arguments),*))
+            });
         }
     }
 }

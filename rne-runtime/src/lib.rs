@@ -23,10 +23,6 @@ mod capability;
 mod definition;
 #[cfg(all(feature = "arm", feature = "std"))]
 mod dyn_arm;
-#[cfg(all(feature = "arm", feature = "std"))]
-mod error;
-#[cfg(all(feature = "arm", feature = "std"))]
-mod evaluate;
 /// Steps and their derivatives of a robot with a floating base, with lists of joints: the Python package has robots
 /// of any number of joints.
 #[doc(hidden)]
@@ -36,8 +32,6 @@ pub mod floating_integrator_of_lists {
     pub use crate::steps::floating_runge_kutta::{Linear, Turning, derivatives};
     pub use crate::steps::moved;
 }
-#[cfg(all(feature = "arm", feature = "std"))]
-mod load;
 #[cfg(feature = "arm")]
 mod seven_steps;
 #[doc(hidden)]
@@ -58,12 +52,10 @@ pub use control::operational_space::{dynamically_consistent_inverse, operational
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use definition::base_parameters::{BaseParameter, BaseParameters, LinkParameter};
 #[cfg(all(feature = "arm", feature = "std"))]
-pub use dyn_arm::{DynArm, DynTrace};
-#[cfg(all(feature = "arm", feature = "std"))]
-pub use error::{LoadError, WrongJointCount, WrongLength};
-#[cfg(all(feature = "arm", feature = "std"))]
 #[doc(hidden)]
-pub use evaluate::Inputs;
+pub use dyn_arm::Inputs;
+#[cfg(all(feature = "arm", feature = "std"))]
+pub use dyn_arm::{DynArm, DynTrace, LoadError, WrongJointCount, WrongLength};
 pub use lanes::batch::{
     BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives,
     BatchMassMatrix, BatchScalar, LengthMismatch, VectorUnit,

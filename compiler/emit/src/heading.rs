@@ -40,10 +40,6 @@ impl Heading {
             Convention::Modified => "modified (proximal) Denavit-Hartenberg: Rx(alpha) Tx(a) Rz(theta) Tz(d)",
         };
         let [x, y, z] = robot.gravity;
-        let place = |what: &str, Transform { xyz, rpy }: &Transform| {
-            let ([x, y, z], [roll, pitch, yaw]) = (xyz, rpy.map(|turn| angle(&turn)));
-            format!("{what}: ({x}, {y}, {z}) m, roll pitch yaw ({roll}, {pitch}, {yaw}) rad")
-        };
         let rotors =
             if robot.has_rotors() { "\nwith its rotors: torques contain G² Jm q̈ of the motors" } else { "" };
         let mut frames = format!("{convention}\nacceleration of gravity in frame 0: ({x}, {y}, {z}) m/s²{rotors}");
@@ -56,52 +52,12 @@ impl Heading {
                 ends.push(place("tool, behind the last frame", &robot.tool));
             }
         } else {
-            for joint in &robot.joints {
-                let Some(FixedFrame { on, placement }) = joint.branch.filter(|it| !it.placement.is_identity()) else {
-                    continue;
-                };
-                let (row, on) = (one_line(&joint.name), carrier(robot, on));
-                let _ = write!(frames, "\n{}", place(&format!("row of {row}, in the link frame of {on}"), &placement));
-            }
-            let on = carrier(robot, robot.tip().on);
-            let _ = write!(frames, "\n{}", place(&format!("tool, in the link frame of {on}"), &robot.tool));
+            branches(&mut frames, robot);
         }
-        for (index, joint) in robot.joints.iter().enumerate() {
-            let Some(Coupling { follows, offset }) = &joint.coupling else { continue };
-            let terms = terms(follows);
-            let end = if *offset == 0.0 { String::new() } else { format!(" + {offset}").replace("+ -", "- ") };
-            let _ = write!(frames, "\n{} follows: q{} = {terms}{end}", one_line(&joint.name), index + 1);
-        }
+        couplings(&mut frames, robot);
         closed_loops(&mut frames, robot);
-        for Drive { name, turns, rotor } in &robot.drives {
-            let _ = write!(frames, "\nmotor {} turns with {}", one_line(name), terms(turns));
-            if let Some(Rotor { axis: [x, y, z], on, inertia }) = rotor {
-                let on = carrier(robot, *on);
-                let _ = write!(frames, "; its rotor on {on} turns about ({x}, {y}, {z}), inertia {inertia} kg m²");
-            }
-        }
-        for &tip in &robot.tips {
-            let Frame { name, fixed: FixedFrame { on, placement } } = &robot.frames[tip];
-            let _ = write!(
-                frames,
-                "\n{}",
-                place(&format!("tip {name}, in the link frame of {}", carrier(robot, *on)), placement)
-            );
-        }
-        for Body { name, fixed: FixedFrame { on, .. }, matter } in &robot.bodies.list {
-            let link = match on {
-                Some(_) => format!("a part of the link of {}", carrier(robot, *on)),
-                None => "on the base, without effect".to_owned(),
-            };
-            let _ = write!(frames, "\nbody {name}, {} kg: {link}", matter.mass);
-        }
-        if let Some(FloatingBase { name, link }) = &robot.floating_base {
-            let (name, mass) = (one_line(name), link.mass);
-            let _ = write!(
-                frames,
-                "\nbase {name}, {mass} kg: functions of a floating base let it move; all other functions hold it still"
-            );
-        }
+        drives(&mut frames, robot);
+        tips_and_bodies(&mut frames, robot);
         Self {
             title: inert::title(robot),
             source: fill(&format!("Source: {}", robot.source.trim_end()), 100, "", ""),
@@ -119,6 +75,72 @@ impl Heading {
     /// The line by which a generated file is known.
     pub(super) fn mark(robot: &Robot) -> String {
         format!("{GENERATED}`{}`; do not edit.", robot.name)
+    }
+}
+
+/// A placement in words.
+fn place(what: &str, Transform { xyz: [x, y, z], rpy }: &Transform) -> String {
+    let [roll, pitch, yaw] = rpy.map(|turn| angle(&turn));
+    format!("{what}: ({x}, {y}, {z}) m, roll pitch yaw ({roll}, {pitch}, {yaw}) rad")
+}
+
+/// A line for each row of a tree that does not begin at the link frame of its parent, and one for the tool.
+fn branches(frames: &mut String, robot: &Robot) {
+    for joint in &robot.joints {
+        let Some(FixedFrame { on, placement }) = joint.branch.filter(|it| !it.placement.is_identity()) else {
+            continue;
+        };
+        let (row, on) = (one_line(&joint.name), carrier(robot, on));
+        let _ = write!(frames, "\n{}", place(&format!("row of {row}, in the link frame of {on}"), &placement));
+    }
+    let on = carrier(robot, robot.tip().on);
+    let _ = write!(frames, "\n{}", place(&format!("tool, in the link frame of {on}"), &robot.tool));
+}
+
+/// A line for each joint that follows others.
+fn couplings(frames: &mut String, robot: &Robot) {
+    for (index, joint) in robot.joints.iter().enumerate() {
+        let Some(Coupling { follows, offset }) = &joint.coupling else { continue };
+        let terms = terms(follows);
+        let end = if *offset == 0.0 { String::new() } else { format!(" + {offset}").replace("+ -", "- ") };
+        let _ = write!(frames, "\n{} follows: q{} = {terms}{end}", one_line(&joint.name), index + 1);
+    }
+}
+
+/// A line for each motor that turns with several joints, or has a rotor of its own.
+fn drives(frames: &mut String, robot: &Robot) {
+    for Drive { name, turns, rotor } in &robot.drives {
+        let _ = write!(frames, "\nmotor {} turns with {}", one_line(name), terms(turns));
+        if let Some(Rotor { axis: [x, y, z], on, inertia }) = rotor {
+            let on = carrier(robot, *on);
+            let _ = write!(frames, "; its rotor on {on} turns about ({x}, {y}, {z}), inertia {inertia} kg m²");
+        }
+    }
+}
+
+/// A line for each named tip, for each body and for a floating base.
+fn tips_and_bodies(frames: &mut String, robot: &Robot) {
+    for &tip in &robot.tips {
+        let Frame { name, fixed: FixedFrame { on, placement } } = &robot.frames[tip];
+        let _ = write!(
+            frames,
+            "\n{}",
+            place(&format!("tip {name}, in the link frame of {}", carrier(robot, *on)), placement)
+        );
+    }
+    for Body { name, fixed: FixedFrame { on, .. }, matter } in &robot.bodies.list {
+        let link = match on {
+            Some(_) => format!("a part of the link of {}", carrier(robot, *on)),
+            None => "on the base, without effect".to_owned(),
+        };
+        let _ = write!(frames, "\nbody {name}, {} kg: {link}", matter.mass);
+    }
+    if let Some(FloatingBase { name, link }) = &robot.floating_base {
+        let (name, mass) = (one_line(name), link.mass);
+        let _ = write!(
+            frames,
+            "\nbase {name}, {mass} kg: functions of a floating base let it move; all other functions hold it still"
+        );
     }
 }
 

@@ -1,22 +1,26 @@
 //! Programs as a Rust file for people: it opens with the robot, its table, the operation counts and what each name is,
 //! and compiles by itself.
 
+mod function;
+mod piece;
+
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use rne_codegen::{ArgumentArray, Layout, Name, Program, Quantity, SineCosine};
+use rne_codegen::{Name, Program, Quantity};
 use rne_model::{JointIdentifier, Robot};
 
+use self::function::function;
+use self::piece::Piece;
 use super::annotated::Annotated;
 use super::evidence::{evidence, losses, refusals};
-use super::expression::line;
 use super::heading::Heading;
 use super::inert::{markdown, verbatim};
-use super::listing::{Line, Selection, listing};
 use super::parameters::{self, Parameter};
-use super::syntax::Syntax;
 use super::table::operations_table;
 use super::wrap::{WIDTH, fill};
+
+pub(super) use self::function::returned;
 
 /// A file that holds the given programs of one robot as functions, with the one trait that they need.
 #[must_use]
@@ -103,9 +107,6 @@ fn record_of_parameters(robot: &Robot) -> String {
          #[must_use]\n    pub fn of_file() -> Self {{\n        Self {{\n{values}        }}\n    }}\n}}\n"
     )
 }
-
-/// rustfmt breaks longer patterns of arrays.
-const PATTERN: usize = 62;
 
 /// The trait that the generated functions ask of a number type; the body of a function refers to nothing else.
 fn scalar(programs: &[Program], sin_cos: SinCos) -> String {
@@ -257,202 +258,4 @@ const fn meaning_in_tree(quantity: Quantity) -> Option<&'static str> {
 pub(super) fn about_frame(program: &Program) -> Option<String> {
     let frame = program.frame.as_ref()?;
     Some(format!("The frame {frame} stands in the place of the tip, and its link in the place of the last link."))
-}
-
-/// The type of an argument: a number, or a reference to an array.
-fn argument_type(array: &ArgumentArray) -> String {
-    if array.is_number { "T".to_owned() } else { format!("&{}", array_type(&array.lengths())) }
-}
-
-/// The longest tuple that rustfmt writes in one line.
-const TUPLE: usize = 60;
-
-fn function(robot: &Robot, program: &Program, sin_cos: SinCos) -> String {
-    let arrays = program.arrays_without_parameters();
-    let mut text = format!("/// {}\n", program.function.summary());
-    if let Some(frame) = about_frame(program) {
-        let _ = writeln!(text, "///\n/// {}", markdown(&frame));
-    }
-    text.push_str("#[allow(clippy::all, clippy::pedantic)]\n#[must_use]\n");
-    let mut parameters: Vec<String> =
-        arrays.iter().map(|array| format!("{}: {}", array.name, argument_type(array))).collect();
-    if parameters::are_used(program) {
-        parameters.push("parameters: &Parameters<T>".to_owned());
-    }
-    let start = format!("pub fn {}<T: Scalar>(", program.name);
-    let mut end = format!(") -> {} {{", returned_type(&program.layout()));
-    let line = format!("{start}{}{end}\n", parameters.join(", "));
-    if let Layout::Record(_, parts) = program.layout()
-        && end.len() > ") -> () {".len() + TUPLE
-    {
-        let parts: Vec<String> = parts.iter().map(returned_type).collect();
-        end = format!(") -> (\n    {},\n) {{", parts.join(",\n    "));
-    }
-    if line.len() <= WIDTH + 1 {
-        text.push_str(&line);
-    } else {
-        let _ = writeln!(text, "{start}\n    {},\n{end}", parameters.join(",\n    "));
-    }
-    for ArgumentArray { name, elements, row, is_number } in &arrays {
-        let _ = if elements.iter().all(Option::is_none) {
-            writeln!(text, "    let _ = {name};")
-        } else if *is_number {
-            writeln!(text, "    let {} = {name};", names(elements.iter().copied()))
-        } else if let Some(row) = row {
-            let rows: Vec<String> =
-                elements.chunks(*row).map(|row| format!("[{}]", names(row.iter().copied()))).collect();
-            let line = rows.join(", ");
-            if rows.len() == 1 || line.len() + 2 <= PATTERN {
-                writeln!(text, "    let [{line}] = *{name};")
-            } else {
-                writeln!(text, "    let [\n        {},\n    ] = *{name};", rows.join(",\n        "))
-            }
-        } else {
-            let names = names(elements.iter().copied());
-            if names.len() + 2 <= PATTERN {
-                writeln!(text, "    let [{names}] = *{name};")
-            } else {
-                writeln!(text, "    let [\n        {},\n    ] = *{name};", names.replace(", ", ",\n        "))
-            }
-        };
-    }
-    for (index, name) in parameters::used(program) {
-        let members = Parameter::of(robot, parameters::OF_RUST);
-        let _ = writeln!(text, "    let {name} = parameters.{};", members[index].member);
-    }
-    if program.returns_zero() || program.constants().next().is_some() {
-        text.push_str("\n    // constants\n");
-    }
-    if program.returns_zero() {
-        text.push_str("    let zero: T = Scalar::from_f64(0.0);\n");
-    }
-    for constant in program.constants() {
-        let _ = writeln!(text, "    let {}: T = Scalar::from_f64({:?});", constant.name, constant.value);
-    }
-    if !program.sines_and_cosines.is_empty() {
-        text.push_str("\n    // sines and cosines of all angles\n");
-        for statement in &program.angles {
-            let _ = writeln!(text, "{}", Line::statement(program, statement));
-        }
-        let _ = writeln!(text, "{}", turns(program, sin_cos));
-    }
-    let statements = listing(robot, program, Selection::default());
-    if !statements.is_empty() {
-        let _ = write!(text, "\n{statements}");
-    }
-    text.push('\n');
-    if let Some(returned) = returned(program) {
-        let _ = writeln!(text, "    {returned}\n}}");
-    }
-    text
-}
-
-/// The type of arrays in arrays, by their lengths.
-fn array_type(lengths: &[usize]) -> String {
-    lengths.iter().rev().fold("T".to_owned(), |of, length| format!("[{of}; {length}]"))
-}
-
-/// The names in a pattern, with `_` for each name that is not used.
-fn names(names: impl Iterator<Item = Option<Name>>) -> String {
-    names.map(|name| name.map_or_else(|| "_".to_owned(), |name| name.to_string())).collect::<Vec<_>>().join(", ")
-}
-
-/// The results of a function, for a line that is indented by four.
-pub(super) fn returned(program: &Program) -> Option<Annotated> {
-    let mut outputs =
-        program.outputs.iter().map(|output| Piece::Number(line(Syntax::Rust, program.values.used(output.value))));
-    let array = |elements| Piece::List('[', ']', elements);
-    let record = |_, parts| Piece::List('(', ')', parts);
-    let layout = program.layout();
-    Some(layout.fold(&mut outputs, &array, &record)?.broken(4))
-}
-
-/// A record is a tuple here.
-fn returned_type(layout: &Layout) -> String {
-    match layout {
-        Layout::Number => "T".to_owned(),
-        Layout::Array(length, of) => format!("[{}; {length}]", returned_type(of)),
-        Layout::Record(_, parts) => {
-            let parts: Vec<String> = parts.iter().map(returned_type).collect();
-            format!("({})", parts.join(", "))
-        }
-    }
-}
-
-/// A part of the results.
-enum Piece {
-    Number(Annotated),
-    List(char, char, Vec<Self>),
-}
-
-impl Piece {
-    fn line(&self) -> Annotated {
-        match self {
-            Self::Number(text) => text.clone(),
-            Self::List(open, close, elements) => {
-                Annotated::from(open.to_string())
-                    + Annotated::join(elements.iter().map(Self::line), ", ")
-                    + close.to_string()
-            }
-        }
-    }
-
-    /// Broken as rustfmt does: lists of more than 60 columns have a line per element, short numbers fill lines, and the
-    /// brackets of a list in a list of one stand together.
-    fn broken(&self, indent: usize) -> Annotated {
-        const LIST: usize = 60;
-        const SHORT: usize = 10;
-        let Self::List(open, close, elements) = self else { return self.line() };
-        let line = self.line();
-        let width = line.as_str().len();
-        let is_nested = elements.iter().any(|element| matches!(element, Self::List(..)));
-        let room = if *open == '(' { WIDTH - indent } else { (LIST + 2).min(WIDTH - indent) };
-        if width <= room && !(*open == '(' && is_nested && width > LIST + 2) {
-            return line;
-        }
-        let (start, end) = (Annotated::from(open.to_string()), close.to_string());
-        if let [only @ Self::List(..)] = elements.as_slice() {
-            return start + only.broken(indent) + end;
-        }
-        let texts: Vec<Annotated> = elements.iter().map(|element| element.broken(indent + 4) + ",").collect();
-        let fills = *open == '[' && !is_nested && texts.iter().all(|text| text.as_str().len() <= SHORT + 1);
-        let (mut text, mut column, last) = (start, WIDTH, texts.len() - 1);
-        for (index, element) in texts.into_iter().enumerate() {
-            let width = element.as_str().len();
-            // rustfmt leaves the last column of a line empty here, but for the last element
-            if !fills || column + 1 + width >= WIDTH + usize::from(index == last) {
-                text = text + "\n" + " ".repeat(indent + 4);
-                column = indent + 4 + width;
-            } else {
-                text = text + " ";
-                column += 1 + width;
-            }
-            text = text + element;
-        }
-        text + "\n" + " ".repeat(indent) + end
-    }
-}
-
-/// The statements that evaluate all sines and cosines, with the line breaks of rustfmt. Where the file has the sine,
-/// each angle has its own call: compilers leave the calls over an array as a loop from five angles on.
-fn turns(program: &Program, sin_cos: SinCos) -> String {
-    let turns = &program.sines_and_cosines[..];
-    let groups = turns.chunks(if sin_cos == SinCos::InFile { 1 } else { turns.len() });
-    groups.map(statement_of_turns(program)).collect::<Vec<_>>().join("\n")
-}
-
-fn statement_of_turns(program: &Program) -> impl Fn(&[SineCosine]) -> String {
-    |turns| {
-        let sines = names(turns.iter().map(|turn| turn.sine));
-        let cosines = names(turns.iter().map(|turn| turn.cosine));
-        let angles = turns.iter().map(|turn| line(Syntax::Rust, program.values.used(turn.angle)));
-        let angles = Annotated::join(angles, ", ");
-        if turns.len() == 1 {
-            return format!("    let ({sines}, {cosines}) = Scalar::sin_cos({angles});");
-        }
-        let (left, right) =
-            (format!("    let ([{sines}], [{cosines}]) ="), format!("Scalar::sin_cos_array([{angles}]);"));
-        let gap = if left.len() + 1 + right.len() <= WIDTH { " " } else { "\n        " };
-        left + gap + &right
-    }
 }

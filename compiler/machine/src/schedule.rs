@@ -80,28 +80,41 @@ fn events(dataflow: &Dataflow, carried: &[Vec<ValueId>]) -> Vec<Event> {
     events
 }
 
+/// The uses of each value.
+struct Uses {
+    count: Vec<usize>,
+    /// The place of the last one in the list of events.
+    last: Vec<usize>,
+}
+
+impl Uses {
+    fn of(dataflow: &Dataflow, carried: &[Vec<ValueId>], events: &[Event]) -> Self {
+        let [mut count, mut last] = [(); 2].map(|()| vec![0_usize; dataflow.values.len()]);
+        for (at, event) in events.iter().enumerate() {
+            let used = match *event {
+                // returned as it is
+                Event::Compute(value) if dataflow.is_turn(value) => vec![value],
+                Event::Compute(value) => {
+                    let mut operands = dataflow.operands(value);
+                    operands.retain(|operand| !carried[value.index()].contains(operand));
+                    operands
+                }
+                Event::Output(..) => Vec::new(),
+                Event::Turns => dataflow.angles.clone(),
+            };
+            for value in used {
+                count[value.index()] += 1;
+                last[value.index()] = at;
+            }
+        }
+        Self { count, last }
+    }
+}
+
 /// Gives every value that is not used at once a slot, for as long as it is used.
 fn allocated(dataflow: &Dataflow, carried: &[Vec<ValueId>], events: &[Event]) -> Option<Code> {
-    let count = dataflow.values.len();
-    let (mut uses, mut last) = (vec![0_usize; count], vec![0_usize; count]);
-    for (at, event) in events.iter().enumerate() {
-        let used = match *event {
-            // returned as it is
-            Event::Compute(value) if dataflow.is_turn(value) => vec![value],
-            Event::Compute(value) => {
-                let mut operands = dataflow.operands(value);
-                operands.retain(|operand| !carried[value.index()].contains(operand));
-                operands
-            }
-            Event::Output(..) => Vec::new(),
-            Event::Turns => dataflow.angles.clone(),
-        };
-        for value in used {
-            uses[value.index()] += 1;
-            last[value.index()] = at;
-        }
-    }
-    let mut memory = Memory { slots: vec![None; count], free: Vec::new(), count: 0 };
+    let Uses { count: uses, last } = Uses::of(dataflow, carried, events);
+    let mut memory = Memory { slots: vec![None; dataflow.values.len()], free: Vec::new(), count: 0 };
     let (mut angles, mut rest, mut turns) = (Vec::new(), Vec::new(), Vec::new());
     let (mut accumulator, mut is_turned) = (None, false);
     for (at, event) in events.iter().enumerate() {

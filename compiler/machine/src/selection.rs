@@ -4,6 +4,8 @@ use rne_codegen::{Contraction, Negated, Operator, Value, ValueId};
 use rne_runtime::machine::{Operation, Slot};
 
 use crate::dataflow::Dataflow;
+use Operation as O;
+use Place::{Accumulator as A, Constant as K, Slot as S};
 
 /// Where an operand is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,8 +18,6 @@ pub(crate) enum Place {
 /// The operation that computes a value from operands at these places; `None` when the machine has none: then an operand
 /// must be in a slot.
 pub(crate) fn operation(dataflow: &Dataflow, id: ValueId, place: impl Fn(ValueId) -> Place) -> Option<Operation> {
-    use Operation as O;
-    use Place::{Accumulator as A, Constant as K, Slot as S};
     Some(match dataflow.values.get(id) {
         // arguments are the first values
         Value::Argument => O::Input(u32::try_from(id.index()).ok()?),
@@ -32,67 +32,81 @@ pub(crate) fn operation(dataflow: &Dataflow, id: ValueId, place: impl Fn(ValueId
             [S(x), S(a), S(b)] => O::BySign(x, a, b),
             _ => return None,
         },
-        Value::Binary(operator, x, y) => match (operator, place(x), place(y)) {
-            (Operator::Sum, S(x), S(y)) => O::SumSS(x, y),
-            (Operator::Sum, A, S(x)) | (Operator::Sum, S(x), A) => O::SumAS(x),
-            (Operator::Sum, S(x), K(k)) | (Operator::Sum, K(k), S(x)) => O::SumSK(x, k),
-            (Operator::Sum, A, K(k)) | (Operator::Sum, K(k), A) => O::SumAK(k),
-            (Operator::Difference, S(x), S(y)) => O::DifferenceSS(x, y),
-            (Operator::Difference, A, S(y)) => O::DifferenceAS(y),
-            (Operator::Difference, S(x), A) => O::DifferenceSA(x),
-            // x - k is x + (-k), to the bit
-            (Operator::Difference, S(x), K(k)) => O::SumSK(x, -k),
-            (Operator::Difference, A, K(k)) => O::SumAK(-k),
-            (Operator::Difference, K(k), S(y)) => O::DifferenceKS(y, k),
-            (Operator::Difference, K(k), A) => O::DifferenceKA(k),
-            (Operator::Product, S(x), S(y)) => O::ProductSS(x, y),
-            (Operator::Product, A, S(x)) | (Operator::Product, S(x), A) => O::ProductAS(x),
-            (Operator::Product, S(x), K(k)) | (Operator::Product, K(k), S(x)) => O::ProductSK(x, k),
-            (Operator::Product, A, K(k)) | (Operator::Product, K(k), A) => O::ProductAK(k),
-            (Operator::Quotient, S(x), S(y)) => O::QuotientSS(x, y),
-            (Operator::Quotient, A, S(y)) => O::QuotientAS(y),
-            (Operator::Quotient, S(x), A) => O::QuotientSA(x),
-            (Operator::Quotient, K(k), S(y)) => O::QuotientKS(y, k),
-            (Operator::Quotient, K(k), A) => O::QuotientKA(k),
-            _ => return None,
-        },
-        Value::Fused(Contraction { factors: [x, y], addend: z, negated }) => {
-            let (z, x, y) = (place(z), place(x), place(y));
-            // of two factors one that is in a slot stands last, one that is constant very last
-            let (x, y) = match (x, y) {
-                (K(_), _) | (S(_), A) => (y, x),
-                _ => (x, y),
-            };
-            match (negated, z, x, y) {
-                (None, A, S(x), S(y)) => O::PlusASS(x, y),
-                (None, A, S(x), K(k)) => O::PlusASK(x, k),
-                (None, S(z), S(x), S(y)) => O::PlusSSS(z, x, y),
-                (None, S(z), A, S(y)) => O::PlusSAS(z, y),
-                (None, S(z), S(x), K(k)) => O::PlusSSK(z, x, k),
-                (None, S(z), A, K(k)) => O::PlusSAK(z, k),
-                (None, K(k), S(x), S(y)) => O::PlusKSS(x, y, k),
-                (None, K(k), A, S(y)) => O::PlusKAS(y, k),
-                (Some(Negated::Factor), A, S(x), S(y)) => O::MinusASS(x, y),
-                (Some(Negated::Factor), S(z), S(x), S(y)) => O::MinusSSS(z, x, y),
-                (Some(Negated::Factor), S(z), A, S(y)) => O::MinusSAS(z, y),
-                (Some(Negated::Factor), K(k), S(x), S(y)) => O::MinusKSS(x, y, k),
-                (Some(Negated::Factor), K(k), A, S(y)) => O::MinusKAS(y, k),
-                // z - x k is z + x (-k), to the bit
-                (Some(Negated::Factor), A, S(x), K(k)) => O::PlusASK(x, -k),
-                (Some(Negated::Factor), S(z), S(x), K(k)) => O::PlusSSK(z, x, -k),
-                (Some(Negated::Factor), S(z), A, K(k)) => O::PlusSAK(z, -k),
-                (Some(Negated::Addend), A, S(x), S(y)) => O::LessASS(x, y),
-                (Some(Negated::Addend), A, S(x), K(k)) => O::LessASK(x, k),
-                (Some(Negated::Addend), S(z), S(x), S(y)) => O::LessSSS(z, x, y),
-                (Some(Negated::Addend), S(z), A, S(y)) => O::LessSAS(z, y),
-                (Some(Negated::Addend), S(z), S(x), K(k)) => O::LessSSK(z, x, k),
-                (Some(Negated::Addend), S(z), A, K(k)) => O::LessSAK(z, k),
-                // x y - k is x y + (-k), to the bit
-                (Some(Negated::Addend), K(k), S(x), S(y)) => O::PlusKSS(x, y, -k),
-                (Some(Negated::Addend), K(k), A, S(y)) => O::PlusKAS(y, -k),
-                _ => return None,
-            }
+        Value::Binary(operator, x, y) => return binary(operator, place(x), place(y)),
+        Value::Fused(Contraction { factors: [x, y], addend, negated }) => {
+            return fused(negated, place(addend), place(x), place(y));
         }
+    })
+}
+
+/// Orders two operands that commute: one in a slot stands last, a constant very last.
+fn ordered(x: Place, y: Place) -> (Place, Place) {
+    match (x, y) {
+        (K(_), _) | (S(_), A) => (y, x),
+        _ => (x, y),
+    }
+}
+
+/// The operation of an operator on two operands.
+fn binary(operator: Operator, x: Place, y: Place) -> Option<Operation> {
+    let (x, y) = if matches!(operator, Operator::Sum | Operator::Product) { ordered(x, y) } else { (x, y) };
+    Some(match (operator, x, y) {
+        (Operator::Sum, S(x), S(y)) => O::SumSS(x, y),
+        (Operator::Sum, A, S(y)) => O::SumAS(y),
+        (Operator::Sum, S(x), K(k)) => O::SumSK(x, k),
+        (Operator::Sum, A, K(k)) => O::SumAK(k),
+        (Operator::Difference, S(x), S(y)) => O::DifferenceSS(x, y),
+        (Operator::Difference, A, S(y)) => O::DifferenceAS(y),
+        (Operator::Difference, S(x), A) => O::DifferenceSA(x),
+        // x - k is x + (-k), to the bit
+        (Operator::Difference, S(x), K(k)) => O::SumSK(x, -k),
+        (Operator::Difference, A, K(k)) => O::SumAK(-k),
+        (Operator::Difference, K(k), S(y)) => O::DifferenceKS(y, k),
+        (Operator::Difference, K(k), A) => O::DifferenceKA(k),
+        (Operator::Product, S(x), S(y)) => O::ProductSS(x, y),
+        (Operator::Product, A, S(y)) => O::ProductAS(y),
+        (Operator::Product, S(x), K(k)) => O::ProductSK(x, k),
+        (Operator::Product, A, K(k)) => O::ProductAK(k),
+        (Operator::Quotient, S(x), S(y)) => O::QuotientSS(x, y),
+        (Operator::Quotient, A, S(y)) => O::QuotientAS(y),
+        (Operator::Quotient, S(x), A) => O::QuotientSA(x),
+        (Operator::Quotient, K(k), S(y)) => O::QuotientKS(y, k),
+        (Operator::Quotient, K(k), A) => O::QuotientKA(k),
+        _ => return None,
+    })
+}
+
+/// The operation of an addend and a product, of which one may be negated.
+fn fused(negated: Option<Negated>, z: Place, x: Place, y: Place) -> Option<Operation> {
+    let (x, y) = ordered(x, y);
+    Some(match (negated, z, x, y) {
+        (None, A, S(x), S(y)) => O::PlusASS(x, y),
+        (None, A, S(x), K(k)) => O::PlusASK(x, k),
+        (None, S(z), S(x), S(y)) => O::PlusSSS(z, x, y),
+        (None, S(z), A, S(y)) => O::PlusSAS(z, y),
+        (None, S(z), S(x), K(k)) => O::PlusSSK(z, x, k),
+        (None, S(z), A, K(k)) => O::PlusSAK(z, k),
+        (None, K(k), S(x), S(y)) => O::PlusKSS(x, y, k),
+        (None, K(k), A, S(y)) => O::PlusKAS(y, k),
+        (Some(Negated::Factor), A, S(x), S(y)) => O::MinusASS(x, y),
+        (Some(Negated::Factor), S(z), S(x), S(y)) => O::MinusSSS(z, x, y),
+        (Some(Negated::Factor), S(z), A, S(y)) => O::MinusSAS(z, y),
+        (Some(Negated::Factor), K(k), S(x), S(y)) => O::MinusKSS(x, y, k),
+        (Some(Negated::Factor), K(k), A, S(y)) => O::MinusKAS(y, k),
+        // z - x k is z + x (-k), to the bit
+        (Some(Negated::Factor), A, S(x), K(k)) => O::PlusASK(x, -k),
+        (Some(Negated::Factor), S(z), S(x), K(k)) => O::PlusSSK(z, x, -k),
+        (Some(Negated::Factor), S(z), A, K(k)) => O::PlusSAK(z, -k),
+        (Some(Negated::Addend), A, S(x), S(y)) => O::LessASS(x, y),
+        (Some(Negated::Addend), A, S(x), K(k)) => O::LessASK(x, k),
+        (Some(Negated::Addend), S(z), S(x), S(y)) => O::LessSSS(z, x, y),
+        (Some(Negated::Addend), S(z), A, S(y)) => O::LessSAS(z, y),
+        (Some(Negated::Addend), S(z), S(x), K(k)) => O::LessSSK(z, x, k),
+        (Some(Negated::Addend), S(z), A, K(k)) => O::LessSAK(z, k),
+        // x y - k is x y + (-k), to the bit
+        (Some(Negated::Addend), K(k), S(x), S(y)) => O::PlusKSS(x, y, -k),
+        (Some(Negated::Addend), K(k), A, S(y)) => O::PlusKAS(y, -k),
+        _ => return None,
     })
 }
 

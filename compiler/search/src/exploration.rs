@@ -44,8 +44,10 @@ impl<'v> Exploration<'v> {
         Progress { plans: self.plans.counted(), best: self.plans.best().0, phase }
     }
 
-    /// Coordinate descent: each part takes the best of its choices, again and again; joints that are alike together at
-    /// first. When none is better, two changes of which the first costs little. No random numbers.
+    /// Improves the best plan by coordinate descent, without random numbers. One choice of the plan after the other
+    /// takes its best value, until no single change makes the plan cheaper; joints that are alike change together
+    /// first, then each joint alone. Then the search looks for two changes in a row of which the first costs little
+    /// and both together save operations, and begins again from there. It ends when there are no such changes.
     pub(crate) fn descend(&mut self, clock: Clock<'_>) -> Result<(), Over> {
         let mut plan = self.plans.best().1.clone();
         let Some(mut weight) = self.plans.cost(&plan).map(|cost| cost.weight()) else { return Ok(()) };

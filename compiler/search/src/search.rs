@@ -35,24 +35,12 @@ pub fn search(
     options: &SearchOptions,
     clock: Clock<'_>,
 ) -> Result<PlanFile, SearchError> {
-    if !robot.run_time.is_empty() {
-        return Err(SearchError::RunTimeParameters);
-    }
-    if let Some(&function) = options.rewrite.iter().find(|function| !function.can_be_rewritten()) {
-        return Err(SearchError::Irreducible(function));
-    }
+    check(robot, options)?;
     let torques = rne_codegen::function_of_plan(robot);
     let torques_by = |plan: &Plan| Formulation::by_plan(robot, plan, torques, Algorithm::Rnea);
     let of_torques = Reference::of(robot, torques)?;
     // whether what is at hand can be taken is better known before a search than after it
-    let mut at_hand = BTreeMap::new();
-    for (&function, rewritten) in known.iter().flat_map(|known| &known.rewritten) {
-        let graph = rewritten.formulation(robot, function)?;
-        let operations = graph.cost();
-        let proof = Reference::of(robot, function)?.proof(function, graph);
-        proof.map_err(|error| error.suspecting(robot, true))?;
-        at_hand.insert(function, Rewritten { operations, ..rewritten.clone() });
-    }
+    let at_hand = known.map(|known| proven(robot, known)).transpose()?.unwrap_or_default();
     let is_refused =
         |plan: &Plan| !torques_by(plan).and_then(|graph| is_sound(&of_torques, torques, graph)).unwrap_or(false);
     let mut search = Exploration::new(robot, is_refused);
@@ -99,8 +87,33 @@ pub fn search(
             rewritten.insert(function, Rewritten { accuracy: Accuracy::from(&proof), ..best });
         }
     }
-    let file = PlanFile::new(robot, reduced, rewritten);
-    // the graph that is read again is the graph that was proved
+    readable(PlanFile::new(robot, reduced, rewritten), robot)
+}
+
+/// Refuses run-time parameters, and functions without a reduced form.
+fn check(robot: &Robot, options: &SearchOptions) -> Result<(), SearchError> {
+    if !robot.run_time.is_empty() {
+        return Err(SearchError::RunTimeParameters);
+    }
+    let irreducible = options.rewrite.iter().find(|function| !function.can_be_rewritten());
+    irreducible.map_or(Ok(()), |&function| Err(SearchError::Irreducible(function)))
+}
+
+/// The rewritten graphs of a plan file, each proved, with the operations that it takes.
+fn proven(robot: &Robot, known: &PlanFile) -> Result<BTreeMap<Function, Rewritten>, SearchError> {
+    let mut proven = BTreeMap::new();
+    for (&function, rewritten) in &known.rewritten {
+        let graph = rewritten.formulation(robot, function)?;
+        let operations = graph.cost();
+        let proof = Reference::of(robot, function)?.proof(function, graph);
+        proof.map_err(|error| error.suspecting(robot, true))?;
+        proven.insert(function, Rewritten { operations, ..rewritten.clone() });
+    }
+    Ok(proven)
+}
+
+/// Returns a plan file if its text gives the same file: the graph that is read again is the graph that was proved.
+fn readable(file: PlanFile, robot: &Robot) -> Result<PlanFile, SearchError> {
     match PlanFile::read("the plan", &file.to_yaml(), robot) {
         Ok(read) if read == file => Ok(file),
         Ok(_) => Err(SearchError::NotWritten),

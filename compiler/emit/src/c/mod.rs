@@ -1,10 +1,12 @@
 //! Programs as C99 without a library: a header that documents the functions, and the source.
 
 mod casadi;
+mod casadi_derivatives;
 mod casadi_interface;
 mod casadi_motion;
 mod casadi_step;
 pub(crate) mod header;
+mod joint_friction;
 mod joint_functions;
 mod motors;
 mod observer;
@@ -23,8 +25,9 @@ use super::inert::c_comment;
 use super::syntax::{Precision, Syntax};
 use super::wrap::{WIDTH, fill};
 
-pub use casadi::{casadi_collision, casadi_derivatives, is_for_casadi};
-pub use joint_functions::{JointFriction, NoFriction};
+pub use casadi::{casadi_collision, is_for_casadi};
+pub use casadi_derivatives::casadi_derivatives;
+pub use joint_friction::{JointFriction, NoFriction};
 pub use prefix::{BadPrefix, Prefix};
 pub(super) use signature::{array_name, element_type, elements_of, inputs, layout_elements};
 pub use signature::{record_name, result_elements};

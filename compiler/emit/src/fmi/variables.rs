@@ -44,24 +44,46 @@ pub(super) const PAYLOAD: [(&str, &str); 10] = [
     ("inertia.yz", "kg.m2"),
 ];
 
+impl Variable {
+    /// A variable of any value.
+    fn new(name: &str, description: &str, unit: Option<&'static str>, role: Role, start: f64) -> Self {
+        let (name, description) = (name.to_owned(), description.to_owned());
+        Self { name, description, unit, role, start, range: None, derivative_of: None }
+    }
+}
+
 impl Fmu<'_> {
     /// Time; q, q̇, q̈ and τ of all joints; the step of the integrator; the parameters; the payload. The C code knows
     /// this order.
     pub(super) fn variables(&self) -> Vec<Variable> {
+        let mut variables = vec![Variable::new("time", "Simulation time", Some("s"), Role::Time, 0.0)];
+        variables.extend(self.variables_of_joints());
+        if self.causality == FmuCausality::Forward {
+            let about = "Longest step of the integrator in co-simulation (Runge-Kutta of order 4)";
+            variables.push(Variable::new("step", about, Some("s"), Role::Fixed, STEP));
+        }
+        variables.extend(self.parameters().into_iter().map(|parameter| {
+            let (name, description) = (&parameter.name, &parameter.description);
+            Variable::new(name, description, parameter.unit, Role::Tunable, parameter.value)
+        }));
+        variables.extend(PAYLOAD.map(|(name, unit)| {
+            let about = match name {
+                "mass" => "Mass of a payload that is fixed to the tip",
+                name if name.starts_with("com") => "Centre of mass of the payload, in the tip frame",
+                _ => "Inertia tensor of the payload about its centre of mass, in the axes of the tip frame",
+            };
+            Variable::new(&format!("payload.{name}"), about, Some(unit), Role::Tunable, 0.0)
+        }));
+        variables
+    }
+
+    /// q, q̇, q̈ and τ of all joints, behind the time.
+    fn variables_of_joints(&self) -> Vec<Variable> {
         let is_forward = self.causality == FmuCausality::Forward;
         let dof = self.robot.dof();
-        let of_run = |name: &str, description: &str, role, start| Variable {
-            name: name.to_owned(),
-            description: description.to_owned(),
-            unit: Some("s"),
-            role,
-            start,
-            range: None,
-            derivative_of: None,
-        };
         // narrowed by those of joints that follow
         let coordinate_limits = self.robot.coordinate_limits();
-        let mut variables = vec![of_run("time", "Simulation time", Role::Time, 0.0)];
+        let mut variables = Vec::new();
         for (order, kind) in ["q", "qd", "qdd", "tau"].into_iter().enumerate() {
             for (index, (joint, limits)) in self.robot.independent_joints().zip(&coordinate_limits).enumerate() {
                 let symmetric = |largest: Option<f64>| largest.map(|largest| (-largest, largest));
@@ -92,35 +114,6 @@ impl Fmu<'_> {
                 });
             }
         }
-        if is_forward {
-            let about = "Longest step of the integrator in co-simulation (Runge-Kutta of order 4)";
-            variables.push(of_run("step", about, Role::Fixed, STEP));
-        }
-        variables.extend(self.parameters().into_iter().map(|parameter| Variable {
-            name: parameter.name,
-            description: parameter.description,
-            unit: parameter.unit,
-            role: Role::Tunable,
-            start: parameter.value,
-            range: None,
-            derivative_of: None,
-        }));
-        variables.extend(PAYLOAD.map(|(name, unit)| {
-            Variable {
-                name: format!("payload.{name}"),
-                description: match name {
-                    "mass" => "Mass of a payload that is fixed to the tip",
-                    name if name.starts_with("com") => "Centre of mass of the payload, in the tip frame",
-                    _ => "Inertia tensor of the payload about its centre of mass, in the axes of the tip frame",
-                }
-                .to_owned(),
-                unit: Some(unit),
-                role: Role::Tunable,
-                start: 0.0,
-                range: None,
-                derivative_of: None,
-            }
-        }));
         variables
     }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use rne_codegen::{Function, Layout, Program};
 use rne_model::Robot;
 
-use super::{Golden, Law, floor, program, results};
+use super::{Call, Golden, Law, filled, floor, program, results};
 use crate::Precision;
 use crate::c::runge_kutta::STEPS;
 use crate::c::{
@@ -105,6 +105,9 @@ static void test_compare(const char *what, unsigned state, unsigned number, doub
 }
 
 ";
+
+/// The body of the test of each law but the last.
+const LAWS: &str = include_str!("c_laws.txt");
 
 struct Tests<'a> {
     robot: &'a Robot,
@@ -341,59 +344,20 @@ impl Tests<'_> {
     }
 
     fn law(&self, law: Law) -> Option<(String, String)> {
-        let (dof, states, real) = (self.robot.dof(), self.golden.len(), self.precision.c_type());
-        let words = law.name().replace('_', " ");
-        let body = match law {
-            // it needs differences of energies, which single precision cannot represent
-            Law::Power => return None,
-            Law::Symmetry => format!(
-                "{}        for (i = 0u; i < {dof}u; ++i) {{\n            for (j = 0u; j < i; ++j) {{\n                \
-                 test_compare(\"{words}\", state, {dof}u * i + j, (double)mass[{dof}u * i + j],\n                    \
-                 (double)mass[{dof}u * j + i], 0.0);\n            }}\n        }}\n",
-                self.call_of(law.functions()[0], &[], "mass")?
-            ),
-            Law::Linearity => {
-                let torques = |qdd: &str, name: &str| self.call_of(law.functions()[0], &[("qdd", qdd)], name);
-                format!(
-                    "        {real} sum[{dof}];\n        double scale;\n{}{}{}        \
-                     for (i = 0u; i < {dof}u; ++i) {{ sum[i] = test_qdd[state][i] + test_tau[state][i]; }}\n        \
-                     {{\n{}        scale = test_largest(of_b, {dof}u, test_largest(of_a, {dof}u, 0.0));\n        \
-                     scale = test_largest(of_sum, {dof}u, test_largest(at_zero, {dof}u, scale));\n        \
-                     for (i = 0u; i < {dof}u; ++i) {{\n            \
-                     test_compare(\"{words}\", state, i, (double)of_sum[i] - (double)of_b[i],\n                \
-                     (double)of_a[i] - (double)at_zero[i], test_tolerance * scale);\n        }}\n        }}\n",
-                    torques("test_qdd[state]", "of_a")?,
-                    torques("test_tau[state]", "of_b")?,
-                    torques("test_zero", "at_zero")?,
-                    torques("sum", "of_sum")?,
-                )
-            }
-            Law::Gravity | Law::Bias => {
-                let (function, others) = law.of_zeros("test_zero");
-                format!(
-                    "        double scale;\n{}{}{}        \
-                     scale = test_largest(moving, {dof}u, test_largest(expected, {dof}u, 0.0));\n        \
-                     for (i = 0u; i < {dof}u; ++i) {{\n            \
-                     test_compare(\"{words}\", state, i, (double)found[i], (double)expected[i], test_tolerance * \
-                     scale);\n        }}\n",
-                    self.call_of(function, &[], "found")?,
-                    self.call_of(law.functions()[0], &others, "expected")?,
-                    self.call_of(law.functions()[0], &[], "moving")?
-                )
-            }
-            Law::Kinetic => format!(
-                "        double energy = 0.0, scale = 0.0;\n{}{}        \
-                 for (i = 0u; i < {dof}u; ++i) {{\n            for (j = 0u; j < {dof}u; ++j) {{\n                \
-                 const double term = 0.5 * (double)mass[{dof}u * i + j] * (double)test_qd[state][i] \
-                 *\n                    \
-                 (double)test_qd[state][j];\n                \
-                 energy += term;\n                scale += (term > 0.0) ? term : \
-                 -term;\n            }}\n        }}\n        \
-                 test_compare(\"{words}\", state, 0u, (double)found[0], energy, test_tolerance * scale);\n",
-                self.call_of(law.functions()[0], &[], "mass")?,
-                self.call_of(law.functions()[1], &[], "found")?
-            ),
-        };
+        let states = self.golden.len();
+        // it needs differences of energies, which single precision cannot represent
+        if law == Law::Power {
+            return None;
+        }
+        let mut values = vec![
+            ("words", law.name().replace('_', " ")),
+            ("dof", self.robot.dof().to_string()),
+            ("real", self.precision.c_type().to_owned()),
+        ];
+        for Call { result, function, others } in law.calls(["sum", "test_qdd[state]", "test_tau[state]", "test_zero"]) {
+            values.push((result, self.call_of(function, &others, result)?));
+        }
+        let body = filled(law.part_of(LAWS), &values);
         let name = format!("test_{}", law.name());
         let indices = if body.contains("j = 0u") { "i, j" } else { "i" };
         Some((

@@ -58,27 +58,63 @@ enum Law {
     Power,
 }
 
+/// A call of a function in the test of a law.
+struct Call<'a> {
+    /// The name of its result.
+    result: &'static str,
+    function: Function,
+    /// Arguments that are not those of the state.
+    others: Vec<(&'static str, &'a str)>,
+}
+
 impl Law {
     const ALL: [Self; 6] = [Self::Symmetry, Self::Linearity, Self::Gravity, Self::Bias, Self::Kinetic, Self::Power];
 
-    /// The functions that the law contains.
-    const fn functions(self) -> &'static [Function] {
+    /// The calls whose results its test compares. The arguments are expressions of the language: accelerations `sum`,
+    /// `a` and `b`, where `sum` is a + b, and `zero`, an array of zeros.
+    fn calls(self, [sum, a, b, zero]: [&str; 4]) -> Vec<Call<'_>> {
+        let call = |result, function| Call { result, function, others: Vec::new() };
+        let torques_at = |result, qdd| Call { others: vec![("qdd", qdd)], ..call(result, Function::InverseDynamics) };
         match self {
-            Self::Symmetry => &[Function::MassMatrix],
-            Self::Linearity => &[Function::InverseDynamics],
-            Self::Gravity => &[Function::InverseDynamics, Function::GravityTorques],
-            Self::Bias => &[Function::InverseDynamics, Function::BiasTorques],
-            Self::Kinetic => &[Function::MassMatrix, Function::KineticEnergy],
-            Self::Power => &[Function::InverseDynamics, Function::KineticEnergy, Function::PotentialEnergy],
+            Self::Symmetry => vec![call("mass", Function::MassMatrix)],
+            Self::Linearity => {
+                vec![
+                    torques_at("of_sum", sum),
+                    torques_at("of_a", a),
+                    torques_at("of_b", b),
+                    torques_at("at_zero", zero),
+                ]
+            }
+            // torques that vanish but for rounding are measured by those of the motion
+            Self::Gravity => vec![
+                call("found", Function::GravityTorques),
+                Call { others: vec![("qd", zero), ("qdd", zero)], ..call("expected", Function::InverseDynamics) },
+                call("moving", Function::InverseDynamics),
+            ],
+            Self::Bias => vec![
+                call("found", Function::BiasTorques),
+                torques_at("expected", zero),
+                call("moving", Function::InverseDynamics),
+            ],
+            Self::Kinetic => vec![call("mass", Function::MassMatrix), call("found", Function::KineticEnergy)],
+            Self::Power => vec![
+                Call { others: vec![("q", "q"), ("qd", "qd")], ..call("kinetic", Function::KineticEnergy) },
+                Call { others: vec![("q", "q")], ..call("potential", Function::PotentialEnergy) },
+                call("moving", Function::InverseDynamics),
+            ],
         }
     }
 
-    /// The function that returns torques for zero rates, zero accelerations or both, and these arguments as `zero`.
-    fn of_zeros(self, zero: &str) -> (Function, Vec<(&'static str, &str)>) {
-        match self {
-            Self::Gravity => (Function::GravityTorques, vec![("qd", zero), ("qdd", zero)]),
-            _ => (Function::BiasTorques, vec![("qdd", zero)]),
-        }
+    /// Its part of a text with a part for each law; gravity and bias share one.
+    fn part_of(self, laws: &str) -> &str {
+        let index = match self {
+            Self::Symmetry => 0,
+            Self::Linearity => 1,
+            Self::Gravity | Self::Bias => 2,
+            Self::Kinetic => 3,
+            Self::Power => 4,
+        };
+        laws.split("// next law\n").nth(index).unwrap_or_default()
     }
 
     /// The name of its test.
@@ -95,9 +131,15 @@ impl Law {
 
     /// The laws whose functions are all in the file.
     fn of(programs: &[Program]) -> impl Iterator<Item = Self> {
-        let is_there = |function: &Function| self::program(programs, *function).is_some();
-        Self::ALL.into_iter().filter(move |law| law.functions().iter().all(is_there))
+        let is_there = |function| program(programs, function).is_some();
+        Self::ALL.into_iter().filter(move |law| law.calls([""; 4]).iter().all(|call| is_there(call.function)))
     }
+}
+
+/// A text with values in the places of their names, which are between `@`.
+fn filled(text: &str, values: &[(&str, String)]) -> String {
+    let value = |name| values.iter().find(|(known, _)| *known == name).map_or("", |(_, value)| value);
+    text.split('@').enumerate().map(|(index, part)| if index % 2 == 0 { part } else { value(part) }).collect()
 }
 
 /// The results of a program at each state; `None` where a state has nothing to compare with.

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use rne_codegen::{Function, Program, Shape};
 use rne_model::Robot;
 
-use super::{Golden, Law, MOTION, floor, program, results};
+use super::{Call, Golden, Law, MOTION, filled, floor, program, results};
 use crate::parameters::{self, OF_RUST, Parameter};
 use crate::wrap::{WIDTH, fill};
 
@@ -39,6 +39,9 @@ pub fn rust_tests(robot: &Robot, programs: &[Program], golden: &[Golden]) -> Str
     }
     text + "}\n"
 }
+
+/// The body of the test of each law.
+const LAWS: &str = include_str!("rust_laws.txt");
 
 const NUMBER: &str = "
     /// A number with the sine of `std`.
@@ -220,78 +223,14 @@ impl Tests<'_> {
     fn law(&self, law: Law) -> Option<String> {
         let zero = format!("[0.0; {}]", self.robot.dof());
         let name = law.name();
-        let body = match law {
-            Law::Symmetry => format!(
-                "let mass = {};\n            let n = state.q.len();\n            \
-                 let transposed: Vec<f64> = (0..n * n).map(|k| mass[k % n * n + k / n]).collect();\n            \
-                 compare(\"{name}\", index, &mass, &transposed, 0.0, 0.0);",
-                self.call_of(law.functions()[0], &[])?
-            ),
-            Law::Linearity => {
-                let torques = |qdd: &str| self.call_of(law.functions()[0], &[("qdd", qdd)]);
-                format!(
-                    "let (a, b) = (state.qdd, state.tau);\n            \
-                     let sum = core::array::from_fn::<f64, {}, _>(|i| a[i] + b[i]);\n            \
-                     let of_sum = {};\n            let of_a = {};\n            let of_b = {};\n            \
-                     let at_zero = {};\n            \
-                     let found: Vec<f64> = of_sum.iter().zip(&of_b).map(|(x, y)| x - y).collect();\n            \
-                     let expected: Vec<f64> = of_a.iter().zip(&at_zero).map(|(x, y)| x - y).collect();\n            \
-                     let scale = \
-                     largest(&of_sum).max(largest(&of_a)).max(largest(&of_b)).max(largest(&at_zero));\n            \
-                     compare(\"{name}\", index, &found, &expected, 1e-9, scale);",
-                    self.robot.dof(),
-                    torques("sum")?,
-                    torques("a")?,
-                    torques("b")?,
-                    torques(&zero)?
-                )
-            }
-            Law::Gravity | Law::Bias => {
-                let (function, others) = law.of_zeros(&zero);
-                format!(
-                    "let found = {};\n            let expected = {};\n            \
-                     let scale = largest(&expected).max(largest(&{}));\n            \
-                     compare(\"{name}\", index, &found, &expected, 1e-9, scale);",
-                    self.call_of(function, &[])?,
-                    self.call_of(law.functions()[0], &others)?,
-                    // torques that vanish but for rounding are measured by others
-                    self.call_of(law.functions()[0], &[])?,
-                )
-            }
-            Law::Kinetic => format!(
-                "let (mass, n) = ({}, state.q.len());\n            \
-                 let terms: Vec<f64> = (0..n * n).map(|k| 0.5 * mass[k] * state.qd[k / n] * state.qd[k % \
-                 n]).collect();\n            \
-                 let scale = terms.iter().map(|term| term.abs()).sum();\n            \
-                 let expected = [terms.iter().sum()];\n            \
-                 compare(\"{name}\", index, &{}, &expected, 1e-9, scale);",
-                self.call_of(law.functions()[0], &[])?,
-                self.call_of(law.functions()[1], &[])?
-            ),
-            Law::Power => format!(
-                "let energy = |t: f64| {{\n                \
-                 let q = core::array::from_fn::<f64, {n}, _>(|i| state.q[i] + t * (state.qd[i] + 0.5 * t * \
-                 state.qdd[i]));\n                \
-                 let qd = core::array::from_fn::<f64, {n}, _>(|i| state.qd[i] + t * state.qdd[i]);\n                \
-                 {}[0] + {}[0]\n            }};\n            \
-                 let terms: Vec<f64> = {}.iter().zip(&state.qd).map(|(torque, rate)| torque * \
-                 rate).collect();\n            \
-                 let scale = terms.iter().map(|term| term.abs()).sum();\n            \
-                 // the derivative of a polynomial through four energies\n            \
-                 let h = 1e-3;\n            \
-                 let rate = (8.0 * (energy(h) - energy(-h)) - (energy(2.0 * h) - energy(-2.0 * h))) / \
-                 (12.0 * h);\n            \
-                 compare(\"{name}\", index, &[rate], &[terms.iter().sum()], 1e-6, scale);",
-                self.call_of(law.functions()[1], &[("q", "q"), ("qd", "qd")])?,
-                self.call_of(law.functions()[2], &[("q", "q")])?,
-                self.call_of(law.functions()[0], &[])?,
-                n = self.robot.dof()
-            ),
-        };
+        let mut values = vec![("name", name.to_owned()), ("dof", self.robot.dof().to_string())];
+        for Call { result, function, others } in law.calls(["sum", "a", "b", &zero]) {
+            values.push((result, self.call_of(function, &others)?));
+        }
+        let body = filled(law.part_of(LAWS), &values);
         Some(format!(
             "\n    #[test]\n    fn {name}() {{\n        for (index, state) in STATES.iter().enumerate() \
-             {{\n            \
-             {body}\n        }}\n    }}\n"
+             {{\n{body}        }}\n    }}\n"
         ))
     }
 }

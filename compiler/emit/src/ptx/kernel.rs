@@ -16,8 +16,9 @@ use crate::wrap::{WIDTH, fill};
 /// Threads of a block whose rows go through shared memory, and the bytes of it that every processor has for a block.
 const BLOCK: usize = 64;
 const MOST_SHARED: usize = 48 * 1024;
-/// Results of a state beyond which they go through shared memory. An H200 wrote the 49 of a mass matrix of the Panda
-/// nine times as fast so, and its 7 torques three times as slowly (docs/control/gpu.md).
+/// Results of a state beyond which they go through shared memory. With it, an H200 computed mass matrices of the
+/// Panda, 49 numbers each, about ten times as fast (12.4 instead of 1.2 · 10⁹ states/s in `f32`), and its torques, 7
+/// numbers each, about three times as slowly (10.2 instead of 32.7 · 10⁹ states/s).
 const WIDE: usize = 32;
 
 macro_rules! abouts {

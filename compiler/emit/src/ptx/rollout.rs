@@ -58,21 +58,47 @@ fn argument(program: &Program, name: rne_codegen::Name) -> Option<ValueId> {
 
 impl Kernel<'_> {
     fn rollout(&self, name: &str, arrangement: Arrangement) -> String {
-        let (real, bytes) = self.number();
         let dof = self.program.outputs.len();
         let mut writing = Writing::of(self, arrangement, "global");
-        let is_state = |array: &str| matches!(array, "q" | "qd");
-        for array in self.arrays.iter().filter(|array| is_state(array.name)) {
+        let start = self.load_state(&mut writing);
+        let step = self.step_of_euler(&mut writing);
+        let stores = self.store_state(&mut writing);
+        let inputs = self.arrays.iter().map(|array| (format!("in_{}", array.name), array.elements.len()));
+        let arrays: Vec<(String, usize)> =
+            inputs.chain([("out_q".to_owned(), dof), ("out_qd".to_owned(), dof)]).collect();
+        self.head_of_rollout(name, &writing, &arrays)
+            + &self.first_addresses(arrangement, &arrays)
+            + &start
+            + "next_step:\n"
+            + &step
+            + "    add.u32 %left, %left, 4294967295;\n    setp.ne.u32 %is_left, %left, 0;\n    \
+               @%is_left bra not_written;\n    mov.u32 %left, %every;\n"
+            + &stores
+            + "    add.u64 %out_q, %out_q, %out_step;\n    add.u64 %out_qd, %out_qd, %out_step;\nnot_written:\n    \
+               add.u64 %in_tau, %in_tau, %tau_step;\n    add.u32 %steps, %steps, 4294967295;\n    \
+               setp.ne.u32 %is_left, %steps, 0;\n    @%is_left bra next_step;\n    ret;\n}\n"
+    }
+
+    /// Loads positions and velocities into registers, where the values of a step find them.
+    fn load_state(&self, writing: &mut Writing<'_, '_>) -> String {
+        let (real, _) = self.number();
+        for array in self.arrays.iter().filter(|array| matches!(array.name, "q" | "qd")) {
             for (joint, element) in array.elements.iter().enumerate() {
-                writing.registers.push(format!("%{}{joint}", array.name));
+                let register = format!("%{}{joint}", array.name);
                 let place = writing.place(&format!("%in_{}", array.name), joint);
-                let _ = writeln!(writing.body, "    ld.global.nc.{real} %{}{joint}, {place};", array.name);
+                let _ = writeln!(writing.body, "    ld.global.nc.{real} {register}, {place};");
                 if let Some(id) = element.and_then(|name| argument(&self.program, name)) {
-                    writing.known[id.index()] = format!("%{}{joint}", array.name);
+                    writing.known[id.index()].clone_from(&register);
                 }
+                writing.registers.push(register);
             }
         }
-        let start = std::mem::take(&mut writing.body);
+        std::mem::take(&mut writing.body)
+    }
+
+    /// Computes the accelerations, and the next velocities and positions from them.
+    fn step_of_euler(&self, writing: &mut Writing<'_, '_>) -> String {
+        let (real, _) = self.number();
         writing.values(false);
         let accelerations: Vec<String> =
             self.program.outputs.iter().map(|output| writing.operand(output.value)).collect();
@@ -84,23 +110,34 @@ impl Kernel<'_> {
                  mul.rn.{real} %change, %step, %qd{joint};\n    add.rn.{real} %q{joint}, %q{joint}, %change;"
             );
         }
-        let steps = std::mem::take(&mut writing.body);
+        std::mem::take(&mut writing.body)
+    }
+
+    /// Stores positions and velocities.
+    fn store_state(&self, writing: &mut Writing<'_, '_>) -> String {
+        let (real, _) = self.number();
         for array in ["q", "qd"] {
-            for joint in 0..dof {
+            for joint in 0..self.program.outputs.len() {
                 let place = writing.place(&format!("%out_{array}"), joint);
                 let _ = writeln!(writing.body, "    st.global.{real} {place}, %{array}{joint};");
             }
         }
-        let stores = std::mem::take(&mut writing.body);
-        let inputs = self.arrays.iter().map(|array| (format!("in_{}", array.name), array.elements.len()));
-        let arrays: Vec<(String, usize)> =
-            inputs.chain([("out_q".to_owned(), dof), ("out_qd".to_owned(), dof)]).collect();
+        std::mem::take(&mut writing.body)
+    }
+
+    /// Declares the parameters and the registers of a rollout, and counts its steps; a thread without a sample returns.
+    fn head_of_rollout(&self, name: &str, writing: &Writing<'_, '_>, arrays: &[(String, usize)]) -> String {
+        let (real, bytes) = self.number();
         let mut text = format!(".visible .entry {name}(\n");
-        for (array, _) in &arrays {
+        for (array, _) in arrays {
             let _ = writeln!(text, "    .param .u64 {array},");
         }
         let registers = writing.registers.iter().map(String::as_str).chain(["%step", "%change"]).collect::<Vec<_>>();
         let registers = fill(&registers.join(", "), WIDTH, &format!("    .reg .{real} "), "        ");
+        let by_states = match writing.arrangement {
+            Arrangement::Columns => "mul.wide.u32 %tau_step, %states,",
+            Arrangement::Rows => "mov.u64 %tau_step,",
+        };
         let _ = write!(
             text,
             "    .param .{real} step,\n    .param .u32 steps,\n    .param .u32 every,\n    .param .u32 states)\n\
@@ -115,10 +152,17 @@ impl Kernel<'_> {
              ld.param.{real} %step, [step];\n    mov.u32 %left, %every;\n    \
              div.u32 %kept, %steps, %every;\n    {} {};\n    mov.u64 %out_step, %tau_step;\n",
             writing.addresses + 1,
-            if arrangement == Arrangement::Columns { "mul.wide.u32 %tau_step, %states," } else { "mov.u64 %tau_step," },
-            dof * bytes
+            by_states,
+            self.program.outputs.len() * bytes
         );
-        for (array, length) in &arrays {
+        text
+    }
+
+    /// The addresses of the numbers of a thread at the first step.
+    fn first_addresses(&self, arrangement: Arrangement, arrays: &[(String, usize)]) -> String {
+        let (_, bytes) = self.number();
+        let mut text = String::new();
+        for (array, length) in arrays {
             let _ = writeln!(
                 text,
                 "    .reg .u64 %{array};\n    ld.param.u64 %{array}, [{array}];\n    \
@@ -137,14 +181,6 @@ impl Kernel<'_> {
                 (Arrangement::Rows, _) => writeln!(text, "    mad.wide.u32 %{array}, %index, {size}, %{array};"),
             };
         }
-        text + &start
-            + "next_step:\n"
-            + &steps
-            + "    add.u32 %left, %left, 4294967295;\n    setp.ne.u32 %is_left, %left, 0;\n    \
-               @%is_left bra not_written;\n    mov.u32 %left, %every;\n"
-            + &stores
-            + "    add.u64 %out_q, %out_q, %out_step;\n    add.u64 %out_qd, %out_qd, %out_step;\nnot_written:\n    \
-               add.u64 %in_tau, %in_tau, %tau_step;\n    add.u32 %steps, %steps, 4294967295;\n    \
-               setp.ne.u32 %is_left, %steps, 0;\n    @%is_left bra next_step;\n    ret;\n}\n"
+        text
     }
 }

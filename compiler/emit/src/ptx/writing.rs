@@ -15,7 +15,7 @@ const SIN_COS: [&str; 2] = [include_str!("sin_cos_f32.ptx"), include_str!("sin_c
 /// The instructions of a kernel.
 pub(super) struct Writing<'k, 'p> {
     kernel: &'k Kernel<'p>,
-    arrangement: Arrangement,
+    pub(super) arrangement: Arrangement,
     /// The memory in which a thread finds its arguments and leaves its results.
     memory: &'static str,
     real: &'static str,

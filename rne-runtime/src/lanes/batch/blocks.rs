@@ -54,6 +54,24 @@ struct Results<'r, 'a, T> {
     last: usize,
 }
 
+impl<T: BatchScalar> Results<'_, '_, T> {
+    /// Writes the outputs of the states in register `at`.
+    #[inline(always)]
+    fn write<V: Vector<Element = T>>(&mut self, at: usize, outputs: &[Register<V>]) {
+        let places = self.elements.iter_mut().zip(self.places);
+        if self.last > 0 {
+            for (numbers, &place) in places {
+                let register = outputs[usize::from(place)].0.store();
+                V::split_mut(numbers).1.copy_from_slice(&V::each(&register)[..self.last]);
+            }
+        } else {
+            for (numbers, &place) in places {
+                V::split_mut(numbers).0[at] = outputs[usize::from(place)].0.store();
+            }
+        }
+    }
+}
+
 impl<R, T: BatchScalar, const INPUTS: usize, const ANGLES: usize, const OUTPUTS: usize, const ELEMENTS: usize> Work<T>
     for OutputsOf<'_, R, T, INPUTS, ANGLES, OUTPUTS, ELEMENTS>
 where
@@ -134,7 +152,7 @@ fn outputs<
             let angles = robot.angles(&loaded::<V, INPUTS>(unit, &inputs, at, R::REQUIRED));
             // Not a loop: what one indexes is written to memory first, perhaps in parts, and waited for.
             macro_rules! each {
-                ($($index:literal)*) => {
+                ($($index:expr),*) => {
                     $(if $index < ANGLES {
                         let angle = angles[$index].0;
                         squares = squares.plus_product(angle, angle);
@@ -143,28 +161,15 @@ fn outputs<
                     })*
                 };
             }
-            each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15);
+            each!(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
             for index in 16..ANGLES {
-                let angle = angles[index].0;
-                squares = squares.plus_product(angle, angle);
-                let (sine, cosine) = kernel(angle);
-                (sines[index].0, cosines[index].0) = (sine.store(), cosine.store());
+                each!(index);
             }
         }
         for (at, [sines, cosines]) in (start..end).zip(&turns) {
             let (sines, cosines) = (registers::<V, ANGLES>(unit, sines), registers::<V, ANGLES>(unit, cosines));
             robot.outputs(&sines, &cosines, &loaded(unit, &inputs, at, R::REQUIRED), &mut results);
-            let places = written.elements.iter_mut().zip(written.places);
-            if written.last > 0 {
-                for (numbers, &place) in places {
-                    let register = results[usize::from(place)].0.store();
-                    V::split_mut(numbers).1.copy_from_slice(&V::each(&register)[..written.last]);
-                }
-            } else {
-                for (numbers, &place) in places {
-                    V::split_mut(numbers).0[at] = results[usize::from(place)].0.store();
-                }
-            }
+            written.write(at, &results);
         }
         // Not so for NaN and infinities either.
         let squares = squares.store();

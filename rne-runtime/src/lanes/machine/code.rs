@@ -17,8 +17,104 @@ pub struct Instruction {
     pub store: Slot,
 }
 
+/// Hands a macro the operations on numbers: what each is, its slots and its constant, its text, and its value, where
+/// `acc` is the accumulator.
+macro_rules! arithmetic {
+    ($of:ident) => {
+        $of! {
+            acc;
+            /// k
+            Constant(; k) "{k:?}" => k,
+            /// x
+            CopyS(x;) "s{x}" => x,
+            /// -x
+            NegativeS(x;) "-s{x}" => -x,
+            /// -acc
+            NegativeA(;) "-acc" => -acc,
+            /// x + y
+            SumSS(x, y;) "s{x} + s{y}" => x + y,
+            /// acc + y
+            SumAS(y;) "acc + s{y}" => acc + y,
+            /// x + k
+            SumSK(x; k) "s{x} + {k:?}" => x + k,
+            /// acc + k
+            SumAK(; k) "acc + {k:?}" => acc + k,
+            /// x - y
+            DifferenceSS(x, y;) "s{x} - s{y}" => x - y,
+            /// acc - y
+            DifferenceAS(y;) "acc - s{y}" => acc - y,
+            /// x - acc
+            DifferenceSA(x;) "s{x} - acc" => x - acc,
+            /// k - y
+            DifferenceKS(y; k) "{k:?} - s{y}" => k - y,
+            /// k - acc
+            DifferenceKA(; k) "{k:?} - acc" => k - acc,
+            /// x y
+            ProductSS(x, y;) "s{x}*s{y}" => x * y,
+            /// acc y
+            ProductAS(y;) "acc*s{y}" => acc * y,
+            /// x k
+            ProductSK(x; k) "s{x}*{k:?}" => x * k,
+            /// acc k
+            ProductAK(; k) "acc*{k:?}" => acc * k,
+            /// x / y
+            QuotientSS(x, y;) "s{x}/s{y}" => x / y,
+            /// acc / y
+            QuotientAS(y;) "acc/s{y}" => acc / y,
+            /// x / acc
+            QuotientSA(x;) "s{x}/acc" => x / acc,
+            /// k / y
+            QuotientKS(y; k) "{k:?}/s{y}" => k / y,
+            /// k / acc
+            QuotientKA(; k) "{k:?}/acc" => k / acc,
+            /// acc + x y
+            PlusASS(x, y;) "acc + s{x}*s{y}" => acc.plus_product(x, y),
+            /// acc + x k
+            PlusASK(x; k) "acc + s{x}*{k:?}" => acc.plus_product(x, k),
+            /// z + x y
+            PlusSSS(z, x, y;) "s{z} + s{x}*s{y}" => z.plus_product(x, y),
+            /// z + acc y
+            PlusSAS(z, y;) "s{z} + acc*s{y}" => z.plus_product(acc, y),
+            /// z + x k
+            PlusSSK(z, x; k) "s{z} + s{x}*{k:?}" => z.plus_product(x, k),
+            /// z + acc k
+            PlusSAK(z; k) "s{z} + acc*{k:?}" => z.plus_product(acc, k),
+            /// k + x y
+            PlusKSS(x, y; k) "{k:?} + s{x}*s{y}" => k.plus_product(x, y),
+            /// k + acc y
+            PlusKAS(y; k) "{k:?} + acc*s{y}" => k.plus_product(acc, y),
+            /// acc - x y
+            MinusASS(x, y;) "acc - s{x}*s{y}" => acc.minus_product(x, y),
+            /// z - x y
+            MinusSSS(z, x, y;) "s{z} - s{x}*s{y}" => z.minus_product(x, y),
+            /// z - acc y
+            MinusSAS(z, y;) "s{z} - acc*s{y}" => z.minus_product(acc, y),
+            /// k - x y
+            MinusKSS(x, y; k) "{k:?} - s{x}*s{y}" => k.minus_product(x, y),
+            /// k - acc y
+            MinusKAS(y; k) "{k:?} - acc*s{y}" => k.minus_product(acc, y),
+            /// x y - acc
+            LessASS(x, y;) "s{x}*s{y} - acc" => (-acc).plus_product(x, y),
+            /// x k - acc
+            LessASK(x; k) "s{x}*{k:?} - acc" => (-acc).plus_product(x, k),
+            /// x y - z
+            LessSSS(z, x, y;) "s{x}*s{y} - s{z}" => (-z).plus_product(x, y),
+            /// acc y - z
+            LessSAS(z, y;) "acc*s{y} - s{z}" => (-z).plus_product(acc, y),
+            /// x k - z
+            LessSSK(z, x; k) "s{x}*{k:?} - s{z}" => (-z).plus_product(x, k),
+            /// acc k - z
+            LessSAK(z; k) "acc*{k:?} - s{z}" => (-z).plus_product(acc, k),
+        }
+    };
+}
+pub(super) use arithmetic;
+
 macro_rules! operations {
-    ($($(#[$about:meta])* $Operation:ident($($slot:ident),*; $($number:ident)?) $text:literal,)*) => {
+    (
+        $acc:ident;
+        $($(#[$about:meta])* $Operation:ident($($slot:ident),*; $($number:ident)?) $text:literal => $value:expr,)*
+    ) => {
         /// New value of the accumulator. The names list the operands from left to right: `A` is the
         /// accumulator, `S` a slot, `K` a constant. A factor and an addend are one operation, rounded once where the
         /// vector unit rounds it once.
@@ -64,90 +160,7 @@ macro_rules! operations {
     (@slot $slot:ident) => { Slot };
     (@number $number:ident) => { f64 };
 }
-operations! {
-    /// k
-    Constant(; k) "{k:?}",
-    /// x
-    CopyS(x;) "s{x}",
-    /// -x
-    NegativeS(x;) "-s{x}",
-    /// -acc
-    NegativeA(;) "-acc",
-    /// x + y
-    SumSS(x, y;) "s{x} + s{y}",
-    /// acc + y
-    SumAS(y;) "acc + s{y}",
-    /// x + k
-    SumSK(x; k) "s{x} + {k:?}",
-    /// acc + k
-    SumAK(; k) "acc + {k:?}",
-    /// x - y
-    DifferenceSS(x, y;) "s{x} - s{y}",
-    /// acc - y
-    DifferenceAS(y;) "acc - s{y}",
-    /// x - acc
-    DifferenceSA(x;) "s{x} - acc",
-    /// k - y
-    DifferenceKS(y; k) "{k:?} - s{y}",
-    /// k - acc
-    DifferenceKA(; k) "{k:?} - acc",
-    /// x y
-    ProductSS(x, y;) "s{x}*s{y}",
-    /// acc y
-    ProductAS(y;) "acc*s{y}",
-    /// x k
-    ProductSK(x; k) "s{x}*{k:?}",
-    /// acc k
-    ProductAK(; k) "acc*{k:?}",
-    /// x / y
-    QuotientSS(x, y;) "s{x}/s{y}",
-    /// acc / y
-    QuotientAS(y;) "acc/s{y}",
-    /// x / acc
-    QuotientSA(x;) "s{x}/acc",
-    /// k / y
-    QuotientKS(y; k) "{k:?}/s{y}",
-    /// k / acc
-    QuotientKA(; k) "{k:?}/acc",
-    /// acc + x y
-    PlusASS(x, y;) "acc + s{x}*s{y}",
-    /// acc + x k
-    PlusASK(x; k) "acc + s{x}*{k:?}",
-    /// z + x y
-    PlusSSS(z, x, y;) "s{z} + s{x}*s{y}",
-    /// z + acc y
-    PlusSAS(z, y;) "s{z} + acc*s{y}",
-    /// z + x k
-    PlusSSK(z, x; k) "s{z} + s{x}*{k:?}",
-    /// z + acc k
-    PlusSAK(z; k) "s{z} + acc*{k:?}",
-    /// k + x y
-    PlusKSS(x, y; k) "{k:?} + s{x}*s{y}",
-    /// k + acc y
-    PlusKAS(y; k) "{k:?} + acc*s{y}",
-    /// acc - x y
-    MinusASS(x, y;) "acc - s{x}*s{y}",
-    /// z - x y
-    MinusSSS(z, x, y;) "s{z} - s{x}*s{y}",
-    /// z - acc y
-    MinusSAS(z, y;) "s{z} - acc*s{y}",
-    /// k - x y
-    MinusKSS(x, y; k) "{k:?} - s{x}*s{y}",
-    /// k - acc y
-    MinusKAS(y; k) "{k:?} - acc*s{y}",
-    /// x y - acc
-    LessASS(x, y;) "s{x}*s{y} - acc",
-    /// x k - acc
-    LessASK(x; k) "s{x}*{k:?} - acc",
-    /// x y - z
-    LessSSS(z, x, y;) "s{x}*s{y} - s{z}",
-    /// acc y - z
-    LessSAS(z, y;) "acc*s{y} - s{z}",
-    /// x k - z
-    LessSSK(z, x; k) "s{x}*{k:?} - s{z}",
-    /// acc k - z
-    LessSAK(z; k) "acc*{k:?} - s{z}",
-}
+arithmetic!(operations);
 
 /// The sine and the cosine of a slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! One block of states through the code: the accumulator is some registers, a slot as many in memory.
 
-use super::code::{Code, Instruction, NOWHERE, Operation, Slot};
+use super::code::{Code, Instruction, NOWHERE, Operation, Slot, arithmetic};
 use crate::Scalar;
 use crate::lanes::batch::BatchScalar;
 use crate::lanes::batch::vector::Vector;
@@ -14,7 +14,6 @@ pub(super) trait Port<V: Vector, const N: usize> {
 
 /// Runs instructions on a block.
 #[inline(always)]
-#[allow(clippy::too_many_lines)] // a line per operation
 pub(super) fn execute<V, P, const N: usize>(
     unit: V::Unit,
     instructions: &[Instruction],
@@ -27,129 +26,34 @@ pub(super) fn execute<V, P, const N: usize>(
     let mut acc = [V::splat(V::Element::ZERO); N];
     for &Instruction { operation, store } in instructions {
         // Loops over registers, written so that the compiler unrolls them.
-        macro_rules! each {
-            (|$i:ident| $value:expr) => {
-                for $i in 0..N {
-                    acc[$i] = $value;
+        macro_rules! operations {
+            (
+                $acc:ident;
+                $($(#[$about:meta])* $Operation:ident($($slot:ident),*; $($k:ident)?) $text:literal => $value:expr,)*
+            ) => {
+                match operation {
+                    Operation::Input(index) => acc = port.input(index as usize),
+                    Operation::Output(index) => port.output(index as usize, &acc),
+                    Operation::BySign(x, a, b) => {
+                        let [x, a, b] = [x, a, b].map(|slot: Slot| &slots[slot as usize]);
+                        for i in 0..N {
+                            acc[i] = by_sign(unit, &x[i], &a[i], &b[i]);
+                        }
+                    }
+                    $(Operation::$Operation($($slot,)* $($k)?) => {
+                        $(let $k = V::splat(V::Element::rounded($k));)?
+                        $(let $slot = &slots[$slot as usize];)*
+                        for i in 0..N {
+                            $(let $slot = V::load(unit, &$slot[i]);)*
+                            #[allow(unused_variables)]
+                            let $acc = acc[i];
+                            acc[i] = $value;
+                        }
+                    })*
                 }
             };
-            ($($x:ident: $slot:expr),+; |$i:ident| $value:expr) => {{
-                $(let $x = &slots[$slot as usize];)+
-                for $i in 0..N {
-                    $(let $x = V::load(unit, &$x[$i]);)+
-                    acc[$i] = $value;
-                }
-            }};
         }
-        let number = |k: f64| V::splat(V::Element::rounded(k));
-        match operation {
-            Operation::Input(index) => acc = port.input(index as usize),
-            Operation::Output(index) => port.output(index as usize, &acc),
-            Operation::BySign(x, a, b) => {
-                let [x, a, b] = [x, a, b].map(|slot: Slot| &slots[slot as usize]);
-                for i in 0..N {
-                    acc[i] = by_sign(unit, &x[i], &a[i], &b[i]);
-                }
-            }
-            Operation::Constant(k) => {
-                let k = number(k);
-                each!(|i| k);
-            }
-            Operation::CopyS(x) => each!(x: x; |i| x),
-            Operation::NegativeS(x) => each!(x: x; |i| -x),
-            Operation::NegativeA() => each!(|i| -acc[i]),
-            Operation::SumSS(x, y) => each!(x: x, y: y; |i| x + y),
-            Operation::SumAS(y) => each!(y: y; |i| acc[i] + y),
-            Operation::SumSK(x, k) => {
-                let k = number(k);
-                each!(x: x; |i| x + k);
-            }
-            Operation::SumAK(k) => {
-                let k = number(k);
-                each!(|i| acc[i] + k);
-            }
-            Operation::DifferenceSS(x, y) => each!(x: x, y: y; |i| x - y),
-            Operation::DifferenceAS(y) => each!(y: y; |i| acc[i] - y),
-            Operation::DifferenceSA(x) => each!(x: x; |i| x - acc[i]),
-            Operation::DifferenceKS(y, k) => {
-                let k = number(k);
-                each!(y: y; |i| k - y);
-            }
-            Operation::DifferenceKA(k) => {
-                let k = number(k);
-                each!(|i| k - acc[i]);
-            }
-            Operation::ProductSS(x, y) => each!(x: x, y: y; |i| x * y),
-            Operation::ProductAS(y) => each!(y: y; |i| acc[i] * y),
-            Operation::ProductSK(x, k) => {
-                let k = number(k);
-                each!(x: x; |i| x * k);
-            }
-            Operation::ProductAK(k) => {
-                let k = number(k);
-                each!(|i| acc[i] * k);
-            }
-            Operation::QuotientSS(x, y) => each!(x: x, y: y; |i| x / y),
-            Operation::QuotientAS(y) => each!(y: y; |i| acc[i] / y),
-            Operation::QuotientSA(x) => each!(x: x; |i| x / acc[i]),
-            Operation::QuotientKS(y, k) => {
-                let k = number(k);
-                each!(y: y; |i| k / y);
-            }
-            Operation::QuotientKA(k) => {
-                let k = number(k);
-                each!(|i| k / acc[i]);
-            }
-            Operation::PlusASS(x, y) => each!(x: x, y: y; |i| acc[i].plus_product(x, y)),
-            Operation::PlusASK(x, k) => {
-                let k = number(k);
-                each!(x: x; |i| acc[i].plus_product(x, k));
-            }
-            Operation::PlusSSS(z, x, y) => each!(z: z, x: x, y: y; |i| z.plus_product(x, y)),
-            Operation::PlusSAS(z, y) => each!(z: z, y: y; |i| z.plus_product(acc[i], y)),
-            Operation::PlusSSK(z, x, k) => {
-                let k = number(k);
-                each!(z: z, x: x; |i| z.plus_product(x, k));
-            }
-            Operation::PlusSAK(z, k) => {
-                let k = number(k);
-                each!(z: z; |i| z.plus_product(acc[i], k));
-            }
-            Operation::PlusKSS(x, y, k) => {
-                let k = number(k);
-                each!(x: x, y: y; |i| k.plus_product(x, y));
-            }
-            Operation::PlusKAS(y, k) => {
-                let k = number(k);
-                each!(y: y; |i| k.plus_product(acc[i], y));
-            }
-            Operation::MinusASS(x, y) => each!(x: x, y: y; |i| acc[i].minus_product(x, y)),
-            Operation::MinusSSS(z, x, y) => each!(z: z, x: x, y: y; |i| z.minus_product(x, y)),
-            Operation::MinusSAS(z, y) => each!(z: z, y: y; |i| z.minus_product(acc[i], y)),
-            Operation::MinusKSS(x, y, k) => {
-                let k = number(k);
-                each!(x: x, y: y; |i| k.minus_product(x, y));
-            }
-            Operation::MinusKAS(y, k) => {
-                let k = number(k);
-                each!(y: y; |i| k.minus_product(acc[i], y));
-            }
-            Operation::LessASS(x, y) => each!(x: x, y: y; |i| (-acc[i]).plus_product(x, y)),
-            Operation::LessASK(x, k) => {
-                let k = number(k);
-                each!(x: x; |i| (-acc[i]).plus_product(x, k));
-            }
-            Operation::LessSSS(z, x, y) => each!(z: z, x: x, y: y; |i| (-z).plus_product(x, y)),
-            Operation::LessSAS(z, y) => each!(z: z, y: y; |i| (-z).plus_product(acc[i], y)),
-            Operation::LessSSK(z, x, k) => {
-                let k = number(k);
-                each!(z: z, x: x; |i| (-z).plus_product(x, k));
-            }
-            Operation::LessSAK(z, k) => {
-                let k = number(k);
-                each!(z: z; |i| (-z).plus_product(acc[i], k));
-            }
-        }
+        arithmetic!(operations);
         if store != NOWHERE {
             let slot = &mut slots[store as usize];
             for i in 0..N {

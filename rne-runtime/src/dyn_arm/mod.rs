@@ -1,5 +1,12 @@
 //! The runtime robot with a number of joints known at run time.
 
+mod error;
+mod evaluate;
+mod load;
+
+pub use error::{LoadError, WrongJointCount, WrongLength};
+pub use evaluate::Inputs;
+
 use rne_model::{Contact, Convention, FixedFrame, Joint, Link, Model, Motor, Robot, Row, Transform};
 
 use crate::definition::Definition;
@@ -15,7 +22,7 @@ use crate::seven_steps::link_state::JointMotions;
 use crate::seven_steps::mechanism::Mechanism;
 use crate::seven_steps::mount::Mount;
 use crate::seven_steps::trace::{self, LinkTrace, turn_to_base, turn_to_lecture};
-use crate::{BaseMotion, Constant, Payload, Scalar, Wrench, WrongLength};
+use crate::{BaseMotion, Constant, Payload, Scalar, Wrench};
 
 /// [`Arm`](crate::Arm) for a number of joints known at run time: the same recursion, the same bits, with slices for
 /// arrays.

@@ -1,0 +1,95 @@
+//! The headings of sections, with the formulas of their steps.
+
+use rne_codegen::{Form, Function, Program, Quantity, Step, WithRespectTo};
+use rne_model::{Joint, JointKind, Robot, one_line};
+
+use super::Line;
+use crate::formula::{Numbers, formulas, payload_formulas, reduced_formulas};
+
+/// The heading of derivatives, and of what one joint accelerates.
+pub(super) fn by_title(robot: &Robot, program: &Program, joint: usize, step: Step, by: WithRespectTo) -> String {
+    let what = match step {
+        Step::Beyond => joint_title(robot, joint),
+        _ => step_title(robot, program, joint, step),
+    };
+    match by {
+        WithRespectTo::BaseRateDot(_) => format!("{what}, for {} = 1 alone", by.variable()),
+        WithRespectTo::RateDot(by) => format!("{what}, for q̈{by} = 1 alone"),
+        WithRespectTo::BasePosition(_) | WithRespectTo::BaseRate(_) => format!("{what}, by {}", by.variable()),
+        WithRespectTo::Position(by) => format!("{what}, by q{by}"),
+        WithRespectTo::Rate(by) => format!("{what}, by q̇{by}"),
+    }
+}
+
+/// The heading of a formula beyond the seven steps: the function's own, or what several functions share.
+pub(super) fn beyond_title(program: &Program, quantity: Quantity, joint: usize) -> String {
+    if let Some(own) = rne_codegen::own(program.function, quantity) {
+        return (own.heading)(joint);
+    }
+    match quantity {
+        Quantity::FrameRotation | Quantity::FrameOrigin if joint > program.joints => "the tip in the world".to_owned(),
+        Quantity::FrameRotation | Quantity::FrameOrigin => format!("frame {joint} in the world"),
+        Quantity::LowerFactor
+        | Quantity::ScaledFactor
+        | Quantity::Pivot
+        | Quantity::InversePivot
+        | Quantity::Reduced
+        | Quantity::Scaled => "L D Lᵀ q̈ = τ - bias, where M = L D Lᵀ".to_owned(),
+        _ => format!("joint {joint}: terms that have no meaning of their own"),
+    }
+}
+
+/// Whether the link of a joint, counted from 1, has a first moment and no mass.
+pub(super) fn has_first_moment(robot: &Robot, joint: usize) -> bool {
+    robot.joints.get(joint.wrapping_sub(1)).is_some_and(|joint| joint.row.link.has_first_moment())
+}
+
+/// The heading of a step of one joint, and its formulas.
+pub(super) fn heading<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -> Vec<Line<'a>> {
+    let kind = robot.joints.get(joint.wrapping_sub(1)).map_or(JointKind::Revolute, |joint| joint.row.kind);
+    let numbers = Numbers::of(robot, joint, program.function);
+    let formulas = match recursion(program) {
+        // the lecture's base is at rest
+        _ if joint == 0 => Vec::new(),
+        Form::SevenSteps if joint > program.joints => payload_formulas(step, &numbers),
+        Form::SevenSteps => formulas(step, kind, &numbers, has_first_moment(robot, joint)),
+        Form::Reduced if program.is_of_bodies() => Vec::new(),
+        Form::Reduced => reduced_formulas(step, kind, &numbers),
+    };
+    let title = Line::Heading(step_title(robot, program, joint, step));
+    std::iter::once(title).chain(formulas.into_iter().map(Line::Formula)).collect()
+}
+
+/// The recursion of which a program is made: the regressor and what is made of the reduced recursion know origins of
+/// frames, not centres of mass.
+pub(in super::super) fn recursion(program: &Program) -> Form {
+    let is_reduced = program.form != Form::SevenSteps
+        && (Function::TORQUES.contains(&program.function) || !program.choices.is_empty());
+    if is_reduced || program.function == Function::Regressor { Form::Reduced } else { Form::SevenSteps }
+}
+
+/// A joint by its number; on a tree, where the number alone does not say the branch, with its name.
+fn joint_title(robot: &Robot, joint: usize) -> String {
+    match robot.joints.get(joint.wrapping_sub(1)).filter(|_| !robot.is_serial()) {
+        Some(Joint { name, .. }) => format!("joint {joint} ({})", one_line(name)),
+        None => format!("joint {joint}"),
+    }
+}
+
+fn step_title(robot: &Robot, program: &Program, joint: usize, step: Step) -> String {
+    if program.is_of_bodies() && step == Step::Wrenches {
+        return format!("{}: the links from here on, as one body", joint_title(robot, joint));
+    }
+    let title = match (recursion(program), step) {
+        (Form::SevenSteps, _) => step.title(),
+        (_, Step::Acceleration) => "acceleration of the frame's origin",
+        (_, Step::AngularAcceleration) => "angular acceleration, accelerations of points",
+        _ => step.title(),
+    };
+    let body = match joint {
+        0 => "base".to_owned(),
+        _ if joint > program.joints => "payload".to_owned(),
+        _ => joint_title(robot, joint),
+    };
+    format!("{body}, step {}: {title}", step.number())
+}
