@@ -1,7 +1,7 @@
 //! Blocks of documents, and what each contains.
 
 use crate::programs::{code, control, embedded, functions, stubs, two_hands};
-use crate::tables::{headline, operations, robots, sources, trees, tricks};
+use crate::tables::{headline, robots, sources, trees, tricks};
 use crate::{read, root};
 
 /// The documents with blocks, and which blocks these are; what is measured or printed by a command does not count.
@@ -11,8 +11,7 @@ const DOCUMENTS: &[(&str, &[&str])] = &[
     ("README.md", &["headline", "example", "control"]),
     ("docs/firmware/first-firmware.md", &["torque", "config", "embedded"]),
     ("docs/reference/functions.md", &["functions", "two_hands"]),
-    ("docs/measured/performance.md", &["operations", "tricks"]),
-    ("docs/control/ros2.md", &["ros2_controller"]),
+    ("docs/measured/performance.md", &["tricks"]),
     (
         "docs/robot-file.md",
         &[
@@ -30,7 +29,6 @@ const DOCUMENTS: &[(&str, &[&str])] = &[
             "contacts",
         ],
     ),
-    ("docs/reference/robot-file-keys.md", &["every_key"]),
     ("docs/teaching/for-teachers.md", &["code"]),
     ("robots/README.md", &["sources", "robots", "trees"]),
 ];
@@ -50,9 +48,6 @@ fn block(name: &str) -> String {
         "example" => format!("```rust\n{}```\n", read(&root().join("examples/puma560.rs"))),
         "control" => control(),
         "two_hands" => two_hands(),
-        "ros2_controller" => {
-            format!("```cpp\n{}```\n", read(&root().join("doors/c/examples/ros2_control/gravity_controller.cpp")))
-        }
         "controller" => format!("```c\n{}```\n", read(&root().join("doors/c/examples/controller.c"))),
         "torque" => format!("```rust\n{}```\n", read(&root().join("cli/src/commands/firmware/main.rs"))),
         "config" => {
@@ -72,7 +67,6 @@ fn block(name: &str) -> String {
         "satellite" => part("docs/satellite.yaml", "floating_base:", Some("joints:")),
         "contacts" => part("docs/standing_hyq.yaml", "tips:", Some("  - {tip: rf_foot")),
         "desk_arm" => format!("```yaml\n{}```\n", read(&root().join("docs/desk_arm.yaml"))),
-        "every_key" => format!("```yaml\n{}```\n", read(&root().join("docs/every-key.yaml"))),
         "headline" => headline(),
         "code" => code(),
         "sources" => sources(),
@@ -80,7 +74,6 @@ fn block(name: &str) -> String {
         "trees" => trees(),
         "functions" => functions(),
         "stubs" => stubs(),
-        "operations" => operations(),
         "tricks" => tricks(),
         "embedded" => embedded(),
         name => panic!("no block is called `{name}`"),

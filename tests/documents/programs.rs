@@ -35,12 +35,12 @@ pub(crate) fn two_hands() -> String {
     format!("```rust,ignore\n{derive}{calls}```\n")
 }
 
-/// The emitted code of steps 1 to 5 of joint 3 of the PUMA 560.
+/// The emitted code of steps 1 and 2 of joint 3 of the PUMA 560.
 pub(crate) fn code() -> String {
     let robot = robot(&root().join("robots/puma560.yaml"));
     let program = inverse_dynamics(&robot);
     let what = |&step| Selection { joint: Some(3), step: Some(step), ..Selection::default() };
-    let steps = Step::ALL[..5].iter().map(|step| listing(&robot, &program, what(step)));
+    let steps = Step::ALL[..2].iter().map(|step| listing(&robot, &program, what(step)));
     let code: Vec<String> = steps.filter(|listing| !listing.is_empty()).map(|listing| listing.to_string()).collect();
     let code = code.join("\n");
     let emitted = rne_emit::rust_file(&robot, &[program]);
@@ -128,10 +128,13 @@ pub(crate) fn functions() -> String {
     let robot = robot(&path);
     let (plans, _) = plans(&path, &robot);
     let mut text = String::from(
-        "| derive | method | seven steps: products | sums | reduced: products | sums | divisions | angles |\n\
-         |---|---|---|---|---|---|---|---|\n",
+        "| derive | method | seven steps | reduced | divisions | angles |\n\
+         |---|---|---|---|---|---|\n",
     );
-    for capability in Capability::ALL {
+    // the page has other tables of the functions of floating bases, and names those with a payload or wrenches
+    let elsewhere = ["Floating", "Centroidal", "Contact", "Payload", "TipWrenches"];
+    let is_listed = |capability: &&Capability| !elsewhere.iter().any(|start| capability.name().starts_with(start));
+    for capability in Capability::ALL.iter().filter(is_listed) {
         // the PUMA 560 has no closed loops
         for function in capability.functions().filter(|function| !function.is_of_closed_loops()) {
             let count = |form| {
@@ -145,12 +148,10 @@ pub(crate) fn functions() -> String {
             };
             let _ = writeln!(
                 text,
-                "| `{}` | `{function}` | {} | {} | {} | {} | {} | {angles} |",
+                "| `{}` | `{function}` | {} | {} | {} | {angles} |",
                 capability.name(),
-                plain.mul,
-                plain.add,
-                reduced.mul,
-                reduced.add,
+                plain.total(),
+                reduced.total(),
                 reduced.div
             );
         }

@@ -96,53 +96,46 @@ fn kinds(robot: &Robot) -> String {
     robot.rows().map(|row| letter(row.kind)).collect()
 }
 
-/// Where the numbers of every robot are from, and what is doubtful: the last sentence of `source`, and the first one
-/// after "Doubtful:" in the comment at the head of the file.
+/// Where the numbers of every robot are from: the last sentence of `source`.
 pub(crate) fn sources() -> String {
-    let mut text =
-        String::from("| file | arm | joints | convention | source quality | doubtful |\n|---|---|---|---|---|---|\n");
+    let mut text = String::from("| file | arm | joints | convention | source quality |\n|---|---|---|---|---|\n");
     for path in robot_files("robots") {
-        let (robot, file) = (robot(&path), read(&path));
-        let (quality, doubtful) = told(&robot, &file, &path);
+        let robot = robot(&path);
+        let quality = source_quality(&robot, &path);
         let (name, title) = (&robot.name, robot.title.as_deref().unwrap_or(&robot.name));
         let _ = writeln!(
             text,
-            "| [{name}]({name}.yaml) | {title} | {} | {} | {quality} | {} |",
+            "| [{name}]({name}.yaml) | {title} | {} | {} | {quality} |",
             kinds(&robot),
-            robot.convention.name(),
-            doubtful
+            robot.convention.name()
         );
     }
     text
 }
 
-/// The quality of the source of a robot file, and what is doubtful.
-fn told(robot: &Robot, file: &str, path: &Path) -> (String, String) {
+/// The quality of the source of a robot file.
+fn source_quality(robot: &Robot, path: &Path) -> String {
     let source = robot.source.split_whitespace().collect::<Vec<_>>().join(" ");
     let quality = source.rsplit_once("Source quality: ").map(|(_, quality)| quality.trim_end_matches('.').to_owned());
-    let quality = quality.unwrap_or_else(|| panic!("{}: `source` ends with `Source quality: …`", path.display()));
-    let head = file.lines().map_while(|line| line.strip_prefix('#')).flat_map(str::split_whitespace);
-    let head = head.collect::<Vec<_>>().join(" ") + " ";
-    let doubtful = head.split_once("Doubtful: ").and_then(|(_, rest)| rest.split_once(". ")).map(|(first, _)| first);
-    (quality, doubtful.unwrap_or_default().to_owned())
+    quality.unwrap_or_else(|| panic!("{}: `source` ends with `Source quality: …`", path.display()))
 }
 
 /// The robots with branches, followers or motors: sources, and the operations of `inverse_dynamics`.
 pub(crate) fn trees() -> String {
     let mut text = String::from(
-        "| file | robot | joints | source quality | doubtful | seven steps | planned | reduced |\n\
-         |---|---|---|---|---|---|---|---|\n",
+        "| file | robot | joints | source quality | seven steps | planned | reduced |\n\
+         |---|---|---|---|---|---|---|\n",
     );
     for path in robot_files("robots/trees") {
-        let (robot, file) = (robot(&path), read(&path));
-        let (quality, doubtful) = told(&robot, &file, &path);
+        let robot = robot(&path);
+        let quality = source_quality(&robot, &path);
         let (plans, is_planned) = plans(&path, &robot);
         assert!(is_planned, "{}: there is no plan file", robot.name);
         let planned = reduced(&robot, &rne_search::without(&robot, &plans, &[Trick::Rewriting]));
         let (name, title) = (&robot.name, robot.title.as_deref().unwrap_or(&robot.name));
         let _ = writeln!(
             text,
-            "| [{name}](trees/{name}.yaml) | {title} | {} | {quality} | {doubtful} | {} | {} | {} |",
+            "| [{name}](trees/{name}.yaml) | {title} | {} | {quality} | {} | {} | {} |",
             kinds(&robot),
             inverse_dynamics(&robot).operations().total(),
             planned.total(),
@@ -154,8 +147,8 @@ pub(crate) fn trees() -> String {
 
 pub(crate) fn robots() -> String {
     let mut text = String::from(
-        "| robot | joints | seven steps: products | sums | both | planned | reduced | angles |\n\
-         |---|---|---|---|---|---|---|---|\n",
+        "| robot | seven steps: products | sums | both | planned | reduced | angles |\n\
+         |---|---|---|---|---|---|---|\n",
     );
     for path in robot_files("robots") {
         let robot = robot(&path);
@@ -163,12 +156,10 @@ pub(crate) fn robots() -> String {
         let (plans, _) = plans(&path, &robot);
         let (planned, reduced) =
             (reduced(&robot, &rne_search::without(&robot, &plans, &[Trick::Rewriting])), reduced(&robot, &plans));
-        let joints = kinds(&robot);
-        let title = robot.title.as_deref().unwrap_or(&robot.name);
-        let file = &robot.name;
         let _ = writeln!(
             text,
-            "| [{title}]({file}.yaml) | {joints} | {} | {} | {} | {} | {} | {} → {} |",
+            "| {} | {} | {} | {} | {} | {} | {} → {} |",
+            robot.name,
             counts.mul,
             counts.add,
             counts.total(),
@@ -189,31 +180,6 @@ pub(crate) fn plans(file: &Path, robot: &Robot) -> (PlanSet, bool) {
     }
     let plan = PlanFile::read(&plan.display().to_string(), &read(&plan), robot);
     (PlanSet::from(plan.unwrap_or_else(|report| panic!("{report}"))), true)
-}
-
-/// The operations of every robot, the forms side by side.
-pub(crate) fn operations() -> String {
-    let cell = |counts: Operations| format!("{} + {} = {}, {}", counts.mul, counts.add, counts.total(), counts.sincos);
-    let mut text = String::from(
-        "| robot | plan | before folding | seven_steps | planned | reduced |\n|---|---|---:|---:|---:|---:|\n",
-    );
-    for path in robot_files("robots") {
-        let robot = robot(&path);
-        let (plans, has_plan) = plans(&path, &robot);
-        let seven_steps = inverse_dynamics(&robot);
-        let (products, sums) = seven_steps.before();
-        let _ = writeln!(
-            text,
-            "| {} | {} | {products} + {sums} = {} | {} | {} | {} |",
-            robot.name,
-            if has_plan { "file" } else { "of the build" },
-            products + sums,
-            cell(seven_steps.operations()),
-            cell(reduced(&robot, &rne_search::without(&robot, &plans, &[Trick::Rewriting]))),
-            cell(reduced(&robot, &plans)),
-        );
-    }
-    text
 }
 
 /// What the tricks save that the plans of two robots make use of.

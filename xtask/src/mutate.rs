@@ -59,7 +59,7 @@ const HEAD: &str = "\
 A mutation is a change that makes one term of the source code wrong. This page lists mutations, and the tests that fail
 because of them. `cargo xtask mutate --update` writes the page: it makes each mutation in a copy of the repository and
 runs the tests that the section names. If no test fails, its exit status is 1.
-[xtask/mutants.yaml](../xtask/mutants.yaml) contains the old and the new text of each mutation. All mutations of this
+[xtask/mutants.yaml](../../xtask/mutants.yaml) contains the old and the new text of each mutation. All mutations of this
 page need knowledge of dynamics or of the compiler. `cargo mutants` makes the other kind: it exchanges operators and
 comparisons.
 ";

@@ -2,13 +2,15 @@
 
 A median is the median of the rounds' medians, a minimum the least of all rounds. A ratio is one median over another.
 With --readme short tables replace what stands between the markers of the section `Measured` of FILE. They have no
-minima, no deviations, no chained calls, no rows of x86-64-v3, and of the compilers of generated C those that are the
-fastest of one function on some robot.
+minima, no deviations, no chained calls, no ratios, no rows of x86-64-v3 or of sines alone, of generated C the rows that
+are the fastest of one function and one generator on some robot, and of other functions the fastest of our targets. The
+tables of robots with branches leave out the versions of the other systems and the operations of Pinocchio's functions.
 """
 
 import csv
 import json
 import math
+import re
 import sys
 from pathlib import Path
 from statistics import median
@@ -79,6 +81,8 @@ FUNCTIONS_OF_TREES = {
     ),
 }
 COMPILERS = ["", "_ffast", "_clang_ffast"]
+# CasADi's three ways to write the torques.
+CASADI_TORQUES = ["casadi_dh", "casadi_jf", "casadi_base"]
 
 
 class Times:
@@ -134,8 +138,11 @@ class Times:
             return True
         if is_ours(peer):
             return not peer.endswith("_v3")
+        if peer.startswith("trig_only"):
+            return False
         name = next(peer.removesuffix(end) for end in sorted(COMPILERS, key=len, reverse=True) if peer.endswith(end))
-        rivals = [name + end for end in COMPILERS if name + end in self.peers]
+        names = CASADI_TORQUES if name in CASADI_TORQUES else [name]
+        rivals = [name + end for name in names for end in COMPILERS if name + end in self.peers]
         for robot in self.robots:
             of_robot = [(x, rival) for rival in rivals if (x := self.get(robot, rival, "independent")) is not None]
             if of_robot and min(of_robot)[1] == peer:
@@ -204,7 +211,9 @@ def marked(ratio, required):
     return f"{ratio:.2f}" + (" ✗" if required is not None and ratio < required else "")
 
 
-def counted(reached, total):
+def counted(reached, total, is_short=False):
+    if is_short:
+        return f"{reached} of {total} ratios that the project requires of its rows are reached; `tables.md` lists them."
     return f"{reached} of {total} required ratios are reached; ✗ marks a ratio below the required one."
 
 
@@ -221,9 +230,17 @@ def ratios(times):
                 cells.append("-" if x is None else marked(x, limit))
                 if x is not None and limit is not None:
                     reached, total = reached + (x >= limit), total + 1
-            if times.is_shown(peer):
-                rows.append([peer, *cells])
-    return markdown(["our row; required", *times.robots], rows) + "\n\n" + counted(reached, total)
+            rows.append([peer, *cells])
+    if times.is_short:
+        return counted(reached, total, is_short=True)
+    return "\n\n".join(
+        [
+            "### Ratios of medians: how many times faster our rows are, and what is required",
+            markdown(["our row; required", *times.robots], rows),
+            counted(reached, total),
+            "The best CasADi row of a robot is its fastest row `casadi_*` or `pin_casadi*` with one state per call.",
+        ]
+    )
 
 
 def deviation(times, peer):
@@ -248,7 +265,8 @@ def function_times(times):
                 cells[at] = f"{nanoseconds(time)} ({marked(rival / time, limit)})"
                 if limit is not None:
                     reached, total = reached + (rival / time >= limit), total + 1
-            if name != "torques" and times.is_shown(peer):
+            is_shown = peer == other or peer.endswith("_native") or not times.is_short
+            if name != "torques" and is_shown:
                 rows[peer] = [*cells, *deviation(times, peer)]
     head = ["competitor", *times.robots, *([] if times.is_short else ["deviation"])]
     return markdown(head, rows.values()) + "\n\n" + counted(reached, total)
@@ -291,7 +309,8 @@ def losses(times):
             ]
             if not own or not others or min(others) > max(own):
                 continue
-            ahead = ", ".join(f"{p} ({nanoseconds(x)})" for x, p in sorted(own) if x > min(others)[0])
+            slower = [(x, p) for x, p in sorted(own) if x > min(others)[0] and times.is_shown(p)]
+            ahead = ", ".join(f"{p} ({nanoseconds(x)})" for x, p in slower)
             before_all = sum(other < min(own) for other in others)
             rows.append(
                 [f"{what}, {robot}", ahead, f"{min(others)[1]} ({nanoseconds(min(others)[0])})", str(before_all)]
@@ -363,10 +382,14 @@ def trees(times):
         markdown(times_head, single),
         f"### Batch of 1024 states: {unit(times)} per state",
         markdown(times_head, batch),
-        "### Ratios of medians, and what is required",
-        markdown(["function", "calls", "our row", "required", *times.robots], ratios),
-        counted(reached, total),
+        *([] if times.is_short else ratios_of_trees(times, ratios)),
+        counted(reached, total, times.is_short),
     ]
+
+
+def ratios_of_trees(times, ratios):
+    head = ["function", "calls", "our row", "required", *times.robots]
+    return ["### Ratios of medians, and what is required", markdown(head, ratios)]
 
 
 OTHER_FUNCTIONS = "gravity_torques", "bias_torques", "mass_matrix", "forward_dynamics", "inverse_dynamics_derivatives"
@@ -396,6 +419,8 @@ def operations(casadi, ours, is_short):
             count(f"**rne, {row['function']}**", row["robot"], row["mul"], row["add"], row["sincos"])
     robots = [robot for robot in ROBOTS if any(robot == r for _, r in counts)]
     functions = list(dict.fromkeys(function for function, _ in counts))
+    if is_short and set(robots) <= set(TREES):
+        functions = [function for function in functions if not function.startswith("pin_")]
     return markdown(["function", *robots], [[f, *(counts.get((f, robot), "-") for robot in robots)] for f in functions])
 
 
@@ -404,7 +429,12 @@ def report(work, is_short=False):
     own = times.ours(batch=False)
     single = [peer for peer in times.peers if not times.is_batch(peer) and (peer in own or not is_ours(peer))]
     batch = [peer for peer in times.peers if times.is_batch(peer)]
-    head = [(work / "conditions.md").read_text().strip(), correctness(times), spread(times)]
+    conditions = (work / "conditions.md").read_text().strip()
+    if is_short and set(times.robots) <= set(TREES):
+        versions = ("| processor |", "| load |", "| compilers |", "| dynibo |")
+        lines = conditions.splitlines()
+        conditions = "\n".join(line for line in lines if not re.match(r"\| \w", line) or line.startswith(versions))
+    head = [conditions, correctness(times), spread(times)]
     counts = [
         "### Operations: products and sums, angles" if is_short else "### Operations: products + sums = both, angles",
         operations(work / "build/generated/operations.csv", work / "build/operations.json", is_short),
@@ -423,9 +453,7 @@ def report(work, is_short=False):
         *([] if is_short else chained),
         f"### Batch of 1024 states: {unit(times)} per state",
         time_table(times, batch, "independent"),
-        "### Ratios of medians: how many times faster our rows are, and what is required",
         ratios(times),
-        "The best CasADi row of a robot is its fastest row `casadi_*` or `pin_casadi*` with one state per call.",
         "### Where our code loses",
         losses(times),
         *functions(times),

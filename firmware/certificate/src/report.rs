@@ -21,6 +21,11 @@ pub(crate) struct Report {
     pub(crate) wasm: Option<usize>,
 }
 
+/// What the rows of a table are of, if they are of robots.
+pub(crate) const ROBOT: &str = "robot";
+/// The robots on the page.
+const SHOWN: [&str; 5] = ["panda", "puma560", "scara_cobra600", "stanford", "ur5e"];
+
 /// The headings of the tables, by which they are found again.
 pub(crate) const M4F: &str = "Cortex-M4F";
 pub(crate) const M7F: &str = "Cortex-M7F";
@@ -34,12 +39,17 @@ impl Report {
     pub(crate) fn document(&self) -> String {
         let mut text = HEAD.replace("{qemu}", &self.qemu).replace("{states}", &robots::STATES.to_string());
         for table in &self.tables {
-            text.push_str(&table.markdown());
+            text.push_str(&table.markdown(|row| table.of != ROBOT || SHOWN.contains(&row.name.as_str())));
             text.push('\n');
         }
         text.push_str(&self.comparison());
         text.push_str(&self.others());
         text
+    }
+
+    /// The figures of all robots and functions.
+    pub(crate) fn figures_of_all(&self) -> String {
+        self.tables.iter().map(|table| table.markdown(|_| true) + "\n").collect()
     }
 
     /// The rows of the PUMA 560, seven steps and reduced.
@@ -107,10 +117,10 @@ const HEAD: &str = "\
 # Generated code on microcontrollers
 
 The command `cargo xtask certificate --update` writes this page. Without `--update`, the command builds, reads and runs
-the code again, and compares the result with this page. It fails if the code does not have a property that this page
-certifies.
+the code again, and compares the result with [the figures of all robots](../../firmware/certificate/figures.txt), of
+which this page shows five. It fails if the code does not have a property that this page certifies.
 
-The generated code computes the joint torques of each [shipped robot](../robots/README.md) and, for the PUMA 560, also
+The generated code computes the joint torques of each [shipped robot](../../robots/README.md) and, for the PUMA 560, also
 the other functions. The code uses single precision (`f32`), and it computes the sines and cosines of the joint angles
 itself. The command builds a program for a board and lists its instructions with `objdump`. The command then runs the
 program on the same board, emulated by QEMU
@@ -128,7 +138,7 @@ algorithm. The form `reduced` computes the same result with about half the opera
 | bytes of code and constants | They are the size of the function's symbol. The constants are the literal pools in it. |
 | bytes of stack | They are the size of the stack frame that the compiler records (`-Z emit-stack-sizes`). The function needs no other stack, because it calls nothing. |
 | results | The command compares the results at {states} states with the results of the same code on an x86-64 host. They must be bit-identical. With fused multiply-add they may differ; the table then shows the difference in units in the last place (ulp) of the largest torque of the state. |
-| growth | The command fails if the instructions, the size or the stack of a function is more than 2 % larger than on this page. It compares them only if the compiler is the same. |
+| growth | The command fails if the instructions, the size or the stack of a function is more than 2 % larger than in that file. It compares them only if the compiler is the same. |
 
 ## Worst case
 

@@ -42,8 +42,8 @@ pub(crate) struct Baseline {
 }
 
 impl Table {
-    /// As a section in Markdown.
-    pub(crate) fn markdown(&self) -> String {
+    /// As a section in Markdown, with the rows that are shown.
+    pub(crate) fn markdown(&self, is_shown: impl Fn(&Row) -> bool) -> String {
         let mut text = format!("## {}\n\n{}\n\nCompiler: {}\n\n", self.title, self.about, self.compiler);
         let _ = writeln!(
             text,
@@ -51,7 +51,7 @@ impl Table {
             self.of
         );
         text.push_str("|---|---|---:|---:|---:|---:|---|\n");
-        for Row { name, form, figures, results } in &self.rows {
+        for Row { name, form, figures, results } in self.rows.iter().filter(|row| is_shown(row)) {
             let Figures { instructions, code, constants, stack } = figures;
             let _ = writeln!(text, "| {name} | {form} | {instructions} | {code} | {constants} | {stack} | {results} |");
         }
@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn growth_is_found_in_what_was_written() {
-        let baseline = Baseline::read(&table("rustc 1", 100).markdown());
+        let baseline = Baseline::read(&table("rustc 1", 100).markdown(|_| true));
         assert_eq!(table("rustc 1", 102).growth(&baseline), Vec::<String>::new());
         assert_eq!(table("rustc 1", 103).growth(&baseline), ["T: arm reduced: 103 instructions, 100 before"]);
         assert!(!table("rustc 1", 100).is_of_another_compiler(&baseline));
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn another_compiler_is_not_compared() {
-        let baseline = Baseline::read(&table("rustc 1", 100).markdown());
+        let baseline = Baseline::read(&table("rustc 1", 100).markdown(|_| true));
         assert!(table("rustc 2", 200).growth(&baseline).is_empty());
         assert!(table("rustc 2", 200).is_of_another_compiler(&baseline));
     }

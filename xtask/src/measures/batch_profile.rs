@@ -40,7 +40,7 @@ impl BatchProfile {
 }
 
 /// A table of the loops.
-pub(crate) fn table(program: Option<&Path>) -> Result<String> {
+fn table(program: Option<&Path>) -> Result<String> {
     if !machine::has("objdump") {
         return Err(Missing::error("there is no objdump (apt-get install binutils)"));
     }

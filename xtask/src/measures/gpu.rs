@@ -102,8 +102,9 @@ impl Gpu {
                     row(|one| one.instructions)
                 );
                 println!("{line}");
-                // the page has the torques of three robots, and the other functions
-                if function != "inverse_dynamics" || ["panda", "ur5e", "g1"].contains(&robot.as_str()) {
+                // the page has torques and rollouts of one arm, and what spills
+                let is_shown = robot == "panda" && ["inverse_dynamics", "rollout"].contains(&function);
+                if is_shown || found.iter().any(|one| one.spilled > 0) {
                     let _ = writeln!(table, "{line}");
                 }
             }

@@ -8,14 +8,12 @@ use xshell::{Cmd, Shell, cmd};
 
 use crate::Verdict;
 use crate::measures::instructions::{self, Instructions};
-use crate::{
-    machine, measures::batch_profile, measures::growth, measures::plain_build, measures::single_calls, packages::python,
-};
+use crate::{machine, measures::growth, measures::plain_build, measures::single_calls, packages::python};
 
 /// Writes the measured blocks of docs/measured/performance.md, between `<!-- begin: measured NAME, … -->` and
 /// `<!-- end -->`
 ///
-/// All blocks take about ten minutes on an idle machine. The blocks of operations do not depend on the machine:
+/// All blocks take about ten minutes on an idle machine. The block of tricks does not depend on the machine:
 /// RNE_WRITE_DOCUMENTS=1 cargo test --test documents. CARGO_TARGET_DIR is obeyed.
 #[derive(Args)]
 #[command(after_help = "\
@@ -42,21 +40,19 @@ enum Block {
     SingleCalls,
     /// Instructions of a call (callgrind)
     Instructions,
-    /// Times of sine and cosine
+    /// Times of sine and cosine of angles up to 3 rad
     SinCos,
     /// Nanoseconds of a state of a batch
     Batch,
-    /// Instructions in a batch's loops
-    BatchProfile,
     /// Measures of generated code by the number of joints
     Growth,
-    /// Nanoseconds of an arm at run time; of the table of functions the rows of one arm
+    /// Nanoseconds of an arm at run time; of the table of functions the rows of one arm and one vector unit
     RunTime,
     /// Torques from Python beside Pinocchio and the Robotics Toolbox, which are fetched
     FromPython,
-    /// Microseconds of functions of one state from Python that Pinocchio, which is fetched, has too, or that take long
+    /// Microseconds of functions of one state from Python that take long, or longer than in Pinocchio, which is fetched
     PythonCalls,
-    /// A plain build beside one for x86-64-v3: two arms, and where the builds differ
+    /// A plain build beside one for x86-64-v3: one arm, and where the builds differ
     PlainBuild,
 }
 
@@ -83,7 +79,6 @@ impl Block {
             Self::Instructions => "instructions",
             Self::SinCos => "sin_cos",
             Self::Batch => "batch",
-            Self::BatchProfile => "batch_profile",
             Self::Growth => "growth",
             Self::RunTime => "run_time",
             Self::FromPython => "from_python",
@@ -107,13 +102,10 @@ impl Block {
             }
             Self::SinCos => {
                 let package = ["--quiet", "--release", "-p", "rne-runtime"];
-                here(&shell)? + &listing(cmd!(shell, "cargo run {package...} --example sin_cos_speed"))?
+                let speed = listing(cmd!(shell, "cargo run {package...} --example sin_cos_speed"))?;
+                here(&shell)? + &kept(&speed, |line| !line.contains(" up to 100000 rad"))
             }
             Self::Batch => here(&shell)? + &listing(cmd!(shell, "cargo run --quiet --release --example batch_speed"))?,
-            Self::BatchProfile => {
-                let rustc = cmd!(shell, "rustc --version").quiet().read()?;
-                format!("{rustc}, x86_64 with AVX-512.\n\n{}", batch_profile::table(None)?)
-            }
             Self::RunTime => {
                 let options = ["--quiet", "--release", "--no-default-features", "--features", "run_time", "--locked"];
                 let bench = cmd!(shell, "cargo run --manifest-path benches/Cargo.toml {options...} --bin run_time");
@@ -124,13 +116,13 @@ impl Block {
             }
             Self::PythonCalls => {
                 let head = here(&shell)?;
-                let calls = kept(&python::beside_peers("one_state.py")?, is_compared_or_long);
+                let calls = kept(&python::beside_peers("one_state.py")?, is_slower_or_long);
                 format!("{head}```text\n{calls}```\n")
             }
             Self::PlainBuild => here(&shell)? + &plain_build::table()?,
             Self::Growth => {
                 let tables = without_empty_lines(&growth::measured(&[])?);
-                without_load(&here(&shell)?) + &without_increments(&tables)
+                without_load(&here(&shell)?) + &kept(&without_increments(&tables), is_of_1_10_or_50_joints)
             }
         })
     }
@@ -177,17 +169,29 @@ fn kept(text: &str, is_kept: impl Fn(&str) -> bool) -> String {
     text.lines().filter(|line| is_kept(line)).flat_map(|line| [line, "\n"]).collect()
 }
 
-/// Whether a line is no row of a function on a vector unit, or one of the arm that is shown.
+/// Whether a line is no row of a function on a vector unit, or one of the arm and the unit that are shown.
 fn is_of_one_arm(line: &str) -> bool {
     let unit = line.split_whitespace().nth(1).unwrap_or_default();
-    !["SSE2", "AVX2", "AVX-512"].contains(&unit) || line.starts_with("panda ")
+    !["SSE2", "AVX2", "AVX-512"].contains(&unit) || (unit == "AVX2" && line.starts_with("panda "))
 }
 
-/// Whether a line is a call from Python that Pinocchio has too or that takes more than ten microseconds, or the titles.
-fn is_compared_or_long(line: &str) -> bool {
+/// Whether a line is a call from Python that takes more than ten microseconds or 1.5 times that of Pinocchio, or the
+/// titles, or `inverse_dynamics`, with which the others are compared.
+fn is_slower_or_long(line: &str) -> bool {
     let words: Vec<&str> = line.split_whitespace().collect();
-    let [_, _, time, _] = words[..] else { return true };
-    time.parse::<f64>().is_ok_and(|microseconds| microseconds > 10.0)
+    let (function, time, peer) = match words[..] {
+        [_, function, time, peer, _] => (function, time, peer),
+        [_, function, time, _] => (function, time, "inf"),
+        _ => return true,
+    };
+    let (Ok(time), Ok(peer)) = (time.parse::<f64>(), peer.parse::<f64>()) else { return true };
+    function == "inverse_dynamics" || time > 10.0 || time > 1.5 * peer
+}
+
+/// Whether a line is no row of a chain of joints, or one that is shown.
+fn is_of_1_10_or_50_joints(line: &str) -> bool {
+    let joints = line.strip_prefix("| ").and_then(|line| line.split(' ').next()?.parse::<u16>().ok());
+    joints.is_none_or(|joints| [1, 10, 50].contains(&joints))
 }
 
 /// Tables without the increments beside each column: the lines below the tables have the growth.
@@ -229,7 +233,7 @@ pub(crate) fn replaced(page: &str, name: &str, text: &str) -> Result<String> {
 mod tests {
     use clap::ValueEnum;
 
-    use super::{Block, PAGE, is_compared_or_long, is_of_one_arm, kept, replaced};
+    use super::{Block, PAGE, is_of_1_10_or_50_joints, is_of_one_arm, is_slower_or_long, kept, replaced};
     use super::{without_empty_lines, without_increments, without_load};
     use crate::machine;
 
@@ -263,10 +267,13 @@ mod tests {
 
     #[test]
     fn rows_that_no_decision_needs_are_left_out() {
-        let units = "ur5   5.6 11.4\n\nrobot unit function\nur5   SSE2 f 1.0\npanda SSE2 f 1.0\n";
-        assert_eq!(kept(units, is_of_one_arm), "ur5   5.6 11.4\n\nrobot unit function\npanda SSE2 f 1.0\n");
-        let calls = "robot function rne pinocchio / inverse_dynamics\na f 1.0 2.0 0.5\na g 9.9 4.4\na h 10.1 4.5\n";
-        let expected = "robot function rne pinocchio / inverse_dynamics\na f 1.0 2.0 0.5\na h 10.1 4.5\n";
-        assert_eq!(kept(calls, is_compared_or_long), expected);
+        let units = "ur5   5.6 11.4\n\nrobot unit function\nur5   AVX2 f 1.0\npanda SSE2 f 1.0\npanda AVX2 f 1.0\n";
+        assert_eq!(kept(units, is_of_one_arm), "ur5   5.6 11.4\n\nrobot unit function\npanda AVX2 f 1.0\n");
+        let titles = "robot function rne pinocchio / inverse_dynamics\n";
+        let shown = "a inverse_dynamics 2.1 1.8 1.0\na g 1.6 1.0 0.8\na h 10.1 12.0 4.8\na i 10.1 4.5\n";
+        let calls = format!("{titles}{shown}a f 1.5 1.0 0.7\na j 9.9 4.4\n");
+        assert_eq!(kept(&calls, is_slower_or_long), format!("{titles}{shown}"));
+        let growth = "| joints | ms |\n|---:|---:|\n| 1 | 3 |\n| 2 | 10 |\n| 10 | 50 |\n\n- a\n";
+        assert_eq!(kept(growth, is_of_1_10_or_50_joints), growth.replace("| 2 | 10 |\n", ""));
     }
 }
