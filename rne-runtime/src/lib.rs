@@ -27,15 +27,15 @@ mod dyn_arm;
 /// of any number of joints.
 #[doc(hidden)]
 pub mod floating_integrator_of_lists {
+    pub use crate::integrators::floating_integrator::{Stage, runge_kutta};
+    pub use crate::integrators::floating_runge_kutta::{Linear, Turning, derivatives};
+    pub use crate::integrators::moved;
     pub use crate::number::ldlt::factor;
-    pub use crate::steps::floating_integrator::{Stage, runge_kutta};
-    pub use crate::steps::floating_runge_kutta::{Linear, Turning, derivatives};
-    pub use crate::steps::moved;
 }
+#[doc(hidden)]
+pub mod integrators;
 #[cfg(feature = "arm")]
 mod seven_steps;
-#[doc(hidden)]
-pub mod steps;
 #[doc(hidden)]
 pub mod testing;
 
@@ -56,6 +56,9 @@ pub use definition::base_parameters::{BaseParameter, BaseParameters, LinkParamet
 pub use dyn_arm::Inputs;
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use dyn_arm::{DynArm, DynTrace, LoadError, WrongJointCount, WrongLength};
+pub use integrators::floating_integrator::{FloatingIntegratorStep, FloatingState};
+pub use integrators::floating_runge_kutta::FloatingRungeKuttaStepDerivatives;
+pub use integrators::runge_kutta::{RungeKuttaStep, RungeKuttaStepDerivatives};
 pub use lanes::batch::{
     BatchFloatingInverseDynamics, BatchForwardDynamics, BatchInverseDynamics, BatchInverseDynamicsDerivatives,
     BatchMassMatrix, BatchScalar, LengthMismatch, VectorUnit,
@@ -64,9 +67,6 @@ pub use number::dual::Dual;
 pub use number::scalar::{Constant, RunTimeParameter, Scalar};
 #[cfg(feature = "arm")]
 pub use seven_steps::trace::{LinkTrace, Trace};
-pub use steps::floating_integrator::{FloatingIntegratorStep, FloatingState};
-pub use steps::floating_runge_kutta::FloatingRungeKuttaStepDerivatives;
-pub use steps::runge_kutta::{RungeKuttaStep, RungeKuttaStepDerivatives};
 pub use values::base_motion::BaseMotion;
 pub use values::base_state::BaseTwist;
 pub use values::joint_order::{JointOrderError, joint_order};

@@ -140,7 +140,8 @@ impl Caught {
         match self {
             Self::Nothing => None,
             Self::By(names) => {
-                let more = names.len().checked_sub(2).map(|after| format!(" and {} more", after + 1)).unwrap_or_default();
+                let more =
+                    names.len().checked_sub(2).map(|after| format!(" and {} more", after + 1)).unwrap_or_default();
                 names.first().map(|name| format!("`{name}`{more}"))
             }
             Self::Build => Some("`cargo build`: the proof refuses in `derive(InverseDynamics)`".to_owned()),

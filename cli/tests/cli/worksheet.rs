@@ -195,7 +195,7 @@ fn files_that_are_no_worksheets() {
     );
     row("1,2,omega_dot,w,1,rad/s²,link", &[":3:15", "has no component `w`", "x, y, z"]);
     row("1,2,omega_dot,,1,rad/s²,link", &["the component of omega_dot is missing"]);
-    row("1,7,tau,z,1,N m,", &["tau has no component `z`", "leave the component empty"]);
+    row("1,7,tau,z,1,N m,", &["tau has no component `z`", "tau is one number: leave the component empty"]);
     row("3,2,omega_dot,x,1,rad/s²,link", &[":3:1", "`3` is not a joint of planar2", "1 to 2"]);
     row("j3,2,omega_dot,x,1,rad/s²,link", &["did you mean `j1`?"]);
     row("1,3,omega_dot,x,1,rad/s²,link", &[":3:3", "omega_dot is computed by step 2, not by step `3`"]);

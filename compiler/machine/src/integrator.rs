@@ -1,6 +1,6 @@
 //! The step of the classical Runge-Kutta method, by calls of the accelerations and of their derivatives.
 
-use rne_runtime::steps;
+use rne_runtime::integrators;
 
 use crate::results::{NextState, NextStateDerivatives, StepDerivatives};
 use crate::{CompiledArm, EvaluationError, Number, OutOfRange};
@@ -27,7 +27,7 @@ impl CompiledArm {
     ) -> Result<NextState<T>, EvaluationError> {
         check(step)?;
         let accelerations = |q: &Vec<T>, qd: &Vec<T>| self.forward_dynamics(q, qd, tau);
-        let [q, qd] = steps::runge_kutta_step(accelerations, [&q.to_vec(), &qd.to_vec()], |_| step)?;
+        let [q, qd] = integrators::runge_kutta_step(accelerations, [&q.to_vec(), &qd.to_vec()], |_| step)?;
         Ok(NextState { q, qd })
     }
 
@@ -48,7 +48,8 @@ impl CompiledArm {
         let accelerations = |q: &Vec<T>, qd: &Vec<T>| self.forward_dynamics(q, qd, tau);
         let derivatives =
             |q: &Vec<T>, qd: &Vec<T>| self.forward_dynamics_derivatives(q, qd, tau).map(|by| [by.dq, by.dqd, by.dtau]);
-        let found = steps::runge_kutta_step_derivatives(accelerations, derivatives, [&q.to_vec(), &qd.to_vec()], step)?;
+        let found =
+            integrators::runge_kutta_step_derivatives(accelerations, derivatives, [&q.to_vec(), &qd.to_vec()], step)?;
         let [q, qd] = found.map(|[dq, dqd, dtau]| StepDerivatives { dq, dqd, dtau });
         Ok(NextStateDerivatives { q, qd })
     }

@@ -7,7 +7,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use rne::compiled::{Arguments, Array, CompiledArm, EvaluationError, Function, Number, OutOfRange};
-use rne_runtime::steps;
+use rne_runtime::integrators;
 
 use crate::arm::{Arm, methods};
 use crate::arrays::{Given, Held, are_single, array_of, states};
@@ -223,7 +223,7 @@ impl<T: Element + Number> Rows<T> {
         // states from one on
         let next = |from: usize, count: usize, [q, qd]: &[Vec<T>; 2]| {
             let accelerations = |q: &Vec<T>, qd: &Vec<T>| of_states(from, count, dynamics, q, qd);
-            steps::runge_kutta_step(accelerations, [q, qd], |at| step[from + at / dof])
+            integrators::runge_kutta_step(accelerations, [q, qd], |at| step[from + at / dof])
         };
         let after = || {
             let mut state = [self.all("q").to_vec(), self.all("qd").to_vec()];
@@ -246,7 +246,7 @@ impl<T: Element + Number> Rows<T> {
                     };
                     Ok([matrix(0), matrix(1), matrix(2)])
                 };
-                let found = steps::runge_kutta_step_derivatives(accelerations, by, now.each_ref(), step[state])?;
+                let found = integrators::runge_kutta_step_derivatives(accelerations, by, now.each_ref(), step[state])?;
                 model = Some(chained(model, side_by_side(found)));
             }
             Ok(model)

@@ -3,8 +3,8 @@
 #[cfg(feature = "arm")]
 use crate::{
     definition::floating_euler_step::next_of_base,
+    integrators::{POSITION, RATE, moved, moved_by},
     seven_steps::at_tip::AtTip,
-    steps::{POSITION, RATE, moved, moved_by},
     values::wrench::AllStill as _,
 };
 

@@ -7,10 +7,10 @@ use crate::definition::Definition;
 use crate::definition::floating_base::BASE;
 use crate::definition::floating_euler_step::next_of_base;
 use crate::definition::per_joint::{PerJoint, Square};
+use crate::integrators::floating_integrator::{turn, turn_by_change};
+use crate::integrators::moved;
 use crate::number::ldlt::{factor, solve};
 use crate::seven_steps::at_tip::AtTip;
-use crate::steps::floating_integrator::{turn, turn_by_change};
-use crate::steps::moved;
 use crate::values::pose_log::{cross, times, transposed};
 use crate::{BaseAcceleration, BaseMotion, BaseTwist, Constant, Dual, Pose, Scalar, Wrench};
 

@@ -3,7 +3,7 @@
 
 use core::array::from_fn;
 
-use crate::steps::moved;
+use crate::integrators::moved;
 use crate::values::pose_log::{dot, times, transposed};
 use crate::{BaseAcceleration, BaseTwist, Pose, Scalar};
 

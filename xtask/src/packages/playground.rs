@@ -185,7 +185,7 @@ fn page(module: &[u8]) -> Result<String> {
     println!("  {:>7} the shipped robots", files.len());
     println!("  {:>7} scripts", script.len() + worker.len() + bridge.len());
     // colours, controls and the head; the panels below are those of the page inside
-    let report_style = machine::read("teaching/report/page/style.css")?;
+    let report_style = machine::read("teaching/page/web/style.css")?;
     let end = "/* ---- panels */";
     let (report_style, _) = report_style.split_once(end).with_context(|| format!("the style has no {end}"))?;
     let parts = [

@@ -25,7 +25,8 @@ use crate::values::choice;
 #[allow(clippy::struct_excessive_bools)] // switches of the command line
 #[command(after_help = "\
 Examples:
-  rne mark planar1 --states docs/teaching/lecture/class/key.csv docs/teaching/lecture/class/*.csv
+  rne mark planar1 --states docs/teaching/lecture/class/key.csv \\
+    docs/teaching/lecture/class/*.csv
   rne mark planar2 --seed 7 sheets --csv > marks.csv
   rne mark planar2 --seed 7 sheets/ada.csv --hint
 

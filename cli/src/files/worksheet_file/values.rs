@@ -152,7 +152,7 @@ impl Reading<'_> {
                 None => format!("the component of {quantity} is missing"),
             };
             let help = match names {
-                [_] => "{quantity} is one number: leave the component empty".to_owned(),
+                [_] => format!("{quantity} is one number: leave the component empty"),
                 names => format!("its components are {}", names.join(", ")),
             };
             self.mistakes.push(span, message, Some(&help));

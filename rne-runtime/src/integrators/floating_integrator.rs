@@ -2,7 +2,7 @@
 
 use core::array::from_fn;
 
-use crate::steps::moved;
+use crate::integrators::moved;
 use crate::values::pose_log::{cross, dot, times, transposed};
 use crate::{BaseAcceleration, BaseTwist, FloatingBase, Quaternion, Scalar, Wrench};
 

@@ -25,35 +25,35 @@ use rne_model::Robot;
 pub use crate::data::data;
 
 /// The parts of every page besides its data.
-const HTML: &str = include_str!("../page/index.html");
-const STYLE: &str = include_str!("../page/style.css");
+const HTML: &str = include_str!("../web/index.html");
+const STYLE: &str = include_str!("../web/style.css");
 
 /// The scripts of the page, in the order in which they stand in it: each uses only those before it.
 pub const SCRIPTS: [(&str, &str); 24] = [
-    ("pose.js", include_str!("../page/pose.js")),
-    ("inspection.js", include_str!("../page/inspection.js")),
-    ("program.js", include_str!("../page/program.js")),
-    ("number.js", include_str!("../page/number.js")),
-    ("field.js", include_str!("../page/field.js")),
-    ("equation.js", include_str!("../page/equation.js")),
-    ("axes.js", include_str!("../page/axes.js")),
-    ("shape.js", include_str!("../page/shape.js")),
-    ("label.js", include_str!("../page/label.js")),
-    ("gesture.js", include_str!("../page/gesture.js")),
-    ("drawing.js", include_str!("../page/drawing.js")),
-    ("arm.js", include_str!("../page/arm.js")),
-    ("torque.js", include_str!("../page/torque.js")),
-    ("motion.js", include_str!("../page/motion.js")),
-    ("wrench.js", include_str!("../page/wrench.js")),
-    ("base.js", include_str!("../page/base.js")),
-    ("exercise.js", include_str!("../page/exercise.js")),
-    ("cell.js", include_str!("../page/cell.js")),
-    ("reading.js", include_str!("../page/reading.js")),
-    ("view.js", include_str!("../page/view.js")),
-    ("address.js", include_str!("../page/address.js")),
-    ("handin.js", include_str!("../page/handin.js")),
-    ("table.js", include_str!("../page/table.js")),
-    ("page.js", include_str!("../page/page.js")),
+    ("pose.js", include_str!("../web/pose.js")),
+    ("inspection.js", include_str!("../web/inspection.js")),
+    ("program.js", include_str!("../web/program.js")),
+    ("number.js", include_str!("../web/number.js")),
+    ("field.js", include_str!("../web/field.js")),
+    ("equation.js", include_str!("../web/equation.js")),
+    ("axes.js", include_str!("../web/axes.js")),
+    ("shape.js", include_str!("../web/shape.js")),
+    ("label.js", include_str!("../web/label.js")),
+    ("gesture.js", include_str!("../web/gesture.js")),
+    ("drawing.js", include_str!("../web/drawing.js")),
+    ("arm.js", include_str!("../web/arm.js")),
+    ("torque.js", include_str!("../web/torque.js")),
+    ("motion.js", include_str!("../web/motion.js")),
+    ("wrench.js", include_str!("../web/wrench.js")),
+    ("base.js", include_str!("../web/base.js")),
+    ("exercise.js", include_str!("../web/exercise.js")),
+    ("cell.js", include_str!("../web/cell.js")),
+    ("reading.js", include_str!("../web/reading.js")),
+    ("view.js", include_str!("../web/view.js")),
+    ("address.js", include_str!("../web/address.js")),
+    ("handin.js", include_str!("../web/handin.js")),
+    ("table.js", include_str!("../web/table.js")),
+    ("page.js", include_str!("../web/page.js")),
 ];
 
 /// The page of an arm. Units are SI: m, rad, N, N m.

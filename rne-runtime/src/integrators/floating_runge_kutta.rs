@@ -3,8 +3,8 @@
 
 use core::array::from_fn;
 
+use crate::integrators::floating_integrator::{Stage, runge_kutta, turn_by_change, turned};
 use crate::number::ldlt::{factor, solve};
-use crate::steps::floating_integrator::{Stage, runge_kutta, turn_by_change, turned};
 use crate::values::pose_log::{cross, dot, times, transposed};
 use crate::{
     BaseAcceleration, BaseMotion, BaseTwist, FloatingBase, FloatingInverseDynamicsDerivatives, FloatingState,

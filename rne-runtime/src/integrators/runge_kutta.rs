@@ -6,7 +6,7 @@ use core::convert::Infallible;
 #[cfg(all(feature = "arm", feature = "std"))]
 use crate::seven_steps::at_tip::AtTip;
 use crate::{
-    ForwardDynamics, ForwardDynamicsDerivatives, NextState, NextStateDerivatives, Scalar, StepDerivatives, steps,
+    ForwardDynamics, ForwardDynamicsDerivatives, NextState, NextStateDerivatives, Scalar, StepDerivatives, integrators,
 };
 
 /// A step of the classical Runge-Kutta method under torques that do not change during the step. Every type with
@@ -39,7 +39,7 @@ pub trait RungeKuttaStep<const DOF: usize>: ForwardDynamics<DOF> {
     #[must_use]
     fn runge_kutta_step<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], tau: &[T; DOF], step: T) -> NextState<DOF, T> {
         let accelerations = |q: &_, qd: &_| Ok::<_, Infallible>(self.forward_dynamics(q, qd, tau));
-        let Ok([q, qd]) = steps::runge_kutta_step(accelerations, [q, qd], |_| step);
+        let Ok([q, qd]) = integrators::runge_kutta_step(accelerations, [q, qd], |_| step);
         NextState { q, qd }
     }
 }
@@ -66,7 +66,7 @@ pub trait RungeKuttaStepDerivatives<const DOF: usize>: ForwardDynamics<DOF> + Fo
             let found = self.forward_dynamics_derivatives(q, qd, tau);
             Ok([found.dq, found.dqd, found.dtau])
         };
-        let Ok(found) = steps::runge_kutta_step_derivatives(accelerations, derivatives, [q, qd], step);
+        let Ok(found) = integrators::runge_kutta_step_derivatives(accelerations, derivatives, [q, qd], step);
         let [q, qd] = found.map(|[dq, dqd, dtau]| StepDerivatives { dq, dqd, dtau });
         NextStateDerivatives { q, qd }
     }
@@ -82,7 +82,7 @@ capability! { @counted definition
     fn runge_kutta_step(q: joints, qd: joints, tau: joints, step: duration) -> NextState<DOF> = |robot| {
         let accelerations =
             |q: &Vec<T>, qd: &Vec<T>| Ok::<_, Infallible>(robot.forward_dynamics([q, qd, tau], AtTip::Nothing));
-        let Ok([q, qd]) = steps::runge_kutta_step(accelerations, [&q.to_vec(), &qd.to_vec()], |_| step);
+        let Ok([q, qd]) = integrators::runge_kutta_step(accelerations, [&q.to_vec(), &qd.to_vec()], |_| step);
         (q, qd)
     };
     /// As [`RungeKuttaStepDerivatives::runge_kutta_step_derivatives`].
@@ -95,7 +95,7 @@ capability! { @counted definition
             Ok([dq, dqd, dtau])
         };
         let state = [&q.to_vec(), &qd.to_vec()];
-        let Ok(found) = steps::runge_kutta_step_derivatives(accelerations, derivatives, state, step);
+        let Ok(found) = integrators::runge_kutta_step_derivatives(accelerations, derivatives, state, step);
         let [q, qd] = found.map(|[dq, dqd, dtau]| (dq, dqd, dtau).into());
         (q, qd)
     };
