@@ -13,7 +13,8 @@ use crate::parameters::Parameters;
 /// The documentation of the function `frame`.
 const ABOUT_FRAME: &str = "\
     The place of a frame, for `jacobian_of` and the other methods of `FrameKinematics`. The name is that of a frame in \
-    the list `frames` of the robot file, or that of a joint for its link frame. In a constant, `{ Self::frame(\"NAME\") }`, an unknown name is a compile error.\n\n# Panics\n\n\
+    the list `frames` of the robot file, or that of a joint for its link frame. In a constant, \
+    `{ Self::frame(\"NAME\") }`, an unknown name is a compile error.\n\n# Panics\n\n\
     Where the robot file has no frame of this name.";
 
 impl Target<'_> {

@@ -110,7 +110,7 @@ pub(crate) fn turning<'s>(joint: &Joint<'_, 's>, parent: &Turning<'s>) -> Turnin
 
 /// Steps 1 to 5: the motion of link i.
 fn motion<'s>(joint: &Joint<'_, 's>, parent: &Motion<'s>) -> Motion<'s> {
-    let (line, of_parent) = (joint.lines, joint.lines_of_parent());
+    let (line, of_parent) = (joint.lines, joint.lines_of_parent().carrying(joint.link.mount.label));
     let Turning { omega: omega_p, omega_dot: omega_dot_p, .. } = parent.turning;
     let turning = turning(joint, &parent.turning);
     let Turning { rotation, omega, omega_dot } = turning;
