@@ -2,8 +2,9 @@
 //! trees, floating bases and closed loops with every function that they have.
 //!
 //! Each line of the list is the SHA-256 of the files of one robot, form and function: Rust, C with `float`, C with
-//! `double`, or of the reason why there are none. A change of the compiler that is meant to change no emitted byte is held to that here. One that is meant
-//! to renews the list by `cargo xtask frozen --update`, and the difference of the list says what it changed.
+//! `double`, or of the reason why there are none. A change of the compiler that is meant to change no emitted byte is
+//! held to that here. One that is meant to renews the list by `cargo xtask frozen --update`, and the difference of the
+//! list says what it changed.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;

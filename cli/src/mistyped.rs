@@ -37,7 +37,7 @@ pub(crate) fn explained(error: &clap::Error, words: &[String]) -> Option<(String
     Some((format!("rne {name}"), Failure::usage(text)))
 }
 
-/// What the parser tells of one kind: one text, several, or none.
+/// The texts that the parser gives for a kind: one, several, or no text.
 fn texts(error: &clap::Error, kind: ContextKind) -> &[String] {
     match error.get(kind) {
         Some(ContextValue::String(text)) => std::slice::from_ref(text),

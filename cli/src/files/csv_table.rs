@@ -55,8 +55,8 @@ const ALIKE: usize = 3;
 /// bytes have none.
 const WINDOWS: &str = "€\u{81}‚ƒ„…†‡ˆ‰Š‹Œ\u{8D}Ž\u{8F}\u{90}‘’“”•–—˜™š›œ\u{9D}žŸ";
 
-/// The name of a file and its text of at most `longest` bytes. A message calls the file `what`, and ends with `help` where
-/// the text is longer.
+/// The name of a file and its text of at most `longest` bytes. A message calls the file `what`, and ends with `help`
+/// where the text is longer.
 pub(crate) fn read(path: &Path, what: &str, longest: usize, help: &str) -> Result<(String, String), Failure> {
     let name = input_file::name(path);
     let bytes =

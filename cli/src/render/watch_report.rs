@@ -161,7 +161,7 @@ fn others(robot: &Robot, event: &Event) -> String {
     event.others.iter().map(|joint| one_line(robot.coordinate_name(*joint))).collect::<Vec<_>>().join(", ")
 }
 
-/// What is wrong with a sensor of a joint.
+/// The fault of a sensor of a joint, in words.
 fn sensor(robot: &Robot, event: &Event, joint: &str, value: &str) -> String {
     match event.parameter {
         "delay" => format!(

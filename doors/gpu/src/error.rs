@@ -152,7 +152,7 @@ impl Error for GpuError {
     }
 }
 
-/// What to do about an error of a call of the driver.
+/// The advice about an error of a call of the driver.
 fn advice(name: &str) -> &'static str {
     match name {
         "CUDA_ERROR_ILLEGAL_ADDRESS" => {

@@ -120,11 +120,10 @@ The command `cargo xtask certificate --update` writes this page. Without `--upda
 the code again, and compares the result with [the figures of all robots](../../firmware/certificate/figures.txt), of
 which this page shows five. It fails if the code does not have a property that this page certifies.
 
-The generated code computes the joint torques of each [shipped robot](../../robots/README.md) and, for the PUMA 560, also
-the other functions. The code uses single precision (`f32`), and it computes the sines and cosines of the joint angles
-itself. The command builds a program for a board and lists its instructions with `objdump`. The command then runs the
-program on the same board, emulated by QEMU
-({qemu}).
+The generated code computes the joint torques of each [shipped robot](../../robots/README.md) and, for the PUMA 560,
+also the other functions. The code uses single precision (`f32`), and it computes the sines and cosines of the joint
+angles itself. The command builds a program for a board and lists its instructions with `objdump`. The command then runs
+the program on the same board, emulated by QEMU ({qemu}).
 
 Each function has two forms. The form `seven_steps` computes every intermediate vector of the recursive Newton-Euler
 algorithm. The form `reduced` computes the same result with about half the operations.

@@ -152,7 +152,7 @@ pub fn watch(
 
 /// The signals of a picture, of some states only.
 struct Drawn {
-    /// Of so many states, one is drawn.
+    /// The number of states of which one is drawn.
     stride: usize,
     signals: Option<Signals>,
     /// The torques of each joint that are explained already, N m or N.

@@ -24,24 +24,24 @@ const DEVIATIONS: f64 = 3.0;
 /// larger, because many times are tried, each of which noise can exceed. The value was chosen by experiment.
 const DEVIATIONS_OF_PART: f64 = 3.3;
 
-/// A factor: the smallest size of a change that does not last for the whole log, in smallest sizes of one that does. The
-/// value was chosen by experiment.
+/// A factor: the smallest size of a change that does not last for the whole log, in smallest sizes of one that does.
+/// The value was chosen by experiment.
 const SIZE_OF_PART: f64 = 1.5;
 
 /// In squared standard deviations: a change begins or ends within the log only if this explains so much more of the
 /// residuals. The value was chosen by experiment.
 const GAIN: f64 = 10.0;
 
-/// In squared standard deviations: what a payload must explain more than friction does. It has three more numbers, which
-/// explain 3 in the mean even if there is no payload. Twice that was chosen by experiment.
+/// In squared standard deviations: what a payload must explain more than friction does. It has three more numbers,
+/// which explain 3 in the mean even if there is no payload. Twice that was chosen by experiment.
 const PAID_BY_PAYLOAD: f64 = 6.0;
 
 /// A part of what the gain of an effort explains: so much more must it explain than another change does, because a gain
 /// changes the whole torque at once. The value was chosen by experiment.
 const PAID_BY_GAIN: f64 = 0.2;
 
-/// The standard deviation of a gain by errors of the model, as a part of the ratio between the residual of the joint and
-/// its effort. The value was chosen by experiment.
+/// The standard deviation of a gain by errors of the model, as a part of the ratio between the residual of the joint
+/// and its effort. The value was chosen by experiment.
 const UNEXPLAINED: f64 = 0.5;
 
 /// A ratio of speeds: the friction of a joint becomes less certain if the joint is slower or faster than in the quiet

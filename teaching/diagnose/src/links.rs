@@ -1,4 +1,4 @@
-//! What slips change of the links: inertias and centres of mass.
+//! Changes of the links by slips: inertias and centres of mass.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use rne_model::{Convention, Inertia, Joint, JointKind, Link, Robot, Row};

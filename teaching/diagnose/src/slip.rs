@@ -243,8 +243,8 @@ impl Slip {
         named.into_iter().chain(branches).filter(is_new).collect()
     }
 
-    /// The exchanges of two joints in all lists. There are many, so each is tried as the only slip, as a [`Typo`] is, and
-    /// in no pair of slips.
+    /// The exchanges of two joints in all lists. There are many, so each is tried as the only slip, as a [`Typo`] is,
+    /// and in no pair of slips.
     pub(crate) fn alone(robot: &Robot) -> impl Iterator<Item = Self> {
         let known: Vec<Vec<usize>> = Self::orders(robot).into_iter().map(|slip| slip.order(robot)).collect();
         let dof = robot.dof();

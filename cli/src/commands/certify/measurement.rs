@@ -1,4 +1,4 @@
-//! What is measured of a function: its cost, its run in QEMU, and its error.
+//! The measurements of a function: its cost, its run in QEMU, and its error.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -251,7 +251,7 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// The outcome without a robot file, and why there is none.
+    /// The outcome without a robot file, and the reason.
     fn not_written(self, text: String, why: &str, before: &str) -> Outcome {
         let path = self.arguments.output.as_ref().map(|path| one_line(&path.display().to_string()));
         let not_written = path.map_or_else(String::new, |path| format!("{before}{path} is not written"));

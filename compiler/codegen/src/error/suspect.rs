@@ -1,4 +1,4 @@
-//! What is probably the cause when a form is refused.
+//! The probable cause when a form is refused.
 
 use std::fmt;
 

@@ -1,4 +1,5 @@
-//! The equations of motion as results: the mass matrix, its inverse, accelerations, the Coriolis matrix and derivatives.
+//! The equations of motion as results: the mass matrix, its inverse, accelerations, the Coriolis matrix and
+//! derivatives.
 
 use crate::coordinates::Coordinates;
 use crate::formulate::Outputs;

@@ -1,4 +1,4 @@
-//! What each function returns in the reduced form: the recursions of [`crate::reduced`], and what follows from them.
+//! The results of each function in the reduced form, computed from the recursions of [`crate::reduced`].
 
 use rne_model::Robot;
 

@@ -1,4 +1,4 @@
-//! What components became that have no statement, and why operations are gone.
+//! Explanations of components that have no statement, and of operations that were removed.
 
 use std::collections::BTreeMap;
 

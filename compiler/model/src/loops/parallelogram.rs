@@ -99,7 +99,7 @@ impl<'a> Quadrangle<'a> {
         axis_at_zero(self.joints, self.convention, joint)
     }
 
-    /// Of each joint, whether its axis has the direction of the first one (1) or the opposite one (-1).
+    /// The sign of each joint: 1 if its axis has the direction of the first axis, -1 if it has the opposite one.
     fn signs(&self) -> Result<Vec<(usize, f64)>, String> {
         let sign = |joint: usize| {
             let cosine = dot(self.axis(joint).axis(2), self.z);

@@ -12,7 +12,8 @@ pub(crate) fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (In
         mass: or(0.0) "mass" |cx, node| mass(cx, node, joint),
         com: or([0.0; 3]) "com" |cx, node| com(cx, node, joint),
         _moment: optional "first_moment" |_, _| Some(()),
-        written: or(Inertia::default()) "inertia" |cx, node| matter::tensor(cx, node, |element| inertia_element(joint, element)),
+        written: or(Inertia::default()) "inertia"
+            |cx, node| matter::tensor(cx, node, |element| inertia_element(joint, element)),
         about: or(InertiaReference::Com) "inertia_about" inertia_reference,
         physical: or(true) "physical" matter::physical,
     });

@@ -222,7 +222,7 @@ impl Log {
     }
 }
 
-/// What a survey gathers from state to state.
+/// The findings that a survey gathers from state to state.
 struct Gathered {
     spectra: [Spectrum; 3],
     ranges: Vec<(f64, f64)>,
