@@ -218,8 +218,16 @@ fn of_others(grammar: &Command, command: &Command, error: &clap::Error) -> Optio
 /// The first example of a command's help, without the words beside it.
 fn example(command: &Command) -> Option<String> {
     let help = command.get_after_help()?.to_string();
-    let line = help.split_once("Examples:\n")?.1.lines().next()?.trim();
-    Some(line.split("  ").next().unwrap_or(line).to_owned())
+    let mut example = String::new();
+    for line in help.split_once("Examples:\n")?.1.lines() {
+        let line = line.trim();
+        let command = line.strip_suffix('\\');
+        example.push_str(command.unwrap_or(line));
+        if command.is_none() {
+            break;
+        }
+    }
+    Some(example.split("  ").next().unwrap_or_default().to_owned())
 }
 
 /// Names as they are typed.

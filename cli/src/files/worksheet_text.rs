@@ -10,7 +10,7 @@ use serde::Serialize;
 use crate::outcome::Failure;
 use crate::render::worksheet::Narrowed;
 
-/// The version of both shapes.
+/// The version of the format of worksheets, in CSV and in JSON.
 pub(super) const FORMAT: u32 = 1;
 
 /// The columns of CSV, the keys of a row in JSON.

@@ -80,10 +80,10 @@ pub(crate) fn events(
     text
 }
 
-/// Said below changes with a deviation.
+/// The line below the events if one of them has a standard deviation.
 const DEVIATION: &str = "± is one standard deviation.";
 
-/// Said below changes of friction.
+/// The lines below the events if one of them is a change of friction.
 const RIVALS: &str = "Temperature and speed change friction, too: compare with a quiet log of the same motion and of a \
     warm arm before you look for wear.";
 

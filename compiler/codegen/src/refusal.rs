@@ -51,9 +51,9 @@ pub enum LeftOut {
     Nothing,
     /// The choices of frames: the turned last frame, and the carried prismatic links.
     Frames,
-    /// All choices; inertial parameters are regrouped.
+    /// All choices of the plan are left out; inertial parameters are regrouped.
     Choices,
-    /// All choices, and the regrouping of inertial parameters.
+    /// All choices of the plan are left out, and inertial parameters are not regrouped.
     Regrouping,
 }
 

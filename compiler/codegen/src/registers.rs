@@ -89,7 +89,8 @@ impl Lives {
         lives
     }
 
-    /// The statements whose values stand in a value that is written out.
+    /// The statements on which a value depends. An operand without a statement of its own is part of an expression; the
+    /// function follows its operands to those that have a statement.
     fn statements_in(&self, program: &Program, value: ValueId) -> Vec<usize> {
         let (mut found, mut open) = (Vec::new(), vec![value]);
         while let Some(value) = open.pop() {

@@ -92,7 +92,7 @@ pub(super) struct Measured {
     pub(super) visits: Cell<usize>,
 }
 
-/// A part of an expression.
+/// A part of an expression with its width, which the breaking of lines needs.
 pub(super) struct Measure {
     /// The columns that it takes on one line. Code is ASCII.
     pub(super) width: usize,

@@ -92,7 +92,8 @@ impl Found {
     }
 }
 
-/// The value of an aggregate whose rows cannot be identified, with the reason.
+/// The result of an aggregate whose rows do not identify the parameters: the number of states and the reason. The other
+/// fields are null.
 pub(crate) fn refused(states: u64, reason: &str) -> Result<ScalarValue> {
     let column = |field: &Arc<Field>| -> ArrayRef {
         match field.name().as_str() {

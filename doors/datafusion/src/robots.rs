@@ -88,7 +88,7 @@ impl Robots {
         Ok(self.with(&name, [files.robot(), files.plan().unwrap_or_default()], arm))
     }
 
-    /// These and that of the text of a robot file, under the name that it gives itself.
+    /// Adds the robot of the text of a robot file, under the name in that text.
     ///
     /// # Errors
     /// Everything that is wrong with it.

@@ -26,7 +26,8 @@ pub struct Observation {
 pub const COARSEST: f64 = 1e-3;
 
 impl Observation {
-    /// The observation with no tolerance above [`COARSEST`].
+    /// A copy in which no tolerance exceeds [`COARSEST`] times the largest torque. Without this limit, some pairs of
+    /// slips would agree by chance with torques of few digits.
     pub(crate) fn to_enough_digits(&self) -> Self {
         let most = COARSEST * largest(&self.tau);
         Self { resolution: self.resolution.iter().map(|half| half.min(most)).collect(), ..self.clone() }

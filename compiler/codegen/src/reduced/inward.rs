@@ -127,7 +127,8 @@ struct Load<B, C> {
     carried: Carried<B, C>,
 }
 
-/// All that a link carries.
+/// The sum of the loads on one link. Loads in the axes of the link and in frame N of its group are kept apart, because
+/// one of them must be rotated before they are added.
 pub(crate) struct LoadOfLink<B, C> {
     /// In the axes of the link.
     pub(crate) own: Carried<B, C>,

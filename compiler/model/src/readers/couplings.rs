@@ -135,16 +135,16 @@ pub(crate) fn refuse(cx: &Context, root: &Node, joints: &[Joint], drives: &[Driv
         let key = if root.has_entries("couplings") { "couplings" } else { "loops" };
         let place = root.get(key).unwrap_or(root).head();
         let message = "the robot has couplings, and joints that follow others are not supported here";
-        let help = "the section Couplings of docs/robot-file.md lists the commands, derives and types that take \
-                    couplings";
+        let help = "the section What takes which robot of docs/robot-file.md lists the commands, derives and types \
+                    that take couplings";
         cx.report(Diagnostic::error(place, message).label("couplings").help(help));
     }
     if !drives.is_empty() {
         let place = root.get("motors").unwrap_or(root).head();
         let message = "the robot has a list `motors`, which is not supported here";
-        let help = "the section Motors of docs/robot-file.md lists the commands, derives and types that take it; \
-                    elsewhere, delete the list and give joints a `motor: {inertia: …, gear_ratio: …}`, which leaves \
-                    out that the rotor turns with the link that carries it";
+        let help = "the section What takes which robot of docs/robot-file.md lists the commands, derives and types \
+                    that take it; elsewhere, delete the list and give joints a `motor: {inertia: …, gear_ratio: …}`, \
+                    which leaves out that the rotor turns with the link that carries it";
         cx.report(Diagnostic::error(place, message).label("motors").help(help));
     }
 }

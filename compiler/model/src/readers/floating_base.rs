@@ -65,6 +65,7 @@ fn base_name(cx: &Context, node: &Node, root: &Node) -> Option<String> {
 pub(crate) fn refuse(cx: &Context, root: &Node) {
     let Some(node) = root.get("floating_base") else { return };
     let message = "the base of this robot floats, and floating bases are not supported here";
-    let help = "the section Floating bases of docs/robot-file.md lists the commands, derives and types that take them";
+    let help = "the section What takes which robot of docs/robot-file.md lists the commands, derives and types that \
+                take floating bases";
     cx.report(Diagnostic::error(node.head(), message).label("a floating base").help(help));
 }

@@ -61,8 +61,8 @@ pub(crate) fn loops(
         return Some((ClosedLoops::default(), Vec::new()));
     }
     if !takes_loops {
-        let help = "the section Closed loops of docs/robot-file.md lists the commands, derives and types that take \
-                    closed loops";
+        let help = "the section What takes which robot of docs/robot-file.md lists the commands, derives and types \
+                    that take closed loops";
         let message = "the robot has closed loops, which are not supported here";
         return cx.refuse(Diagnostic::error(items[0].head(), message).label("a closed loop").help(help));
     }

@@ -183,8 +183,8 @@ pub(crate) fn refuse(cx: &Context, root: &Node, joints: &[Joint], tip_on: Option
         (node.head(), format!("{} begins at `{key}`, which only rows of trees have", named(index, joint)))
     });
     let Some((place, what)) = of_fork.or(of_tip).or(of_placement) else { return };
-    let help = "the section Trees of docs/robot-file.md lists the commands, derives and types that take trees; \
-                everything else takes serial arms";
+    let help = "the section What takes which robot of docs/robot-file.md lists the commands, derives and types that \
+                take trees; the others take serial arms";
     let message = format!("{what}, and trees are not supported here");
     cx.report(Diagnostic::error(place, message).label("a tree").help(help));
 }

@@ -52,7 +52,7 @@ impl Files {
 
 #[derive(Args)]
 struct Query {
-    /// The query; {puma560} stands for the shipped or given robot, with its hash
+    /// The query; {puma560}, or another name of a robot in braces, becomes its key NAME@HASH
     sql: String,
     /// A Parquet file or folder as a table
     #[arg(long = "table", value_name = "NAME=PATH")]

@@ -163,8 +163,8 @@ impl<'a> Ordered<'a> {
         Self { sheet, robot, at, values: given.iter().filter_map(place).collect(), digits, rounding }
     }
 
-    /// The error of a hand that rounds to these digits at each line, in a line of this size: two units of the last
-    /// digit, for what is rounded before adds up.
+    /// The tolerance for a calculation by hand that rounds each line to `digits` digits: two units of the last digit of
+    /// a number of this size, because rounding errors of earlier lines add up.
     fn by_hand(&self, size: f64) -> f64 {
         2.0 * size * 10_f64.powi(1 - i32::from(self.digits))
     }

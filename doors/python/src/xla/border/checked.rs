@@ -2,10 +2,10 @@
 
 use super::{AXES, Attributes, BUFFER, Buffer, Buffers, ByteSpan, F32, F64, STRING};
 
-/// The text of an attribute.
+/// The text of the attribute with the name `wanted`.
 ///
 /// # Safety
-/// XLA's promise of the attributes.
+/// The attributes must come from XLA in this call: each list pointer is NULL or points to as many items as XLA says.
 pub(super) unsafe fn text<'a>(attributes: &'a Attributes, wanted: &str) -> Result<&'a str, String> {
     if attributes.struct_size < size_of::<Attributes>() {
         return Err("the attributes are of an older version of XLA".to_owned());
