@@ -14,10 +14,16 @@
 //!
 //! Link i is the one that joint i moves. Link p is the one that carries joint i: its parent, or the base. In a chain p
 //! is i-1, and r_i is the lecture's r_{i-1}. The components of a vector of link i are along axes that are fixed to link
-//! i, with z along joint i. These axes are called form P; they serve standard and modified Denavit-Hartenberg tables.
+//! i, with z along joint i; only r_i is along the axes of link p. These axes are called form P; they serve standard and
+//! modified Denavit-Hartenberg tables. f_{i,k} and n_{i,k} are f_{p,i} and n_{p,i} of a joint k that link i carries, or
+//! of a tip; in a chain there is one k, and it is i+1.
 //!
-//! `line.define(name).by(formula)` computes a formula and gives the result its name in the generated code. `back` is
-//! R_iᵀ. The methods of `joint` add the terms of a revolute or a prismatic joint ([`super::joint`]).
+//! `line.define(name).by(formula)` computes a formula and gives the result its name in the generated code. The names of
+//! a `line` have the number of its joint (`w2_z`); numbers of joints count from 1 there, and 0 is the base. Operations
+//! within `by(…)` belong to this name. `'s` is the lifetime of the builder on which all formulas are written.
+//!
+//! `back` is R_iᵀ. R_i and d_i are computed in [`super::joint`], r_i in [`super::arm`]. The methods of `joint` add the
+//! terms of a revolute or a prismatic joint to their argument, which is the value for a joint that does not move.
 //!
 //! The lecture has a chain on a base that does not move. What trees, moving bases, rotors of motors and links without
 //! mass add is in [`super::carried`], [`super::base`], [`super::spin`] and [`super::first_moment`].
@@ -80,6 +86,7 @@ pub(crate) fn inverse_dynamics_of_floating_base<'s>(
     tip: &AtTip<'s>,
 ) -> (Option<Wrench<'s>>, Vec<JointLoad<'s>>) {
     let motions = forward(arm, states, base);
+    // a payload at the tip exerts a wrench that depends on the motion of its link
     backward(arm, states, (base, &motions), &tip.wrenches(arm, &motions))
 }
 
@@ -117,19 +124,20 @@ fn motion<'s>(joint: &Joint<'_, 's>, parent: &Motion<'s>) -> Motion<'s> {
     let (back, r, d) = (rotation.transpose(), joint.link.mount.r, joint.centre());
 
     // 3   ċ_i = R_iᵀ (ċ_p + ω_p × r_i) + ω_i × d_i                      prismatic: + q̇_i e
+    // named after link p; a label tells apart the joints that p carries
     let omega_cross_r = of_parent.define(Quantity::OmegaCrossR).by(omega_p.cross(r));
     let omega_cross_d = line.define(Quantity::OmegaCrossD).by(omega.cross(d));
-    let joint_point = line.define(Quantity::JointPointVelocity).by(parent.c_dot + omega_cross_r);
-    let c_dot = line.define(Quantity::Velocity).by(joint.velocity(back * joint_point + omega_cross_d));
+    let point_velocity = line.define(Quantity::JointPointVelocity).by(parent.c_dot + omega_cross_r);
+    let c_dot = line.define(Quantity::Velocity).by(joint.velocity(back * point_velocity + omega_cross_d));
 
     // 4   c̈_i = R_iᵀ (c̈_p + ω̇_p × r_i + ω_p × (ω_p × r_i))
     //           + ω̇_i × d_i + ω_i × (ω_i × d_i)                         prismatic: + q̈_i e + 2 q̇_i ω_i × e
-    let joint_point = line
+    let point_acceleration = line
         .define(Quantity::JointPointAcceleration)
         .by(parent.c_ddot + omega_dot_p.cross(r) + omega_p.cross(omega_cross_r));
     let c_ddot = line
         .define(Quantity::Acceleration)
-        .by(joint.acceleration(back * joint_point + omega_dot.cross(d) + omega.cross(omega_cross_d), omega));
+        .by(joint.acceleration(back * point_acceleration + omega_dot.cross(d) + omega.cross(omega_cross_d), omega));
 
     // 5   g_i = R_iᵀ g_p
     let gravity = line.define(Quantity::Gravity).by(back * parent.gravity);
@@ -158,7 +166,8 @@ fn wrench<'s>(balance: &Balance<'_, 's>) -> Wrench<'s> {
     let Motion { turning: Turning { omega, omega_dot, .. }, d, c_ddot, gravity, .. } = *motion;
     let h = FirstMoment::of(body, line, motion);
 
-    // 6   f_i = m_i c̈_i             only listings show it, see below
+    // 6   f_i = m_i c̈_i
+    // no formula below uses this result: it is written so that `rne show` and `rne explain` can print f_i
     line.define(Quantity::InertiaForce).by(h.with_force(c_ddot * body.mass));
 
     //     n_i = I_i ω̇_i + ω_i × (I_i ω_i)
@@ -192,6 +201,7 @@ fn backward<'s>(
     at_tips: &[Wrench<'s>],
 ) -> (Option<Wrench<'s>>, Vec<JointLoad<'s>>) {
     let rotors = Rotors::of(arm, states);
+    // the load of each link: first what its tips exert, then, in the loop, what its joints exert
     let mut loads = carried::at_tips(arm, at_tips);
     let mut load_of_base = Load::default();
     let mut of_joints = Vec::with_capacity(motions.len());
@@ -203,17 +213,20 @@ fn backward<'s>(
             load: &loads[index],
             rotors: &rotors,
             link: Some(index),
+            // names of a wrench have both numbers: `f1_2` is exerted by link 1 on link 2
             lines: [line, line.behind(link.parent)],
             names: [Quantity::JointForce, Quantity::JointMoment],
         });
 
         // 7   τ_i = e · n_{p,i}                        prismatic: e · f_{p,i}
+        // rotors of motors add their part, also those that other links carry
         let torque = line.define(arm.coordinates.torque(index).quantity).by({
             let torque = joint.actuator(&wrench);
             rotors.with_torque(&joint, (base, motions), torque)
         });
         of_joints.push(JointLoad { wrench, torque });
 
+        // R_i f_{p,i} and R_i n_{p,i}, in the axes of link p
         let rotation = motion.turning.rotation;
         match link.parent {
             Some(parent) => loads[parent].put(arm.builder.joint(parent + 1), rotation, &link.mount, &wrench),
