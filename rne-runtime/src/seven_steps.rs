@@ -16,15 +16,16 @@
 //! Link i is the one that joint i moves. Link p is the one that carries joint i: its `parent`, or the base. In a chain
 //! p is i-1, and r_i is the lecture's r_{i-1} ([`mount`]). f_{i,k} is f_{p,i} of a joint k that link i carries.
 //!
-//! The components of a vector of link i are along axes that are fixed to link i, with z along joint i. These axes are
-//! called form P. The lecture uses axes that are fixed to link i-1: Rz(θ_i) turns one into the other and does not
-//! change z elements, so τ is the same.
+//! The components of a vector of link i are along axes that are fixed to link i, with z along joint i; only r_i is
+//! along the axes of link p. These axes are called form P. The lecture uses axes that are fixed to link i-1: Rz(θ_i)
+//! turns one into the other and does not change z elements, so τ is the same.
 //!
 //! R_i and d_i are computed in [`link_frame`]. `kind.x(rigid, …)` adds the term of a revolute or a prismatic joint to
 //! `rigid`, the value if the joint did not move ([`joint`]).
 //!
 //! The lecture has a chain on a base that does not move. What moving bases, rotors of motors and links without mass
-//! add is in [`base`], [`spin`] and [`first_moment`].
+//! add is in [`base`], [`spin`] and [`first_moment`]. `S` is the type of the numbers of the robot, `T` that of the
+//! computation, such as dual numbers.
 //!
 //! The order of the operations is part of the contract: generated code repeats it and is compared bit for bit.
 
@@ -109,7 +110,7 @@ fn inertia_wrench<T: Scalar>(link: &LinkFrame<T>, this: &LinkMotion<T>) -> Force
     ForceMoment { force: with_force(link, this, force), moment: with_moment(link, this, moment) }
 }
 
-/// Step 6, the balance: force and moment from the parent link, the moment about the joint's reference point. The sums
+/// Step 6, the balance: force and moment from the parent link, the moment about the origin of joint i. The sums
 /// run over the joints k that link i carries, and the tip; in a chain there is one of them.
 ///
 /// - f_{p,i} = f_i + Σ R_k f_{i,k} - m_i g_i
@@ -124,7 +125,9 @@ fn joint_wrench<T: Scalar>(
 ) -> ForceMoment<T> {
     let own = with_force(link, this, (this.acceleration - this.gravity) * link.mass);
     let (force, moment) = match carried {
+        // the link carries neither a joint nor a tip
         None => (own, inertia.moment + this.d.cross(&own)),
+        // Σ R_k f_{i,k} and Σ R_k n_{i,k}, and Σ r_k × R_k f_{i,k}
         Some(Carried { wrench, of_levers }) => {
             let force = own + wrench.force;
             (force, ((inertia.moment + wrench.moment) + this.d.cross(&force)) + of_levers)
@@ -137,12 +140,12 @@ fn joint_wrench<T: Scalar>(
 ///
 /// - revolute: τ_i = e_i · n_{p,i}
 /// - prismatic: τ_i = e_i · f_{p,i}
-fn actuator<T: Scalar>(link: &LinkFrame<T>, joint: &ForceMoment<T>) -> T {
-    link.kind.actuator(joint)
+fn actuator<T: Scalar>(link: &LinkFrame<T>, wrench: &ForceMoment<T>) -> T {
+    link.kind.actuator(wrench)
 }
 
-/// The forward pass, steps 1, 2, 4 and 5, from the base to the tip: parents before what they carry. Links beyond the
-/// shortest argument stay as they are.
+/// The forward pass, steps 1, 2, 4 and 5, from the base to the tip: parents before what they carry. If an argument
+/// has fewer elements than the robot has joints, the pass ends there.
 pub(crate) fn forward<S: Constant, T: Scalar>(
     chain: Chain<'_, S>,
     base: &BaseMotion<T>,
@@ -152,6 +155,7 @@ pub(crate) fn forward<S: Constant, T: Scalar>(
     let base = base::motion(chain, base);
     for (index, joint) in chain.joints(joints).enumerate().take(motions.len()) {
         let parent = joint.link.parent.map_or(base, |parent| motions[parent]);
+        // R_i and d_i; each step fills in one more vector
         let mut this = LinkMotion::placed(&joint);
         this.omega = angular_velocity(&joint, &parent, &this);
         this.omega_dot = angular_acceleration(&joint, &parent, &this);
@@ -171,8 +175,11 @@ pub(crate) fn velocities<S: Constant, T: Scalar>(
 ) {
     let (base_velocity, base) = (base::velocity(chain, base), base::motion(chain, base));
     for (index, (joint, this)) in chain.joints(joints).zip(motions).enumerate() {
-        let parent = joint.link.parent.map_or((&base, base_velocity), |parent| (&motions[parent], velocities[parent]));
-        velocities[index] = velocity(&joint, parent.0, &parent.1, this);
+        let (parent, parent_velocity) = match joint.link.parent {
+            None => (&base, base_velocity),
+            Some(parent) => (&motions[parent], velocities[parent]),
+        };
+        velocities[index] = velocity(&joint, parent, &parent_velocity, this);
     }
 }
 
@@ -187,12 +194,15 @@ pub(crate) fn backward<S: Constant, T: Scalar>(
     tip: AtTip<'_, T>,
     loads: &mut [LinkLoad<T>],
 ) -> LinkLoad<T> {
+    // the load of the links of the tips: zero at a free tip
     tip.put(chain, motions, loads);
     let mut base = LinkLoad::empty();
     for (index, (link, this)) in chain.links().zip(motions).enumerate().rev() {
         let inertia = chain.spins.with_moments(Some(index), joints, this, inertia_wrench(&link, this));
         let joint = joint_wrench(&link, this, &inertia, loads[index].carried.as_ref());
+        // rotors on links add their part to τ after this pass: `Mechanism::all_passes`
         let tau = actuator(&link, &joint);
+        // `carried` stays as it is
         loads[index] = LinkLoad { inertia, joint, tau, ..loads[index] };
         let parent = link.parent.map_or(&mut base, |parent| &mut loads[parent]);
         // R_i f_{p,i}, R_i n_{p,i} and r_i × R_i f_{p,i}
