@@ -142,7 +142,7 @@ impl<'a, 's> Results<'a, 's> {
         System::new(self.builder().function, self.coordinates(), self.arm.rows().iter().map(|row| row.parent))
     }
 
-    /// The same results with other constants of the joints.
+    /// Results of the same algorithm for other constants of the joints, such as those without gravity.
     fn with<'b>(&self, joint_frames: &'b JointFrames) -> Results<'b, 's>
     where
         'a: 'b,

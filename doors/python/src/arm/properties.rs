@@ -170,13 +170,13 @@ impl Arm {
         self.robot().frames.iter().map(|frame| frame.name.clone()).collect()
     }
 
-    /// Of an arm from a URDF: remarks of the import, such as which tip was chosen and which links were joined.
+    /// Remarks of the import of a URDF, such as which tip was chosen and which links were joined.
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.origin.notes.clone()
     }
 
-    /// Of an arm from a URDF: the movable joints that are held still, and where, rad or m.
+    /// The movable joints of a URDF that are held still, and their positions, rad or m.
     #[getter]
     fn held(&self) -> BTreeMap<String, f64> {
         self.origin.held.clone()

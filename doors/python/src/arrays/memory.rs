@@ -37,7 +37,7 @@ pub(super) fn is_arrow(value: &Bound<'_, PyAny>) -> bool {
     ["__arrow_c_stream__", "__arrow_c_array__", "collect_schema"].iter().any(|name| has(value, name))
 }
 
-/// What is given as an array, whatever its layout: its own memory where it has the type already.
+/// The array that a caller gave, of any layout. If its numbers have the right type, its memory is used without a copy.
 pub(crate) fn taken<'py, T: Element>(
     name: &'static str,
     value: &Bound<'py, PyAny>,
@@ -76,7 +76,7 @@ pub(crate) fn memory<T: Element>(array: &Bound<'_, PyArrayDyn<T>>) -> Range<usiz
     start..end
 }
 
-/// Refuses what `numpy.ma` hides: a masked number is no number, as null of Polars and PyArrow is none.
+/// Refuses an array of `numpy.ma` with masked numbers, because a masked number has no value.
 pub(crate) fn refuse_masked(name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
     // most arguments are plain arrays: nothing more is asked of them
     if value.is_exact_instance_of::<PyUntypedArray>() {

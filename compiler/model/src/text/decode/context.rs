@@ -87,7 +87,7 @@ impl<'t> Context<'t> {
         Self { settings, ..self }
     }
 
-    /// The candidate that `word` was probably meant to be. So many candidates and so many words bound the work that a
+    /// The candidate that `word` was probably meant to be. The numbers of candidates and words bound the work that a
     /// file of nothing but unknown words can cause; a report shows fewer mistakes.
     pub(crate) fn did_you_mean<'c>(
         &self,
