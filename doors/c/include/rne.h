@@ -269,8 +269,8 @@ enum rne_status rne_arm_joint_kind(const struct rne_arm *arm, size_t joint, enum
 enum rne_status rne_arm_joint_limits(const struct rne_arm *arm, size_t joint, struct rne_limits *limits);
 
 /**
- * The id of a function by its name: "inverse_dynamics", "mass_matrix", …; `docs/reference/functions.md` has them all. An id is
- * that of every arm. It may be another in another version of this library: do not store it.
+ * The id of a function by its name: "inverse_dynamics", "mass_matrix", …; `docs/reference/functions.md` has them all.
+ * An id is that of every arm. It may be another in another version of this library: do not store it.
  */
 enum rne_status rne_function_find(const char *name,
                                   uint32_t *id);
