@@ -10,9 +10,9 @@ use rne_model::{
 use crate::chain::{Chain, ChainLoop, Extracted};
 use crate::frames::transform;
 use crate::geometry::{Pose, Rotation, Vector, decimal};
-use crate::scan::Seen;
 use crate::source::{Source, names, quoted};
 use crate::table::Table;
+use crate::urdf::xml::Seen;
 use crate::urdf::{Joint, Kind, Link, Urdf, cut};
 
 /// Places of a loop that are not farther apart, m and rad, where the loops come nearest to closing, were meant to be

@@ -15,7 +15,7 @@ use self::remarks::remarks;
 use crate::body::Body;
 use crate::chain::{Chain, ChainFrame, ChainJoint};
 use crate::conventions::of_robot;
-use crate::scan::LARGEST;
+use crate::urdf::xml::LARGEST;
 
 /// A robot as a URDF.
 #[derive(Clone, Debug, PartialEq)]

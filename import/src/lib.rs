@@ -28,7 +28,6 @@ mod mjcf;
 mod payload;
 mod remark;
 pub mod robot_file;
-mod scan;
 mod selection;
 mod snap;
 mod source;

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use rne_model::{LARGEST_ANGLE, Remedy, Report, did_you_mean};
 
-use crate::scan::LARGEST;
 use crate::source::{names, quoted};
+use crate::urdf::xml::LARGEST;
 use crate::urdf::{Joint, Kind, Urdf};
 
 /// Largest number of leaves that are listed where the tip must be named.

@@ -10,8 +10,8 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use rne_model::Report;
 
-use crate::scan::LARGEST;
 use crate::source::{Source, quoted};
+use crate::urdf::xml::LARGEST;
 
 /// A transmission between motors and joints.
 #[derive(Clone, Debug, Default)]

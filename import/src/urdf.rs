@@ -2,6 +2,7 @@
 //! becomes the same tree.
 
 mod elements;
+pub(crate) mod xml;
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -11,9 +12,9 @@ use rne_model::{Cut, Inertia, Limits, Report};
 use crate::closed_loop::Loop;
 use crate::mjcf;
 use crate::remark::Remarks;
-use crate::scan::{root_name, scan};
 use crate::source::Source;
 use crate::transmission;
+use crate::urdf::xml::{root_name, scan};
 
 /// A robot as its URDF or its MJCF file describes it. [`Urdf::read`] has checked that its links are one tree.
 #[derive(Clone, Debug)]

@@ -50,7 +50,7 @@ fn links_lead_somewhere() {
     assert!(links > 80, "{links} links of {} pages", pages.len());
 }
 
-/// A source that any page names by its last part (`prove.rs`, `ir/graph.rs`) is there.
+/// A source that any page names by its last part (`proof.rs`, `ir/graph.rs`) is there.
 #[test]
 fn pages_name_sources_that_are_there() {
     let (mut pages, mut sources) = (Vec::new(), Vec::new());

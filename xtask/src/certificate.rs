@@ -109,8 +109,8 @@ impl Certificate {
         if !fetched.status.success() {
             return Err(Missing::error("its crates cannot be downloaded (cargo fetch in firmware/ says why)"));
         }
-        let tests = cargo(&["test", "--package", "certificate"]);
-        let mut judges = cargo(&["run", "--package", "certificate", "--"]);
+        let tests = cargo(&["test", "--package", "measurements"]);
+        let mut judges = cargo(&["run", "--package", "measurements", "--"]);
         if self.update {
             judges = judges.arg("--update");
         }
@@ -129,7 +129,7 @@ const RECORD: &str = "firmware/certified.txt";
 const CERTIFIED: [&str; 14] = [
     "docs/measured/embedded.md",
     "firmware/board",
-    "firmware/certificate",
+    "firmware/measurements",
     "firmware/robots",
     "firmware/wasm",
     "firmware/Cargo.lock",

@@ -34,7 +34,7 @@ mod named;
 mod pipeline;
 pub mod plan;
 mod program;
-mod prove;
+mod proof;
 mod quantity;
 mod reduced;
 mod refusal;
@@ -76,7 +76,7 @@ pub use values::{Contraction, Negated, Value, ValueId, Values};
 use crate::formulation::Formulation;
 use crate::pipeline::{LARGEST, seven_steps_within};
 use crate::plan::PlanSet;
-use crate::prove::Reference;
+use crate::proof::Reference;
 use crate::reduced::near_origins;
 
 /// Whether frames of the table stand so far from the arm that code of the seven steps loses digits.
@@ -108,7 +108,7 @@ pub fn measured(robot: &Robot, program: Program) -> Program {
         return program;
     }
     // what cannot be compared is not measured
-    let loss = prove::loss_of_seven_steps(robot, &program).unwrap_or_default();
+    let loss = proof::loss_of_seven_steps(robot, &program).unwrap_or_default();
     Program { loss, ..program }
 }
 
@@ -193,7 +193,7 @@ impl<'r> Compiler<'r> {
             return seven_steps_within(LARGEST, robot, function, &[], false);
         }
         // then there is nothing to be held against
-        if prove::divides_by_zero(robot, function) {
+        if proof::divides_by_zero(robot, function) {
             let refusals = vec![Refusal::new(Attempt::Any, Reason::DividesByZero)];
             return Ok(Program { refusals, ..seven_steps_within(LARGEST, robot, function, &[], false)? });
         }

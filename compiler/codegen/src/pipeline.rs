@@ -9,7 +9,7 @@ use crate::function::{Form, Function};
 use crate::ir::{Exactly, Policy, Quantity};
 use crate::lower::{Heading, lower};
 use crate::program::{Program, Proof};
-use crate::prove::{self, Reference};
+use crate::proof::{self, Reference};
 use crate::reduced::near_origins;
 
 /// Sums and products of a function that are compiled: `inverse_dynamics_derivatives` of an arm of 40 joints in which
@@ -53,7 +53,7 @@ impl Formulation {
         let (program, exactly) = self.lowered(reference.robot(), function)?;
         let mut program = target.arranged(&program);
         program.scales = scales;
-        let (proof, loss) = prove::prove(reference, &program, &exactly, embedding)?;
+        let (proof, loss) = proof::prove(reference, &program, &exactly, embedding)?;
         (program.proof, program.loss) = (Some(proof), loss);
         Ok(program)
     }
@@ -105,8 +105,8 @@ impl<'r> Reference<'r> {
     ) -> Result<Option<f64>, CompileError> {
         let embedding = formulation.embedding();
         let (program, exactly) = formulation.lowered(self.robot(), function)?;
-        let is_identical = prove::identical(self.robot(), &program, &exactly, embedding).is_ok();
-        Ok(is_identical.then(|| prove::loss_of_precision(self, &program, states)))
+        let is_identical = proof::identical(self.robot(), &program, &exactly, embedding).is_ok();
+        Ok(is_identical.then(|| proof::loss_of_precision(self, &program, states)))
     }
 }
 

@@ -62,7 +62,7 @@ fn paths(file: &str) -> Vec<Vec<String>> {
 
 #[test]
 fn the_checker_imports_no_pass() {
-    let found = [paths("prove.rs"), paths("exact.rs")].concat();
+    let found = [paths("proof.rs"), paths("exact.rs")].concat();
     assert!(found.iter().any(|path| path.join("::") == "crate::formulate"), "the visitor reads imports");
     for path in found.iter().filter(|path| path[0] == "crate" && path.len() > 1) {
         let module = path[1].as_str();

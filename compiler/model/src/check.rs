@@ -4,7 +4,7 @@ use crate::readers::robot::{Takes, robot};
 use crate::text::decode::Context;
 use crate::text::diagnostic::{Problems, Report};
 use crate::text::identifier::{JointIdentifier, identifiers};
-use crate::{Robot, text::document, text::source, text::urdf};
+use crate::{Robot, text::document, text::other_formats, text::source};
 
 /// A valid robot file: the robot, and what is remarkable about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -141,8 +141,8 @@ impl<'a> Reader<'a> {
 
     fn read_text(&self, text: &str, problems: Problems) -> Result<Checked, Report> {
         // the beginning will do: a URDF may be long
-        let beginning = urdf::head(text);
-        if let Some(other_format) = urdf::instead_of_a_robot_file(self.name, beginning) {
+        let beginning = other_formats::head(text);
+        if let Some(other_format) = other_formats::instead_of_a_robot_file(self.name, beginning) {
             problems.push(other_format);
             return Err(problems.finish(self.name, beginning));
         }

@@ -23,6 +23,6 @@ pub use crate::text::document;
 pub use crate::text::expression::number;
 pub use crate::text::identifier::JointIdentifier;
 pub use crate::text::keys::{Key, Mapping, mappings};
+pub use crate::text::other_formats::is_urdf;
 pub use crate::text::source::{exact_digits, half_of_last_digit, is_control, one_line, six_digits};
 pub use crate::text::spelling::{did_you_mean, nearest_name, no_shipped_robot};
-pub use crate::text::urdf::is_urdf;

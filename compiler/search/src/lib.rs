@@ -29,15 +29,15 @@
 #![forbid(unsafe_code)]
 
 mod error;
-mod exploration;
 mod neighbourhood;
 mod plan_file;
+mod plan_search;
 mod savings;
 mod search;
 
 pub use error::SearchError;
-pub use exploration::{Clock, Progress};
 pub use neighbourhood::Neighbourhood;
 pub use plan_file::{Fingerprint, PlanFile, Reduced, fingerprint};
+pub use plan_search::{Clock, Progress};
 pub use savings::{savings, without};
 pub use search::{SearchOptions, search};

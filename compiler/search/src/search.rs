@@ -8,8 +8,8 @@ use rne_codegen::{Algorithm, CompileError, Function};
 use rne_model::Robot;
 
 use crate::error::SearchError;
-use crate::exploration::{Clock, Exploration, Over, Progress};
 use crate::plan_file::{PlanFile, Reduced};
+use crate::plan_search::{Clock, Exploration, Over, Progress};
 
 /// Options of a search.
 #[derive(Clone, Debug, Default)]

@@ -9,8 +9,8 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use rne_model::{Report, open_file};
 
-use crate::scan::MAX_BYTES;
 use crate::source::{Source, quoted};
+use crate::urdf::xml::MAX_BYTES;
 
 /// Bodies are nested as deep as joints follow each other; a robot file has 64 joints.
 const MAX_DEPTH: usize = 256;

@@ -7,8 +7,8 @@ use rne_model::{LARGEST_ANGLE, Report, did_you_mean};
 use super::compiler::Compiler;
 use super::element::{Element, within};
 use crate::geometry::Rotation;
-use crate::scan::{LARGEST, end_of_range};
 use crate::source::{Help, Source, names, quoted};
+use crate::urdf::xml::{LARGEST, end_of_range};
 
 /// The kinds of actuators. A class has one set of default values for all of them (`Default` in MuJoCo's
 /// `xml_native_reader.cc`).

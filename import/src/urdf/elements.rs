@@ -6,9 +6,9 @@ use std::ops::Range;
 use rne_model::{Inertia, Limits, Report};
 
 use super::{Gear, Joint, Kind, Link, Mimic, Urdf};
-use crate::scan::{Seen, end_of_range};
 use crate::source::{Help, names, quoted};
 use crate::transmission::Transmission;
+use crate::urdf::xml::{Seen, end_of_range};
 
 /// The help where the links are not one tree.
 const CONNECT: &str = "connect all links with joints to one tree";

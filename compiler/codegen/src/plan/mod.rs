@@ -14,7 +14,7 @@ mod trick;
 
 pub use crate::formulation::Formulation;
 pub use crate::ir::Cost;
-pub use crate::prove::{Reference, divides_by_zero};
+pub use crate::proof::{Reference, divides_by_zero};
 pub use crate::reduced::choices::{JointPlan, Moment, OriginShift, Plan, RegroupingTarget, Scale, Side, Switches};
 pub use cost::{OpenChoices, OpenJoint};
 pub use descent::Descent;

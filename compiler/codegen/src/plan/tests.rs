@@ -11,7 +11,7 @@ use crate::ir::{Embedding, Exactly, Graph, Traced};
 use crate::plan::cost::{Evaluator, frame};
 use crate::plan::descent::default_plan;
 use crate::plan::rewriting::Annealing;
-use crate::prove;
+use crate::proof;
 use crate::reduced::Algorithm;
 use crate::{CompileError, Compiler, Form, Function, Operator, Program, Value};
 
@@ -47,7 +47,7 @@ fn unproved(robot: &Robot, plan: &Plan, function: Function) -> Option<Unproved> 
 }
 
 fn is_identical(robot: &Robot, (program, exactly, embedding): &Unproved) -> bool {
-    prove::identical(robot, program, exactly, *embedding).is_ok()
+    proof::identical(robot, program, exactly, *embedding).is_ok()
 }
 
 /// Fails with these words, by which `cargo xtask mutate` knows that it was the proof that refused.
@@ -55,7 +55,7 @@ fn must_be_identical(robot: &Robot, plan: &Plan, (program, exactly, embedding): 
     for (arranged, what) in
         [(program, ""), (&ordered_for_latency(program), " ordered for latency"), (&contracted(program), " contracted")]
     {
-        if let Err(error) = prove::identical(robot, arranged, exactly, *embedding) {
+        if let Err(error) = proof::identical(robot, arranged, exactly, *embedding) {
             panic!("the proof refuses {}{what}: {error}\n{:#?}", robot.name, plan.choices());
         }
     }
@@ -109,7 +109,7 @@ fn rewritten_graphs_survive_as_text() {
     assert_eq!(words(&again), words(&text), "a text goes on as it was");
     let rewritten = Formulation { names, traced: read.told_by(&plain), scales };
     let (program, exactly, embedding) = lowered(&robot, Function::InverseDynamics, rewritten);
-    prove::prove(&Reference::of(&robot, Function::InverseDynamics).unwrap(), &program, &exactly, embedding).unwrap();
+    proof::prove(&Reference::of(&robot, Function::InverseDynamics).unwrap(), &program, &exactly, embedding).unwrap();
     assert_eq!((program.operations().mul, program.operations().add), (cost.mul, cost.add));
 }
 
@@ -169,7 +169,7 @@ fn one_wrong_operation_anywhere_is_refused() {
         let (program, exactly, embedding) = unproved(&robot, &plan, Function::InverseDynamics).unwrap();
         let mut refused = 0;
         for mutant in mutants(&program) {
-            let verdict = prove::identical(&robot, &mutant, &exactly, embedding);
+            let verdict = proof::identical(&robot, &mutant, &exactly, embedding);
             assert!(matches!(verdict, Err(CompileError::NotIdentical { .. })), "{name}");
             refused += 1;
         }
@@ -182,12 +182,12 @@ fn one_constant_off_by_the_last_digit_is_refused() {
     let robot = robot("puma560");
     let plan = default_plan(&robot, &[]);
     let (program, exactly, embedding) = unproved(&robot, &plan, Function::InverseDynamics).unwrap();
-    assert!(prove::identical(&robot, &program, &exactly, embedding).is_ok());
+    assert!(proof::identical(&robot, &program, &exactly, embedding).is_ok());
     let tiny = crate::ir::Embedding::default().decimal(1e-18);
     for constant in program.constants() {
         let mut wrong = exactly.clone();
         wrong.get_mut(&constant.name).unwrap().0 = exactly[&constant.name].0 + tiny;
-        assert!(prove::identical(&robot, &program, &wrong, embedding).is_err(), "{}", constant.name);
+        assert!(proof::identical(&robot, &program, &wrong, embedding).is_err(), "{}", constant.name);
     }
 }
 
@@ -204,7 +204,7 @@ fn a_wrong_literal_is_refused_by_rounding() {
     let (id, largest) = numbers.max_by(|(_, a), (_, b)| a.total_cmp(b)).unwrap();
     program.values.replace(id, Value::Constant(largest * (1.0 + 1e-9)));
     let verdict =
-        prove::prove(&Reference::of(&robot, Function::InverseDynamics).unwrap(), &program, &exactly, embedding);
+        proof::prove(&Reference::of(&robot, Function::InverseDynamics).unwrap(), &program, &exactly, embedding);
     assert!(matches!(verdict, Err(CompileError::Imprecise { .. })), "{verdict:?}");
 }
 

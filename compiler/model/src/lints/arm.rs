@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use crate::lints::lint::{FARTHEST, LONGEST, MILLIMETRES};
+use crate::lints::single_value::{FARTHEST, LONGEST, MILLIMETRES};
 use crate::parts::inertia::principal_moments;
 use crate::readers::loops::short;
 use crate::text::decode::Context;

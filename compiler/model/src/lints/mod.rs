@@ -3,6 +3,6 @@
 pub(crate) mod arm;
 pub(crate) mod closed_loops;
 pub(crate) mod inertia;
-pub(crate) mod lint;
 pub(crate) mod mirror;
 pub(crate) mod resistance;
+pub(crate) mod single_value;

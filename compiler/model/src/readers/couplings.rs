@@ -7,7 +7,7 @@ use crate::text::decode::{Context, read_mapping, text};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::document::Node;
 use crate::text::source::{quoted, six_digits};
-use crate::{Coupling, Drive, Entry, Joint, JointKind, LARGEST_ANGLE, lints::lint};
+use crate::{Coupling, Drive, Entry, Joint, JointKind, LARGEST_ANGLE, lints::single_value};
 
 /// Limits of followers that limit nothing: positions and speeds of one that follows several joints, efforts, and
 /// positions that the followed joint cannot have.
@@ -96,8 +96,8 @@ pub(crate) fn couplings(cx: &Context, root: &Node, format: u32, joints: &mut [Jo
         for (item, Written { joint, coupling }) in items.iter().zip(written) {
             if let Some(offset) = item.get("offset") {
                 match joints[joint].row.kind {
-                    JointKind::Revolute => lint::angle(cx, offset, coupling.offset),
-                    JointKind::Prismatic => lint::length(cx, offset, coupling.offset),
+                    JointKind::Revolute => single_value::angle(cx, offset, coupling.offset),
+                    JointKind::Prismatic => single_value::length(cx, offset, coupling.offset),
                 }
             }
             joints[joint].coupling = Some(coupling);

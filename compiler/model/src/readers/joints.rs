@@ -16,7 +16,7 @@ use crate::text::document::{Content, MAX_JOINTS, Node};
 use crate::text::source::{one_line, quoted};
 use crate::{
     Angle, Dh, Entry, FixedFrame, Inertia, InertiaReference, Joint, JointKind, Limits, Link, Row, Transform,
-    lints::lint,
+    lints::single_value,
 };
 
 pub(crate) fn joints(cx: &Context, node: &Node) -> Option<Vec<Joint>> {
@@ -83,7 +83,7 @@ fn joint(cx: &Context, node: &Node, index: usize) -> Option<Joint> {
         motor: optional "motor" |cx, node| motor(cx, node, index),
     });
     if let Some(position) = node.get("limits").and_then(|limits| limits.get("position")) {
-        lint::position_limits(cx, position, kind, &limits);
+        single_value::position_limits(cx, position, kind, &limits);
     }
     let (link, written_inertia) = link;
     let (motor, [coulomb_width, coulomb_displacement]) =

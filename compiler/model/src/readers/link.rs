@@ -4,7 +4,7 @@ use crate::readers::varying::{com_of_first_moment, entry, inertia_about_com, ine
 use crate::text::decode::{Context, choice, list, not_negative, read_mapping};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::document::Node;
-use crate::{Entry, Inertia, InertiaReference, Link, lints, lints::lint, readers::matter};
+use crate::{Entry, Inertia, InertiaReference, Link, lints, lints::single_value, readers::matter};
 
 /// The link with its inertia about the centre of mass, and the inertia as written.
 pub(crate) fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, InertiaReference))> {
@@ -72,14 +72,14 @@ fn no_body(
 fn com(cx: &Context, node: &Node, joint: usize) -> Option<[f64; 3]> {
     list(cx, node, "[x, y, z] (m)", |cx, node, axis| {
         let value = entry(Entry::Com(joint, axis))(cx, node)?;
-        lint::com(cx, node, value);
+        single_value::com(cx, node, value);
         Some(value)
     })
 }
 
 fn mass(cx: &Context, node: &Node, joint: usize) -> Option<f64> {
     let mass = not_negative("mass", entry(Entry::Mass(joint)))(cx, node)?;
-    lint::mass(cx, node, mass);
+    single_value::mass(cx, node, mass);
     Some(mass)
 }
 

@@ -8,18 +8,18 @@ use crate::text::decode::{Context, choice, list, not_negative, read_mapping};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::document::Node;
 use crate::text::source::six_digits;
-use crate::{Inertia, InertiaElement, InertiaReference, Link, lints, lints::lint, parts::inertia};
+use crate::{Inertia, InertiaElement, InertiaReference, Link, lints, lints::single_value, parts::inertia};
 
 pub(crate) fn mass(cx: &Context, node: &Node) -> Option<f64> {
     let mass = not_negative("mass", fixed("the mass"))(cx, node)?;
-    lint::mass(cx, node, mass);
+    single_value::mass(cx, node, mass);
     Some(mass)
 }
 
 pub(crate) fn com(cx: &Context, node: &Node) -> Option<[f64; 3]> {
     list(cx, node, "[x, y, z] (m)", |cx, node, _| {
         let value = fixed("the centre of mass")(cx, node)?;
-        lint::com(cx, node, value);
+        single_value::com(cx, node, value);
         Some(value)
     })
 }

@@ -4,7 +4,7 @@ use crate::readers::varying::{entry, fixed};
 use crate::text::decode::{Context, list, not_negative, read_mapping};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::document::{Content, Node};
-use crate::{Entry, Motor, lints::lint};
+use crate::{Entry, Motor, lints::single_value};
 
 /// The motor, and the speed about which its friction changes its sign, or the displacement over which it does.
 pub(crate) fn motor(cx: &Context, node: &Node, joint: usize) -> Option<(Motor, [Option<f64>; 2])> {
@@ -17,7 +17,7 @@ pub(crate) fn motor(cx: &Context, node: &Node, joint: usize) -> Option<(Motor, [
         displacement: optional "coulomb_displacement" not_negative("displacement", fixed("the displacement")),
     });
     if let (Some(of_width), Some(_)) = (node.get("coulomb_width"), node.get("coulomb_displacement")) {
-        lint::width_beside_displacement(cx, of_width);
+        single_value::width_beside_displacement(cx, of_width);
     }
     Some((Motor { inertia, gear_ratio, viscous, coulomb }, [width, displacement]))
 }

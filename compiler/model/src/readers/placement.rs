@@ -5,7 +5,7 @@ use crate::readers::varying::{entry, fixed};
 use crate::text::decode::{Context, list, read_mapping};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::document::Node;
-use crate::{Angle, Entry, FixedFrame, LARGEST_ANGLE, Transform, lints::lint};
+use crate::{Angle, Entry, FixedFrame, LARGEST_ANGLE, Transform, lints::single_value};
 
 pub(crate) fn transform(cx: &Context, node: &Node, place: fn(usize) -> Entry) -> Option<Transform> {
     read_mapping!(cx, node, "a placement", {
@@ -52,7 +52,7 @@ fn fixed_position(cx: &Context, node: &Node) -> Option<[f64; 3]> {
 /// A length that run-time parameters do not change.
 pub(crate) fn fixed_length(cx: &Context, node: &Node) -> Option<f64> {
     let value = fixed("the length")(cx, node)?;
-    lint::length(cx, node, value);
+    single_value::length(cx, node, value);
     Some(value)
 }
 
@@ -71,14 +71,14 @@ pub(crate) fn angle(cx: &Context, node: &Node) -> Option<f64> {
         );
         return cx.refuse(Diagnostic::error(node.span.clone(), message).help("subtract whole turns from the angle"));
     }
-    lint::angle(cx, node, value);
+    single_value::angle(cx, node, value);
     Some(value)
 }
 
 pub(crate) fn length(place: Entry) -> impl Fn(&Context, &Node) -> Option<f64> {
     move |cx, node| {
         let value = entry(place)(cx, node)?;
-        lint::length(cx, node, value);
+        single_value::length(cx, node, value);
         Some(value)
     }
 }

@@ -18,8 +18,8 @@ use crate::text::diagnostic::Diagnostic;
 use crate::text::document::Node;
 use crate::text::source::quoted;
 use crate::{
-    Bodies, ClosedLoops, Convention, Entry, Joint, Robot, RunTime, Transform, lints, lints::lint, lints::mirror,
-    readers::tree,
+    Bodies, ClosedLoops, Convention, Entry, Joint, Robot, RunTime, Transform, lints, lints::mirror,
+    lints::single_value, readers::tree,
 };
 
 /// The robots that a caller takes, beside serial arms.
@@ -105,9 +105,9 @@ fn with_references(cx: &Context, node: &Node, (format, takes): (u32, Takes), rob
     robot.floating_base = floating_base::floating_base(cx, node, format)?;
     robot.closed = closed;
     if let Some(node) = node.get("gravity") {
-        lint::gravity_upwards(cx, node, robot.gravity, &robot.base);
+        single_value::gravity_upwards(cx, node, robot.gravity, &robot.base);
     }
-    lint::unused_parameters(cx);
+    single_value::unused_parameters(cx);
     // Where something else is wrong it may be that which has no effect.
     if !cx.has_errors() {
         without_effect(cx);
@@ -169,7 +169,7 @@ fn robot_name(cx: &Context, node: &Node) -> Option<String> {
 /// The acceleration of gravity in frame 0.
 fn gravity(cx: &Context, node: &Node) -> Option<[f64; 3]> {
     let gravity = list(cx, node, "[x, y, z] (m/s²)", |cx, node, axis| entry(Entry::Gravity(axis))(cx, node))?;
-    lint::gravity(cx, node, gravity);
+    single_value::gravity(cx, node, gravity);
     Some(gravity)
 }
 

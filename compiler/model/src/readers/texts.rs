@@ -1,6 +1,6 @@
 //! Texts of a robot file.
 
-use crate::lints::lint;
+use crate::lints::single_value;
 use crate::text::decode::{Context, text};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::document::Node;
@@ -25,7 +25,7 @@ pub(crate) fn lines(cx: &Context, node: &Node) -> Option<String> {
 fn printable(cx: &Context, node: &Node, what: &str, is_allowed: impl Fn(char) -> bool) -> Option<String> {
     let text = text(cx, node)?;
     let Some(control) = text.chars().find(|&c| is_control(c) && !is_allowed(c)) else {
-        lint::invisible(cx, node, &text);
+        single_value::invisible(cx, node, &text);
         return Some(text);
     };
     let message = format!(

@@ -26,7 +26,7 @@ fn all_algorithms_are_the_seven_steps() {
             for &algorithm in Algorithm::of(function) {
                 let program =
                     written(&robot, &plan, function, algorithm).unwrap_or_else(|| panic!("{name}: {algorithm:?}"));
-                if let Err(error) = prove::identical(&robot, &program.0, &program.1, program.2) {
+                if let Err(error) = proof::identical(&robot, &program.0, &program.1, program.2) {
                     panic!("the proof refuses {name}, {algorithm:?}: {error}");
                 }
             }

@@ -68,12 +68,12 @@ fn run(arguments: &Arguments) -> Result<ExitCode> {
     summary(&report)?;
     if arguments.update {
         fs::write(&path, report.document()).context("docs/measured/embedded.md")?;
-        fs::write(&figures, report.figures_of_all()).context("firmware/certificate/figures.txt")?;
-        println!("wrote docs/measured/embedded.md and firmware/certificate/figures.txt");
+        fs::write(&figures, report.figures_of_all()).context("firmware/measurements/figures.txt")?;
+        println!("wrote docs/measured/embedded.md and firmware/measurements/figures.txt");
         return Ok(ExitCode::SUCCESS);
     }
     let committed = fs::read_to_string(&path).context("docs/measured/embedded.md")?;
-    let all = fs::read_to_string(&figures).context("firmware/certificate/figures.txt")?;
+    let all = fs::read_to_string(&figures).context("firmware/measurements/figures.txt")?;
     let baseline = Baseline::read(&all);
     let grown: Vec<String> = report.tables.iter().flat_map(|table| table.growth(&baseline)).collect();
     if !grown.is_empty() {
@@ -83,7 +83,7 @@ fn run(arguments: &Arguments) -> Result<ExitCode> {
     }
     for table in report.tables.iter().filter(|table| table.is_of_another_compiler(&baseline)) {
         let (title, compiler) = (&table.title, &table.compiler);
-        println!("{title}: not compared, firmware/certificate/figures.txt is of another compiler than {compiler}");
+        println!("{title}: not compared, firmware/measurements/figures.txt is of another compiler than {compiler}");
     }
     let is_same = report::is_same(&committed, &report.document()) && all == report.figures_of_all();
     if !arguments.sample && !is_same {

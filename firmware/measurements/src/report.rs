@@ -117,7 +117,7 @@ const HEAD: &str = "\
 # Generated code on microcontrollers
 
 The command `cargo xtask certificate --update` writes this page. Without `--update`, the command builds, reads and runs
-the code again, and compares the result with [the figures of all robots](../../firmware/certificate/figures.txt), of
+the code again, and compares the result with [the figures of all robots](../../firmware/measurements/figures.txt), of
 which this page shows five. It fails if the code does not have a property that this page certifies.
 
 The generated code computes the joint torques of each [shipped robot](../../robots/README.md) and, for the PUMA 560,
