@@ -5,8 +5,6 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use indicatif::ProgressBar;
-#[cfg(feature = "parquet")]
-use rne_logs::MotionParquet;
 use rne_logs::{Heading, Layout, Log, LogError, Motion, Npy, Quantity, RecordedState, Survey};
 
 use crate::files::file_name::{self, Format};
@@ -108,7 +106,7 @@ pub(crate) fn write(
 ) -> Result<u64, Stopped> {
     let Some(first) = logs.first() else { return Ok(0) };
     let expected = logs.iter().map(|log| log.survey.counts.states).sum();
-    let mut table = Table::begin(manner, out, first.log.layout(), expected).map_err(Stopped::Unwritable)?;
+    let mut table = begin(manner, out, first.log.layout(), expected).map_err(Stopped::Unwritable)?;
     let mut states = 0;
     for Written { log, survey, label } in logs {
         if manner.is_raw {
@@ -135,13 +133,19 @@ pub(crate) fn write(
 }
 
 /// A table that is written.
-enum Table<W: Write + Send> {
-    Csv(Csv<W>),
-    /// An array whose header, with the number of states, is written.
-    Npy(W),
-    #[cfg(feature = "parquet")]
-    Parquet(Box<MotionParquet<W>>),
+trait Table {
+    /// Appends filtered states.
+    fn push(&mut self, layout: &Layout, run: u64, motion: &Motion, label: &str) -> io::Result<()>;
+
+    /// Appends a state as it was recorded.
+    fn push_recorded(&mut self, layout: &Layout, state: &RecordedState<'_>, label: &str) -> io::Result<()>;
+
+    /// Ends the table. `is_whole` says whether it has the states that were counted before.
+    fn finish(self: Box<Self>, is_whole: bool) -> io::Result<()>;
 }
+
+/// An array whose header, with the number of states, is written.
+struct Array<W>(W);
 
 /// A table of text.
 struct Csv<W> {
@@ -185,67 +189,100 @@ impl<W: Write> Csv<W> {
     }
 }
 
-impl<W: Write + Send> Table<W> {
-    fn begin(manner: Manner<'_>, mut out: W, layout: &Layout, states: u64) -> io::Result<Self> {
+/// Begins a table.
+fn begin<'w, W: Write + Send + 'w>(
+    manner: Manner<'_>,
+    mut out: W,
+    layout: &Layout,
+    states: u64,
+) -> io::Result<Box<dyn Table + 'w>> {
+    Ok(match manner.format {
         #[cfg(feature = "parquet")]
-        if manner.format == Format::Parquet {
-            let begin = if manner.is_raw { MotionParquet::of_recorded } else { MotionParquet::new };
-            return Ok(Self::Parquet(Box::new(begin(out, layout, manner.label)?)));
-        }
-        if manner.format == Format::Npy {
+        Format::Parquet => parquet::begin(manner, out, layout)?,
+        Format::Npy => {
             let columns = 1 + manner.quantities(layout).len() * layout.joints.len();
             out.write_all(&Npy::header(states, columns as u64))?;
-            return Ok(Self::Npy(out));
+            Box::new(Array(out))
         }
-        debug_assert!(manner.format == Format::Csv);
-        Ok(Self::Csv(Csv {
+        _ => Box::new(Csv {
             out,
             header: manner.header(layout),
             has_label: manner.label.is_some(),
             is_stamped: manner.is_stamped(layout),
             line: String::new(),
-        }))
-    }
+        }),
+    })
+}
 
-    /// Appends filtered states. An array has none.
-    fn push(&mut self, layout: &Layout, run: u64, motion: &Motion, label: &str) -> io::Result<()> {
-        let table = match self {
-            Self::Csv(table) => table,
-            Self::Npy(_) => return Err(io::Error::other("an array has only states as they were recorded")),
-            #[cfg(feature = "parquet")]
-            Self::Parquet(table) => return table.push(layout, run, motion, label),
-        };
-        let _ = layout;
+impl<W: Write> Table for Csv<W> {
+    fn push(&mut self, _layout: &Layout, run: u64, motion: &Motion, label: &str) -> io::Result<()> {
         let Motion { time, q, qd, qdd, tau, .. } = motion;
         for (i, time) in time.iter().enumerate() {
-            table.row(0, *time, [q, qd, qdd, tau].into_iter().flatten().map(|list| list[i]), run, label)?;
+            self.row(0, *time, [q, qd, qdd, tau].into_iter().flatten().map(|list| list[i]), run, label)?;
         }
         Ok(())
     }
 
-    /// Appends a state as it was recorded.
-    fn push_recorded(&mut self, layout: &Layout, state: &RecordedState<'_>, label: &str) -> io::Result<()> {
-        let RecordedState { run, stamp, time, q, qd, tau } = *state;
-        let numbers = [q, qd, tau].into_iter().flatten().copied();
-        let _ = layout;
-        match self {
-            Self::Csv(table) => table.row(stamp, time, numbers, run, label),
-            Self::Npy(out) => {
-                std::iter::once(time).chain(numbers).try_for_each(|number| out.write_all(&number.to_le_bytes()))
-            }
-            #[cfg(feature = "parquet")]
-            Self::Parquet(table) => table.push_recorded(layout, state, label),
-        }
+    fn push_recorded(&mut self, _layout: &Layout, state: &RecordedState<'_>, label: &str) -> io::Result<()> {
+        self.row(state.stamp, state.time, numbers(state), state.run, label)
     }
 
-    /// Ends the table. `is_whole` says whether it has the states that were counted before.
-    fn finish(self, is_whole: bool) -> io::Result<()> {
-        match self {
-            Self::Csv(mut table) => table.out.flush(),
-            Self::Npy(_) if !is_whole => Err(io::Error::other("the log changed while it was read")),
-            Self::Npy(mut out) => out.flush(),
-            #[cfg(feature = "parquet")]
-            Self::Parquet(table) => table.finish(),
+    fn finish(mut self: Box<Self>, _is_whole: bool) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+impl<W: Write> Table for Array<W> {
+    fn push(&mut self, _layout: &Layout, _run: u64, _motion: &Motion, _label: &str) -> io::Result<()> {
+        Err(io::Error::other("an array has only states as they were recorded"))
+    }
+
+    fn push_recorded(&mut self, _layout: &Layout, state: &RecordedState<'_>, _label: &str) -> io::Result<()> {
+        let mut all = std::iter::once(state.time).chain(numbers(state));
+        all.try_for_each(|number| self.0.write_all(&number.to_le_bytes()))
+    }
+
+    fn finish(mut self: Box<Self>, is_whole: bool) -> io::Result<()> {
+        if !is_whole {
+            return Err(io::Error::other("the log changed while it was read"));
+        }
+        self.0.flush()
+    }
+}
+
+/// The quantities of a recorded state, one after the other.
+fn numbers<'s>(state: &'s RecordedState<'_>) -> impl Iterator<Item = f64> + use<'s> {
+    [state.q, state.qd, state.tau].into_iter().flatten().copied()
+}
+
+#[cfg(feature = "parquet")]
+mod parquet {
+    use std::io::{self, Write};
+
+    use rne_logs::{Layout, Motion, MotionParquet, RecordedState};
+
+    use super::{Manner, Table};
+
+    pub(super) fn begin<'w, W: Write + Send + 'w>(
+        manner: Manner<'_>,
+        out: W,
+        layout: &Layout,
+    ) -> io::Result<Box<dyn Table + 'w>> {
+        let begin = if manner.is_raw { MotionParquet::of_recorded } else { MotionParquet::new };
+        Ok(Box::new(begin(out, layout, manner.label)?))
+    }
+
+    impl<W: Write + Send> Table for MotionParquet<W> {
+        fn push(&mut self, layout: &Layout, run: u64, motion: &Motion, label: &str) -> io::Result<()> {
+            self.push(layout, run, motion, label)
+        }
+
+        fn push_recorded(&mut self, layout: &Layout, state: &RecordedState<'_>, label: &str) -> io::Result<()> {
+            self.push_recorded(layout, state, label)
+        }
+
+        fn finish(self: Box<Self>, _is_whole: bool) -> io::Result<()> {
+            (*self).finish()
         }
     }
 }

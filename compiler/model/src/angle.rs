@@ -2,11 +2,11 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-/// How many units in the last place an angle may lie from a multiple of π/2 and still be that right angle.
+/// How many units in the last place an angle may differ from a multiple of π/2 and still be taken for that right angle.
 const RIGHT_ANGLE_ULPS: f64 = 4.0;
 
-/// Angles of a table, placement or lock are below this, 2^23 rad: from here on neighbouring numbers are more than 1e-9
-/// rad apart, and beyond 1e13 rad the units in the last place of a right angle would be angles of their own.
+/// Every angle of a table, placement or lock is below this limit of 2^23 rad. Above it, neighbouring floating-point
+/// numbers are more than 1e-9 rad apart; beyond 1e13 rad even the tolerance of a right angle would be whole angles.
 pub const LARGEST_ANGLE: f64 = 8_388_608.0;
 
 /// A rotation by a whole number of right angles, modulo a full turn: 0, 1, 2 or 3.
@@ -23,7 +23,7 @@ pub enum QuarterTurns {
 }
 
 impl QuarterTurns {
-    /// The exact sine and cosine.
+    /// Returns the exact sine and cosine.
     #[must_use]
     pub const fn sin_cos(self) -> (f64, f64) {
         match self {
@@ -43,11 +43,11 @@ impl QuarterTurns {
 pub struct Angle<S = f64> {
     /// The angle, rad.
     pub radians: S,
-    /// Its sine; exactly 0 or ±1 for a right angle.
+    /// The sine of the angle; exactly 0 or ±1 for a right angle.
     pub sin: S,
-    /// Its cosine; exactly 0 or ±1 for a right angle.
+    /// The cosine of the angle; exactly 0 or ±1 for a right angle.
     pub cos: S,
-    /// Multiple of a right angle, if it is one.
+    /// The multiple of a right angle that the angle is; `None` for any other angle.
     pub right: Option<QuarterTurns>,
 }
 
@@ -55,10 +55,10 @@ impl Angle<f64> {
     /// The angle 0.
     pub const ZERO: Self = Self { radians: 0.0, sin: 0.0, cos: 1.0, right: Some(QuarterTurns::Zero) };
 
-    /// An angle in rad.
+    /// Makes an angle from a number in rad.
     ///
-    /// Within 4 units in the last place of a multiple of π/2 it is that right angle: sine and cosine are exactly 0
-    /// or ±1. Any other angle gets the sine and cosine of the `libm` crate.
+    /// An angle within 4 units in the last place of a multiple of π/2 is taken for that right angle: its sine and
+    /// cosine are exactly 0 or ±1. Any other angle gets the sine and cosine of the `libm` crate.
     #[must_use]
     pub fn new(radians: f64) -> Self {
         if let Some(right) = right_angle(radians) {
@@ -77,7 +77,7 @@ impl Angle<f64> {
     }
 }
 
-/// The multiple of π/2 nearest to `radians`, in rad.
+/// Returns the multiple of π/2 nearest to `radians`, in rad.
 #[must_use]
 pub(crate) fn nearest_right_angle(radians: f64) -> f64 {
     libm::round(radians / FRAC_PI_2) * FRAC_PI_2

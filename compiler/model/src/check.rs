@@ -1,4 +1,4 @@
-//! From the text of a robot file to a validated robot, or to a report of everything that is wrong with it.
+//! Turns the text of a robot file into a validated robot, or into a report of all its mistakes.
 
 use crate::readers::robot::{Takes, robot};
 use crate::text::decode::Context;
@@ -6,16 +6,17 @@ use crate::text::diagnostic::{Problems, Report};
 use crate::text::identifier::{JointIdentifier, identifiers};
 use crate::{Robot, text::document, text::other_formats, text::source};
 
-/// A valid robot file: the robot, and what is remarkable about it.
+/// The result of reading a valid robot file: the robot, and the warnings and notes about it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Checked {
     /// The robot.
     pub robot: Robot,
-    /// Lints: warnings and notes, often none.
+    /// Warnings and notes about the file; often empty.
     pub lints: Report,
-    /// The identifiers of the joints in generated code, in their order; where two joints have one identifier, the error
-    /// at the line of the second. A file with such names is valid: only code that contains the identifiers needs them.
+    /// The identifiers of the joints in generated code, in the order of the joints; or an error, at the line of the
+    /// second joint, where two joints have the same identifier. A file with such names is valid: only code that
+    /// contains the identifiers needs them.
     pub identifiers: Result<Vec<JointIdentifier>, Report>,
 }
 
@@ -54,7 +55,7 @@ pub struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// A reader of a file that messages call `name`, usually its path.
+    /// Makes a reader of a file that messages call `name`, usually the path of the file.
     #[must_use]
     pub const fn new(name: &'a str) -> Self {
         Self {
@@ -65,51 +66,51 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// These parameters of the file, each once, stay free until run time. The robot is that of their values in the
-    /// file; [`Robot::run_time`] says how it depends on them.
+    /// Keeps these parameters of the file, each named once, free until run time. The numbers of the robot are those for
+    /// the parameters' values in the file; [`Robot::run_time`] says how they depend on the parameters.
     ///
     /// These numbers may vary: gravity, `xyz`, `d`, `a`, masses, centres of mass, inertias and the numbers of motors,
-    /// by `+ - * /` and whole powers, which are products. Where `libm::pow` rounds a power otherwise, the number in the
-    /// robot is the product too.
+    /// by `+ - * /` and whole powers, which become products. Where `libm::pow` rounds a power otherwise, the number in
+    /// the robot is that of the product, too.
     ///
-    /// It is an error of the file when a name does not stand under `parameters`; when an angle or a limit depends on
-    /// such a parameter, or a function, another power or an exponent does; when a number that depends on one is zero in
-    /// the file, for zeros are folded away; and when nothing depends on it.
+    /// The file has an error when it does not define a name under `parameters`; when an angle, a limit, a function, any
+    /// other power or an exponent depends on such a parameter; when a number that depends on one is zero in the file,
+    /// because zeros are folded away; and when no number depends on a parameter.
     #[must_use]
     pub fn run_time(mut self, names: &[&'a str]) -> Self {
         self.run_time.extend(names);
         self
     }
 
-    /// Trees are read, too: robots of `format: 2` whose joints branch off or begin at a placement. Without this they
-    /// are refused at their line, because not every function of rne takes a tree.
+    /// Accepts trees, too: robots of `format: 2` whose joints branch off or begin at a placement. Without this call
+    /// they are refused at their line, because not every function of rne takes a tree.
     #[must_use]
     pub fn trees(mut self) -> Self {
         self.takes.trees = true;
         self
     }
 
-    /// Robots with `couplings` or a list `motors` are read, too: some of their joints follow others, or rotors turn on
-    /// their links. Without this they are refused at their line, because not every function of rne takes them.
+    /// Accepts robots with `couplings` or a list `motors`, too: some of their joints follow others, or rotors turn on
+    /// their links. Without this call they are refused at their line, because not every function of rne takes them.
     #[must_use]
     pub fn couplings(mut self) -> Self {
         self.takes.couplings = true;
         self
     }
 
-    /// Robots with closed loops are read, too: [`Robot::closed`] has their equations, and the positions of their
-    /// dependent joints are no coordinates. Without this they are refused at their line, because not every function of
-    /// rne takes them. Parallelograms are couplings.
+    /// Accepts robots with closed loops, too: [`Robot::closed`] has their equations, and the positions of their
+    /// dependent joints are no coordinates. Without this call they are refused at their line, because not every
+    /// function of rne takes them. Parallelograms count as couplings.
     #[must_use]
     pub fn loops(mut self) -> Self {
         self.takes.loops = true;
         self
     }
 
-    /// A parameter of the file has another value than there; what the file defines through it follows. Of two settings
-    /// of one parameter the last counts.
+    /// Gives a parameter of the file another value than the file does; the numbers that the file defines through the
+    /// parameter change with it. If one parameter is set twice, the last value counts.
     ///
-    /// It is an error of the file when the name does not stand under `parameters`.
+    /// The file has an error when it does not define the name under `parameters`.
     #[must_use]
     pub fn setting(mut self, parameter: &'a str, value: f64) -> Self {
         self.settings.retain(|(known, _)| *known != parameter);
@@ -140,7 +141,7 @@ impl<'a> Reader<'a> {
     }
 
     fn read_text(&self, text: &str, problems: Problems) -> Result<Checked, Report> {
-        // the beginning will do: a URDF may be long
+        // the beginning is enough to recognise another format, and a URDF may be long
         let beginning = other_formats::head(text);
         if let Some(other_format) = other_formats::instead_of_a_robot_file(self.name, beginning) {
             problems.push(other_format);
@@ -167,11 +168,11 @@ impl<'a> Reader<'a> {
 }
 
 impl Robot {
-    /// Reads a robot file that is at hand as text; lints are not reported. [`Reader`] reports them.
+    /// Reads a robot file from its text, without its warnings and notes: [`Reader`] reports these.
     ///
     /// # Errors
     ///
-    /// Everything that is wrong with the text; also a tree, which [`Reader::trees`] takes.
+    /// Everything that is wrong with the text; also a tree, which only [`Reader::trees`] accepts.
     pub fn from_yaml(text: &str) -> Result<Self, Report> {
         Reader::new("<yaml>").read(text).map(|checked| checked.robot)
     }

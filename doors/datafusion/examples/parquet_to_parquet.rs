@@ -1,5 +1,5 @@
-//! What SQL over Parquet costs, and which share of it is dynamics: states of a PUMA are read from a file, and their
-//! torques written into another, on one core.
+//! Measures how long SQL over Parquet takes on one core, and which share of it is dynamics: reads states of a PUMA from
+//! a file and writes their torques to another.
 //!
 //! ```console
 //! cargo run --release --manifest-path doors/datafusion/Cargo.toml --example parquet_to_parquet -- 5000000
@@ -18,7 +18,7 @@ use datafusion::logical_expr::{
 use datafusion::prelude::{ParquetReadOptions, SessionConfig, SessionContext};
 use rne_datafusion::{Robots, aggregates, functions};
 
-/// Runs of each query; the fastest counts.
+/// Runs of each query, of which the fastest is reported.
 const RUNS: usize = 3;
 
 /// A function that adds up how long it took.
@@ -72,7 +72,7 @@ impl ScalarUDFImpl for Timed {
     }
 }
 
-/// A column per joint, or a list.
+/// Returns the SQL names of the columns `name1` to `name6`, separated by commas.
 fn columns(name: &str) -> String {
     (1..=6).map(|joint| format!("{name}{joint}")).collect::<Vec<_>>().join(", ")
 }
@@ -93,7 +93,7 @@ async fn main() -> Result<()> {
     let folder = tempfile::tempdir()?;
     let path = |name: &str| folder.path().join(name).display().to_string();
 
-    // sines as trajectories
+    // the trajectories of all joints are sines
     let sines = |name: &str| {
         let sine = |joint: usize| format!("sin(0.001 * i * {joint} + length('{name}') + {joint}) AS {name}{joint}");
         (1..=6).map(sine).collect::<Vec<_>>().join(", ")
@@ -127,7 +127,7 @@ async fn main() -> Result<()> {
             nanoseconds.store(0, Ordering::Relaxed);
             let start = Instant::now();
             context.sql(&sql).await?.collect().await?;
-            #[allow(clippy::cast_precision_loss)] // seconds
+            #[allow(clippy::cast_precision_loss)] // a duration in s, rounded for printing
             let inside = nanoseconds.load(Ordering::Relaxed) as f64 * 1e-9;
             let whole = start.elapsed().as_secs_f64();
             if whole < best.0 {

@@ -1,4 +1,4 @@
-//! The aggregates over rows of states, which find links and friction.
+//! The aggregates over rows of states, which identify link parameters and friction.
 
 use datafusion::arrow::datatypes::{DataType, FieldRef};
 use datafusion::common::{Result, plan_err};
@@ -13,7 +13,7 @@ use crate::numbers;
 use crate::robots::Robots;
 use crate::rows::OfRows;
 
-/// An aggregate, with the robots that it may be asked for.
+/// An aggregate and the robots that its calls may name.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Aggregate {
     of: &'static OfRows,
@@ -21,7 +21,7 @@ pub(crate) struct Aggregate {
 }
 
 impl Aggregate {
-    /// The aggregates, with the robots that they may be asked for.
+    /// Returns all aggregates; their calls may name these robots.
     pub(crate) fn all(robots: &Robots) -> [Self; 2] {
         [&IDENTIFICATION, &LOG_IDENTIFICATION].map(|of| Self { of, call: of.call(robots.clone()) })
     }

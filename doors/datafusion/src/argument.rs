@@ -1,4 +1,5 @@
-//! Numbers of states out of a batch's columns: a list per state, or a column per number.
+//! The arguments of a function, read from the columns of a batch: one list column per argument, or one column per
+//! number.
 
 use datafusion::arrow::array::{Array, ArrayRef, AsArray, Float64Array, OffsetSizeTrait};
 use datafusion::arrow::buffer::NullBuffer;
@@ -7,19 +8,19 @@ use datafusion::common::{Result, exec_err, plan_err};
 use rne::compiled;
 use rne::model::Robot;
 
-/// An argument of a function, of all states of a batch.
+/// The values of one argument of a function for all states of a batch.
 #[derive(Debug)]
 pub(crate) enum Argument<'a> {
-    /// Numbers of a state beside each other, as a list column without gaps has them.
+    /// All numbers of a state next to each other, borrowed from a list column that has no gaps.
     Rows(&'a [f64]),
-    /// The same, copied, for the column has gaps.
+    /// All numbers of a state next to each other, copied because the list column has gaps.
     Gathered(Vec<f64>),
-    /// A column per number.
+    /// One column per number of the argument.
     Columns(Vec<&'a [f64]>),
 }
 
 impl Argument<'_> {
-    /// As the machine reads it.
+    /// The argument as the compiled arm reads it.
     pub(crate) fn array(&self) -> compiled::Array<'_, f64> {
         match self {
             Self::Rows(numbers) => compiled::Array::Rows(numbers),
@@ -28,7 +29,7 @@ impl Argument<'_> {
         }
     }
 
-    /// The number of a joint in a state.
+    /// Returns the number that a joint has in a state.
     pub(crate) fn at(&self, state: usize, joint: usize, joints: usize) -> f64 {
         match self {
             Self::Rows(numbers) => numbers[state * joints + joint],
@@ -38,7 +39,7 @@ impl Argument<'_> {
     }
 }
 
-/// The numbers that an argument has for a state of a robot, and words that say why.
+/// Returns how many numbers an argument has in one state of a robot, and the reason for it, for error messages.
 fn needed(argument: &str, robot: &Robot) -> (usize, String) {
     match argument {
         "q" | "qd" | "qdd" | "tau" | "multipliers" => {
@@ -64,8 +65,8 @@ pub(crate) fn columns(fields: &[FieldRef]) -> Vec<Column<'_>> {
     fields.iter().skip(1).map(|field| Column { name: field.name(), of: field.data_type() }).collect()
 }
 
-/// The type that a column is brought to: lists of `Float64`, or `Float64`. What is neither stays as it is, and is
-/// refused by [`check`], which knows the name of the column.
+/// Returns the type to which a column is converted: `Float64`, or lists of `Float64`. A type without numbers is
+/// returned unchanged; [`check`] refuses it later, with the name of the column.
 pub(crate) fn coerced(given: &DataType) -> DataType {
     let item = |field: &Field| field.clone().with_data_type(DataType::Float64).into();
     let is_number = |of: &DataType| of.is_numeric() || *of == DataType::Null;
@@ -80,7 +81,7 @@ pub(crate) fn coerced(given: &DataType) -> DataType {
     }
 }
 
-/// Whether a column has a type that numbers are brought to.
+/// Whether a column has the type `Float64` or is of lists of `Float64`.
 fn has_numbers(of: &DataType) -> bool {
     match of {
         DataType::Float64 => true,
@@ -91,8 +92,8 @@ fn has_numbers(of: &DataType) -> bool {
     }
 }
 
-/// How many of the columns from `first` on are one argument of a robot: one list, or a column per number. Wrenches at
-/// the tips may be left out at the end: the tips are free then.
+/// Returns how many columns from `first` on make up one argument: one list column, or one column per number. `wrenches`
+/// may be missing at the end of a call: then no wrench acts at the tips, and the result is 0.
 fn width(function: &str, argument: &str, columns: &[Column<'_>], first: usize, robot: &Robot) -> Result<usize> {
     let (length, why) = needed(argument, robot);
     let Some(Column { name, of }) = columns.get(first) else {
@@ -118,7 +119,7 @@ fn width(function: &str, argument: &str, columns: &[Column<'_>], first: usize, r
     }
 }
 
-/// Where a column is, for messages.
+/// The function and the column that an error message names.
 pub(crate) struct Place<'a> {
     pub(crate) function: &'a str,
     pub(crate) column: &'a str,
@@ -126,7 +127,7 @@ pub(crate) struct Place<'a> {
     pub(crate) why: &'a str,
 }
 
-/// The numbers of a list column, and the states of which some are null.
+/// Returns the numbers of a list column, and which states have a null.
 pub(crate) fn of_list<'a>(
     array: &'a ArrayRef,
     size: usize,
@@ -147,7 +148,7 @@ pub(crate) fn of_list<'a>(
     }
 }
 
-/// The numbers of a column whose lists have their own lengths.
+/// Returns the numbers of a column whose lists may differ in length.
 fn of_offsets<'a, O: OffsetSizeTrait>(
     array: &'a ArrayRef,
     size: usize,
@@ -159,7 +160,7 @@ fn of_offsets<'a, O: OffsetSizeTrait>(
     gather(list.values(), list.nulls(), wanted, list.len(), size, place)
 }
 
-/// `lists`: where the list of each state starts, and how long it is.
+/// Returns the numbers of list columns of all kinds. `lists` has the start and the length of the list of each state.
 fn gather<'a>(
     values: &'a ArrayRef,
     nulls: Option<&NullBuffer>,
@@ -192,7 +193,7 @@ fn gather<'a>(
         }
         next = start + length;
     }
-    // a state of which one number is null is null
+    // a null among the numbers of a state makes the whole state null
     let inner = numbers.nulls().filter(|inner| inner.null_count() > 0);
     let of_numbers = inner.map(|inner| {
         let lists = lists.clone().enumerate();
@@ -217,7 +218,7 @@ fn gather<'a>(
     Ok((argument, nulls))
 }
 
-/// A column of numbers.
+/// Returns a column of `Float64`, or an error for a column of another type.
 pub(crate) fn of_column<'a>(array: &'a ArrayRef, place: &Place<'_>) -> Result<&'a Float64Array> {
     let Some(numbers) = array.as_primitive_opt::<Float64Type>() else {
         let Place { function, column, .. } = place;
@@ -226,9 +227,9 @@ pub(crate) fn of_column<'a>(array: &'a ArrayRef, place: &Place<'_>) -> Result<&'
     Ok(numbers)
 }
 
-/// The arguments of a function out of the columns of a batch, and the states of which some number is null.
+/// Returns the arguments of a function from the columns of a batch, and which states have a null.
 ///
-/// `names` are the arguments', `columns` the names of the columns.
+/// `names` are the names of the arguments, `columns` those of the columns.
 pub(crate) fn all<'a>(
     function: &str,
     names: &[&str],
@@ -276,7 +277,8 @@ pub(crate) fn all<'a>(
     Ok((arguments, nulls))
 }
 
-/// Whether columns are the arguments of a function: what [`all`] says of a batch, before there is one.
+/// Checks that columns are the arguments of a function, before any batch of numbers exists; [`all`] checks the same for
+/// a batch.
 pub(crate) fn check(function: &str, names: &[&str], columns: &[Column<'_>], robot: &Robot) -> Result<()> {
     if let Some(Column { name, of }) = columns.iter().find(|column| !has_numbers(column.of)) {
         return plan_err!(

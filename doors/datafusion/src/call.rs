@@ -1,4 +1,4 @@
-//! What every function of the engine has: its robots, the types of its arguments, its documentation.
+//! The data that every SQL function has: its robots, the types of its arguments, its documentation.
 
 use std::hash::{Hash, Hasher};
 
@@ -7,18 +7,18 @@ use datafusion::logical_expr::{DocSection, Documentation, Signature, Volatility}
 
 use crate::robots::Robots;
 
-/// What every function of the engine has.
+/// The data that every SQL function has.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Call {
-    /// The robots that it may be asked for.
+    /// The robots that the first argument of a call may name.
     pub(crate) robots: Robots,
-    /// Its arguments have types that depend on the robot.
+    /// Accepts arguments of any types, because their types depend on the robot.
     pub(crate) signature: Signature,
     documentation: About,
 }
 
 impl Call {
-    /// A function that is called by a syntax.
+    /// A function with an example of its call, `syntax`, for the documentation.
     pub(crate) fn new(robots: Robots, syntax: &str, summary: &str) -> Self {
         let section = DocSection { include: true, label: "Robot dynamics", description: None };
         let documentation = Documentation::builder(section, summary, syntax).build();
@@ -30,7 +30,8 @@ impl Call {
     }
 }
 
-/// What the engine tells of a function; not part of what it is.
+/// The documentation that the engine shows for a function. All are equal, so that they do not affect whether two
+/// functions are equal.
 #[derive(Debug)]
 struct About(Documentation);
 
@@ -46,7 +47,7 @@ impl Hash for About {
     fn hash<H: Hasher>(&self, _: &mut H) {}
 }
 
-/// The key of a robot out of the first argument.
+/// Returns the key of the robot, which is the first argument of a call.
 pub(crate) fn key<'a>(function: &str, robot: Option<&'a ScalarValue>) -> Result<&'a str> {
     let Some(key) = robot.and_then(|robot| robot.try_as_str().flatten()) else {
         return plan_err!("{function}: the first argument is the robot, a literal such as 'puma560@0123456789abcdef'");

@@ -13,7 +13,7 @@ use rne_identify::{BaseReport, Fit, Identification, Structure};
 
 use crate::numbers::item;
 
-/// The names of a joint's friction, each with the joint's number behind it.
+/// The names of the friction coefficients of a joint; the number of the joint is appended to each.
 const FRICTION: [&str; 3] = ["viscous", "coulomb_forward", "coulomb_backward"];
 
 /// The result of an identification.
@@ -35,7 +35,7 @@ struct Unknown {
 }
 
 impl Found {
-    /// Of rows without an order.
+    /// The result of `identification`, whose rows have no order in time.
     pub(crate) fn of_fit(structure: &Structure, fit: &Fit, states: u64) -> Self {
         let friction = fit.friction.iter().enumerate().map(|(at, of)| (Some(*of), fit.is_friction_excited(at)));
         Self {
@@ -47,7 +47,7 @@ impl Found {
         }
     }
 
-    /// Of a log.
+    /// The result of `identify`, whose rows are a log.
     pub(crate) fn of_log(found: &Identification) -> Self {
         let friction = found.joints.iter().map(|joint| (joint.friction, joint.is_friction_excited()));
         Self {
@@ -59,7 +59,7 @@ impl Found {
         }
     }
 
-    /// As the value of an aggregate.
+    /// Returns the result as the value of an aggregate, an SQL struct.
     pub(crate) fn scalar(&self) -> Result<ScalarValue> {
         let texts = |of: fn(&Unknown) -> &str| -> ArrayRef {
             Arc::new(self.unknowns.iter().map(of).map(Some).collect::<StringArray>())
@@ -106,7 +106,8 @@ pub(crate) fn refused(states: u64, reason: &str) -> Result<ScalarValue> {
     Ok(ScalarValue::Struct(Arc::new(StructArray::try_new(fields(), columns, None)?)))
 }
 
-/// Base parameters, base to tip, then the friction of each joint, with whether the rows determine it.
+/// Returns the base parameters, base to tip, then the friction coefficients of each joint. Each has a flag that tells
+/// whether the rows determine it.
 fn unknowns(
     structure: &Structure,
     bases: &[BaseReport],

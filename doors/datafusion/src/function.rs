@@ -15,17 +15,18 @@ use crate::call::{Call, key};
 use crate::result;
 use crate::robots::{Held, Robots, external};
 
-/// What a function of the engine computes.
+/// The computation of an SQL function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Computation {
-    /// A function of the arm.
+    /// A function of the arm, such as inverse dynamics.
     Of(Function),
-    /// Measured torques minus those of the model, its motors included.
+    /// Measured torques minus the torques of the model, including the friction and the rotors of its motors.
     Residual,
 }
 
 impl Computation {
-    /// All that take numbers of joints, the motion of the base, and wrenches at the tips.
+    /// Returns all computations whose arguments are numbers of joints, the motion of the base, or wrenches at the tips.
+    /// Functions with sines, cosines or a payload are left out.
     pub(crate) fn all() -> impl Iterator<Item = Self> {
         let is_left_out = |input: &Input| matches!(input, Input::Sines | Input::Cosines | Input::Payload);
         let is_there = move |function: &Function| !function.arguments().iter().any(is_left_out);
@@ -63,7 +64,7 @@ impl Computation {
         }
     }
 
-    /// The numbers of so many states, one state after the other.
+    /// Returns the results of `states` states, one state after the other.
     fn run(self, held: &Held, states: usize, arguments: &[Argument<'_>]) -> Result<Vec<f64>> {
         let mut given = Arguments::new();
         for (name, argument) in self.arguments().into_iter().zip(arguments) {
@@ -86,7 +87,7 @@ impl Computation {
                 for (at, torque) in torques.iter_mut().enumerate() {
                     let (state, joint) = (at / joints.len(), at % joints.len());
                     let of = |argument: &Argument<'_>| argument.at(state, joint, joints.len());
-                    // rows have no order: friction is that of a speed
+                    // rows have no order, so friction depends on the velocity alone and not on the motion before
                     *torque = of(measured) - (*torque + joints[joint].friction(of(qd)));
                 }
                 Ok(torques)
@@ -95,7 +96,7 @@ impl Computation {
     }
 }
 
-/// A [`Computation`] with what every function of the engine has.
+/// A [`Computation`] as a scalar function of the engine.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(crate) struct DynamicsFunction {
     computation: Computation,
@@ -108,13 +109,13 @@ impl DynamicsFunction {
         Self { computation, call: Call::new(robots, &syntax, computation.summary()) }
     }
 
-    /// The robot of the first argument, which is a literal.
+    /// Returns the robot that the first argument, a literal, names.
     fn held(&self, robot: Option<&ScalarValue>) -> Result<&Held> {
         self.call.robots.get(key(self.computation.name(), robot)?)
     }
 }
 
-/// The types of all arguments: a robot's name, and numbers.
+/// Returns the types to which the arguments are converted: the name of a robot, then numbers.
 pub(crate) fn coerced(function: &str, given: &[DataType]) -> Result<Vec<DataType>> {
     let Some((robot, columns)) = given.split_first() else {
         return plan_err!("{function}: the robot is missing, the first argument");
@@ -157,7 +158,7 @@ impl ScalarUDFImpl for DynamicsFunction {
             return exec_err!("{}: the first argument is the robot, a literal", self.name());
         };
         let held = self.held(Some(robot))?;
-        // numbers that are the same for all states count once
+        // where all arguments are constants, the function is computed for one state
         let is_constant = columns.iter().all(|column| matches!(column, ColumnarValue::Scalar(_)));
         let states = if is_constant { 1 } else { states };
         let arrays = columns.iter().map(|column| column.to_array(states)).collect::<Result<Vec<ArrayRef>>>()?;

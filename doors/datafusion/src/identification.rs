@@ -14,7 +14,7 @@ use crate::numbers;
 use crate::robots::{Held, external};
 use crate::rows::{OfRows, Rows};
 
-/// The aggregate.
+/// Name, arguments and summary of the aggregate.
 pub(crate) static IDENTIFICATION: OfRows = OfRows {
     name: "identification",
     is_timed: false,
@@ -23,10 +23,10 @@ pub(crate) static IDENTIFICATION: OfRows = OfRows {
     summary: "Links and friction from states with measured torques, by least squares row by row.",
 };
 
-/// How strongly links are pulled to those of the file, as `rne identify` does unasked.
+/// The weight that keeps link parameters near those of the robot file; the default of `rne identify`.
 pub(crate) const REGULARIZATION: f64 = 1.0;
 
-/// What the rows of a group say, so far.
+/// The least-squares information of the rows of a group that were read so far.
 #[derive(Debug)]
 pub(crate) struct Gathered {
     structure: Arc<Structure>,
@@ -45,13 +45,13 @@ impl Gathered {
         self.structure.robot().dof()
     }
 
-    /// Of an argument the numbers of each joint in those states.
+    /// Returns the numbers of an argument in some states, one list per joint.
     fn of_joints(&self, argument: &Argument<'_>, states: &[usize]) -> Vec<Vec<f64>> {
         let joints = self.joints();
         (0..joints).map(|joint| states.iter().map(|&state| argument.at(state, joint, joints)).collect()).collect()
     }
 
-    /// The first number that is none, with its column.
+    /// Returns an error that names the first number that is not finite, with its column.
     fn check_finite(&self, arguments: &[Argument<'_>], lists: &[Vec<Vec<f64>>], states: &[usize]) -> Result<()> {
         let mut first = 0;
         for (argument, list) in arguments.iter().zip(lists) {
@@ -84,7 +84,7 @@ impl Accumulator for Gathered {
         let lists: Vec<Vec<Vec<f64>>> = arguments.iter().map(|argument| self.of_joints(argument, &states)).collect();
         self.check_finite(&arguments, &lists, &states)?;
         let Ok([q, qd, qdd, tau]) = <[Vec<Vec<f64>>; 4]>::try_from(lists) else { return Ok(()) };
-        // rows of a table have no time: nothing is asked of it but to grow
+        // rows have no time; this one only has to increase
         let time = (0_u32..).map(f64::from).take(states.len()).collect();
         let motion = Motion { time, q, qd, qdd, tau, ..Motion::default() };
         self.information.absorb(&self.structure, &motion, None).map_err(external)

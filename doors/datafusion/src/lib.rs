@@ -17,10 +17,9 @@
 //! # }
 //! ```
 //!
-//! Each argument is a list per state, or a column per joint: columns are read as they are. What is null in
-//! an argument makes the result of that state null; the aggregates `identification` and `identify` leave such a state
-//! out. Units,
-//! signs and frames are those of [`rne`](https://docs.rs/rne).
+//! Each argument is a list per state, or a column per joint: columns are read as they are. A null in an argument makes
+//! the result of that state null; the aggregates `identification` and `identify` leave such a state out. Units, signs
+//! and frames are those of [`rne`](https://docs.rs/rne).
 
 mod aggregate;
 mod argument;
@@ -44,14 +43,14 @@ use crate::function::{Computation, DynamicsFunction};
 use crate::momentum_residual::MomentumResidual;
 pub use crate::robots::Robots;
 
-/// Every scalar function, for those robots.
+/// Returns all scalar functions; their calls may name these robots.
 #[must_use]
 pub fn functions(robots: &Robots) -> Vec<ScalarUDF> {
     let function = |computation| ScalarUDF::new_from_impl(DynamicsFunction::new(computation, robots.clone()));
     Computation::all().map(function).collect()
 }
 
-/// Gives a session all functions of those robots.
+/// Registers all functions in a session; their calls may name these robots.
 pub fn register(context: &SessionContext, robots: &Robots) {
     for function in functions(robots) {
         context.register_udf(function);
@@ -64,13 +63,13 @@ pub fn register(context: &SessionContext, robots: &Robots) {
     }
 }
 
-/// Every aggregate, for those robots.
+/// Returns all aggregates; their calls may name these robots.
 #[must_use]
 pub fn aggregates(robots: &Robots) -> Vec<AggregateUDF> {
     Aggregate::all(robots).map(AggregateUDF::new_from_impl).into()
 }
 
-/// Every window function, for those robots.
+/// Returns all window functions; their calls may name these robots.
 #[must_use]
 pub fn windows(robots: &Robots) -> Vec<WindowUDF> {
     vec![WindowUDF::new_from_impl(MomentumResidual::new(robots.clone()))]

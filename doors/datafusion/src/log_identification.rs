@@ -19,7 +19,7 @@ use crate::robots::external;
 use crate::rows::{OfRows, Rows};
 use crate::time::{self, Instant};
 
-/// The aggregate.
+/// Name, arguments and summary of the aggregate.
 pub(crate) static LOG_IDENTIFICATION: OfRows = OfRows {
     name: "identify",
     is_timed: true,
@@ -28,35 +28,35 @@ pub(crate) static LOG_IDENTIFICATION: OfRows = OfRows {
     summary: "Links and friction from a log with measured torques, as `rne identify` finds them.",
 };
 
-/// Numbers of a row before those of its joints: whole seconds, and the part of a second.
+/// How many numbers of a row are before those of its joints: whole seconds, and the fraction of a second.
 const TIME: usize = 2;
 
-/// The rows of a group, so far: a log has an order, so all of them are kept.
+/// The rows of a group that were read so far. All of them are kept, because a log has an order.
 #[derive(Debug)]
 pub(crate) struct Gathered {
     rows: Rows,
-    /// Whether times are stamps; a number may be of another unit than seconds, which the reader of logs notices.
+    /// Whether times are time stamps. If they are plain numbers, the reader of logs finds out their unit.
     is_stamped: bool,
-    /// Row by row the time, then q, qd and tau of all joints.
+    /// Row by row: the time, then q, qd and tau of all joints.
     numbers: Vec<f64>,
 }
 
 impl Gathered {
-    /// Nothing yet, of a call with arguments of these types.
+    /// An empty group for a call with arguments of these types.
     pub(crate) fn new(rows: Rows, fields: &[FieldRef]) -> Self {
         let is_stamped = fields.get(1).is_some_and(|time| matches!(time.data_type(), DataType::Timestamp(..)));
         Self { rows, is_stamped, numbers: Vec::new() }
     }
 
-    /// Numbers of a row.
+    /// How many numbers a row has.
     fn width(&self) -> usize {
         TIME + LOG_IDENTIFICATION.arguments.len() * self.rows.robot.dof()
     }
 
-    /// The numbers of rows, in order of time, as a table of numpy: time, q, qd and tau.
+    /// Writes the rows as an array of numpy, in order of time: time, q, qd and tau.
     fn write(&self, path: &Path) -> std::io::Result<()> {
         let mut rows: Vec<&[f64]> = self.numbers.chunks_exact(self.width()).collect();
-        // all numbers are compared, so that rows of one time have an order that does not depend on partitions
+        // all numbers are compared, so that the order of rows with equal times does not depend on partitions
         let order = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne());
         rows.sort_by(|a, b| order(a, b).unwrap_or(std::cmp::Ordering::Equal));
         let origin = rows.first().map_or(0.0, |first| first[0]);
@@ -71,7 +71,7 @@ impl Gathered {
         file.flush()
     }
 
-    /// As the command does it, with its options where none is given.
+    /// Identifies the parameters as `rne identify` does with its default options.
     fn identified(&self) -> Result<Identification, Refusal> {
         let folder = tempfile::tempdir().map_err(Refusal::of_machine)?;
         let path = folder.path().join("rows.npy");
@@ -92,9 +92,9 @@ impl Gathered {
     }
 }
 
-/// The reason why rows are not identified.
+/// The reason why the parameters cannot be identified.
 enum Refusal {
-    /// These rows say too little, or are not a log of the robot: other groups are identified.
+    /// The rows do not suffice, or are no log of the robot. Other groups may still be identified.
     Rows(String),
     /// The temporary file cannot be written.
     Machine(std::io::Error),
@@ -105,7 +105,7 @@ impl Refusal {
         Self::Machine(error)
     }
 
-    /// The error of a log without the name of its file, which nobody knows.
+    /// An error of a log, without the name of the temporary file, which means nothing to a user.
     fn of_log(error: &ArmLogError, file: &str) -> Self {
         Self::Rows(error.to_string().replace(file, ""))
     }

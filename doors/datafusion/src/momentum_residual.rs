@@ -1,8 +1,8 @@
 //! The residual without accelerations, as a window function: `momentum_residual('puma560@…', time, q, qd, tau) OVER
 //! (PARTITION BY robot, run ORDER BY time)`.
 //!
-//! It is the negative of the external torque that the momentum observer sees, as `rne watch` uses it: the function
-//! `residual` behind a low-pass of the first order.
+//! It is the negative of the external torque that the momentum observer computes, as `rne watch` uses it. This is the
+//! function `residual`, filtered by a low-pass of first order.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ use crate::robots::{Robots, external};
 use crate::rows::{OfRows, Rows};
 use crate::time::{self, Instant};
 
-/// The window function.
+/// Name, arguments and summary of the window function.
 static MOMENTUM_RESIDUAL: OfRows = OfRows {
     name: "momentum_residual",
     is_timed: true,
@@ -32,13 +32,13 @@ static MOMENTUM_RESIDUAL: OfRows = OfRows {
     summary: "Measured torques minus those of the model, without accelerations, by the momentum observer.",
 };
 
-/// Hz: the observer's gain, as `rne watch` has it unasked.
+/// The gain of the observer, Hz: the default of `rne watch`.
 const GAIN: f64 = 20.0;
 
-/// A step that is this many times as long as the usual one is a gap, after which the observer begins anew.
+/// After a step longer than this many usual steps, the observer starts anew.
 const GAP: f64 = 2.5;
 
-/// The window function, with the robots that it may be asked for.
+/// The window function and the robots that its calls may name.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(crate) struct MomentumResidual(Call);
 
@@ -128,12 +128,12 @@ impl PartitionEvaluator for Partition {
     }
 }
 
-/// Whether all numbers of a row are finite: another one would stay in the observer.
+/// Whether all numbers of a row are finite. One that is not would remain in the state of the observer.
 fn is_finite(arguments: &[Argument<'_>], row: usize, joints: usize) -> bool {
     arguments.iter().all(|argument| (0..joints).all(|joint| argument.at(row, joint, joints).is_finite()))
 }
 
-/// The usual step, s.
+/// Returns the median of the time steps, s.
 fn period(instants: &[Option<Instant>]) -> f64 {
     let known: Vec<Instant> = instants.iter().copied().flatten().collect();
     let steps = known.windows(2).map(|pair| pair[1].since(pair[0])).filter(|step| *step > 0.0);
@@ -141,7 +141,7 @@ fn period(instants: &[Option<Instant>]) -> f64 {
     if steps.is_empty() { 1.0 } else { median(steps) }
 }
 
-/// The observer along a run.
+/// The state of the observer in a run without gaps.
 struct Observed {
     observer: DynObserverState<f64>,
     friction: Vec<Friction>,
@@ -155,7 +155,7 @@ impl Observed {
         }
     }
 
-    /// The residual at a row.
+    /// Updates the observer with a row and returns the residual.
     fn next(&mut self, arm: &DynArm, arguments: &[Argument<'_>], row: usize, joints: usize) -> Result<Vec<f64>> {
         let of = |at: usize| -> Vec<f64> { (0..joints).map(|joint| arguments[at].at(row, joint, joints)).collect() };
         let [q, qd, mut tau] = [of(0), of(1), of(2)];

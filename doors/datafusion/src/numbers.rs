@@ -7,7 +7,7 @@ use datafusion::arrow::buffer::OffsetBuffer;
 use datafusion::arrow::datatypes::{DataType, Field, FieldRef, Float64Type};
 use datafusion::common::{Result, ScalarValue, exec_err};
 
-/// The field of a list of numbers, for an aggregate of this name.
+/// The field of the state of an aggregate with this name: a list of numbers.
 pub(crate) fn field(aggregate: &str) -> FieldRef {
     Arc::new(Field::new(format!("{aggregate}[rows]"), DataType::List(item(DataType::Float64)), true))
 }
@@ -24,7 +24,7 @@ pub(crate) fn scalar(numbers: Vec<f64>) -> Result<ScalarValue> {
     Ok(ScalarValue::List(Arc::new(list)))
 }
 
-/// Hands on the lists of other processes.
+/// Calls `take` with each list of numbers that other processes gathered.
 pub(crate) fn each(aggregate: &str, states: &[ArrayRef], mut take: impl FnMut(&[f64]) -> Result<()>) -> Result<()> {
     let Some(lists) = states.first().and_then(|states| states.as_list_opt::<i32>()) else {
         return exec_err!(

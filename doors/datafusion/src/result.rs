@@ -1,4 +1,4 @@
-//! Results as columns: the shape of a function as nested lists and structs.
+//! Results as columns: nested lists and structs in the shape of the function's result.
 
 use std::sync::Arc;
 
@@ -8,8 +8,8 @@ use datafusion::arrow::datatypes::{DataType, Field, FieldRef};
 use datafusion::common::{Result, exec_err};
 use rne::compiled::Layout;
 
-/// The type of a column of results. Of a state that is null every part of the result is: who asks for a field of a
-/// record does not ask whether the record is null.
+/// Returns the type of a column of results. Where the argument of a state is null, each field of its result is null,
+/// too, because a query may read a field without a test of the record.
 pub(crate) fn data_type(layout: &Layout) -> DataType {
     match layout {
         Layout::Number => DataType::Float64,
@@ -21,7 +21,7 @@ pub(crate) fn data_type(layout: &Layout) -> DataType {
     }
 }
 
-/// Numbers of states, one state after the other, as a column in that shape.
+/// Returns the numbers of all states, one state after the other, as a column of this shape.
 pub(crate) fn column(layout: &Layout, numbers: Vec<f64>, states: usize, nulls: Option<NullBuffer>) -> Result<ArrayRef> {
     let outputs = layout.len();
     if numbers.len() != states * outputs {
@@ -37,7 +37,8 @@ struct Numbers {
 }
 
 impl Numbers {
-    /// The elements that start at those outputs, of every state, state by state; `nulls` are of so many elements.
+    /// Returns, state by state, the elements whose numbers begin at the offsets `starts` in the numbers of each state.
+    /// `nulls` has one entry per element.
     fn elements(&self, layout: &Layout, starts: &[usize], nulls: Option<&NullBuffer>) -> Result<ArrayRef> {
         let Self { values: numbers, outputs, states } = self;
         let length = states * starts.len();
@@ -68,7 +69,7 @@ impl Numbers {
     }
 }
 
-/// Where the elements of arrays start that themselves start there.
+/// Returns the offsets of the elements of arrays which begin at the offsets `starts` and have `length` elements each.
 fn each(starts: &[usize], length: usize, of: &Layout) -> Vec<usize> {
     starts.iter().flat_map(|start| (0..length).map(move |index| start + index * of.len())).collect()
 }

@@ -1,4 +1,4 @@
-//! The robots that a process holds, by name and content.
+//! The robots that a process has, by name and content.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -10,19 +10,18 @@ use rne::compiled::{CompiledArm, RobotFiles};
 use rne_identify::{Options, Structure};
 use sha2::{Digest, Sha256};
 
-/// Hexadecimal digits of a content hash in a key.
+/// Number of hexadecimal digits of the content hash in a key.
 const DIGITS: usize = 16;
 
-/// The robots that the functions of a process compute.
-///
-/// A query names a robot by its *key*, `NAME@HASH`: the hash is the first 16 digits of the SHA-256 of its robot file
-/// and the plan file after it, where there is one, as `cat NAME.yaml NAME.plan.yaml | sha256sum` prints it. Functions
-/// travel to other machines by name alone, so a process that holds another file under the same name would compute
-/// other torques, or other bits of them, and nobody would notice: by the key it refuses.
+/// The robots that SQL functions may name.
+/// A query names a robot by its *key*, `NAME@HASH`. The hash is the first 16 digits of the SHA-256 of the robot file,
+/// followed by its plan file if it has one, as `cat NAME.yaml NAME.plan.yaml | sha256sum` prints it. Functions are sent
+/// to other machines by name alone, so a process that has another file under the same name would compute other torques,
+/// or other bits of them, unnoticed. With the key it returns an error.
 #[derive(Clone, Debug)]
 pub struct Robots(Arc<BTreeMap<String, Held>>);
 
-/// A robot that is held.
+/// A robot of the registry, compiled, with the hash of its files.
 #[derive(Clone, Debug)]
 pub(crate) struct Held {
     pub(crate) arm: CompiledArm,
@@ -32,15 +31,15 @@ pub(crate) struct Held {
 }
 
 impl Held {
-    /// What identification asks of its rows: links and friction, and rotors where the file has any; row by row, for
-    /// those of a table have no time to filter over. It is found once, when it is asked for.
+    /// Returns the unknowns of an identification from rows: links, friction, and rotors if the robot file has any. The
+    /// rows of a table have no time, so nothing is filtered. It is computed at the first call.
     pub(crate) fn structure(&self) -> Arc<Structure> {
         let found = self.structure.get_or_init(|| {
             let mut options = Options::default();
             let motors = self.arm.robot().joints.iter().filter_map(|joint| joint.motor);
             options.rotors = motors.into_iter().any(|motor| motor.inertia > 0.0);
             options.cutoff = None;
-            // rows know nothing of those before
+            // rows have no order, so friction has no displacement since a reversal, and torques have no delay
             options.displacements = Vec::new();
             options.delay = false;
             Arc::new(Structure::new(self.arm.robot(), options))
@@ -48,20 +47,20 @@ impl Held {
         Arc::clone(found)
     }
 
-    /// The arm with the rotors of its motors.
+    /// Returns the arm with the inertia of the rotors of its motors.
     pub(crate) fn with_rotors(&self) -> &CompiledArm {
         self.with_rotors.get_or_init(|| CompiledArm::from_robot(&self.arm.robot().clone().with_rotors()))
     }
 }
 
 impl Robots {
-    /// None.
+    /// A registry without robots.
     #[must_use]
     pub fn none() -> Self {
         Self(Arc::default())
     }
 
-    /// Those that rne ships: `puma560`, `panda`, ….
+    /// The robots that rne ships: `puma560`, `panda`, ….
     ///
     /// # Errors
     /// Never for the shipped ones, which tests read.
@@ -76,19 +75,20 @@ impl Robots {
         })
     }
 
-    /// These and that of a robot file, with the plan file beside it, under the name that it gives itself.
+    /// Adds the robot of a robot file, with the plan file beside it, under the name that the robot file has in its key
+    /// `name`.
     ///
     /// # Errors
     /// When the file cannot be read, or everything that is wrong with it.
     pub fn with_file(self, path: impl AsRef<Path>) -> Result<Self> {
-        // read once: a file that is replaced meanwhile must not give the hash of one and the torques of the other
+        // read once: if a file is replaced meanwhile, the hash and the torques must still be those of one file
         let files = RobotFiles::read(path).map_err(external)?;
         let arm = CompiledArm::from_files(&files).map_err(external)?;
         let name = arm.robot().name.clone();
         Ok(self.with(&name, [files.robot(), files.plan().unwrap_or_default()], arm))
     }
 
-    /// Adds the robot of the text of a robot file, under the name in that text.
+    /// Adds the robot that the text of a robot file describes, under the name that the text has in its key `name`.
     ///
     /// # Errors
     /// Everything that is wrong with it.
@@ -98,7 +98,8 @@ impl Robots {
         Ok(self.with(&name, [text.as_bytes(), &[]], arm))
     }
 
-    /// `files`: the robot file, and the plan file or nothing.
+    /// Adds a robot under a name. `files` are the bytes of the robot file and of the plan file, the latter empty if
+    /// there is none.
     fn with(mut self, name: &str, files: [&[u8]; 2], arm: CompiledArm) -> Self {
         let mut hash = Sha256::digest(files.concat()).iter().fold(String::new(), |mut hash, byte| {
             let _ = write!(hash, "{byte:02x}");
@@ -110,18 +111,18 @@ impl Robots {
         self
     }
 
-    /// What a query calls the robot of a name; `None` when there is none.
+    /// Returns the key of the robot with this name, as a query needs it; `None` if there is no such robot.
     #[must_use]
     pub fn key(&self, name: &str) -> Option<String> {
         self.0.get(name).map(|held| format!("{name}@{}", held.hash))
     }
 
-    /// The keys of all.
+    /// Returns the keys of all robots.
     pub fn keys(&self) -> impl Iterator<Item = String> {
         self.0.iter().map(|(name, held)| format!("{name}@{}", held.hash))
     }
 
-    /// The robot of a key.
+    /// Returns the robot with this key.
     pub(crate) fn get(&self, key: &str) -> Result<&Held> {
         let (name, hash) = key.split_once('@').map_or((key, None), |(name, hash)| (name, Some(hash)));
         let Some(held) = self.0.get(name) else {
@@ -144,7 +145,7 @@ impl Robots {
     }
 }
 
-/// Two registries are the same when they hold the same files.
+/// Two registries are equal if they have the same robots from the same files.
 impl PartialEq for Robots {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0) || self.keys().eq(other.keys())
@@ -161,7 +162,7 @@ impl std::hash::Hash for Robots {
     }
 }
 
-/// An error of rne as one of the engine.
+/// Converts an error of rne to one of the engine.
 pub(crate) fn external(error: impl std::error::Error + Send + Sync + 'static) -> DataFusionError {
     DataFusionError::External(Box::new(error))
 }

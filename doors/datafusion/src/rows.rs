@@ -1,4 +1,4 @@
-//! Functions over rows of states: what their calls have, and the columns of a call.
+//! Functions over rows of states, that is, aggregates and window functions: the data of their calls.
 
 use std::sync::Arc;
 
@@ -16,15 +16,15 @@ use crate::function;
 use crate::robots::{Held, Robots};
 use crate::time;
 
-/// A function over rows of states.
+/// An aggregate or a window function over rows of states.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(crate) struct OfRows {
     pub(crate) name: &'static str,
     /// Whether the time is the argument after the robot.
     pub(crate) is_timed: bool,
-    /// The other arguments.
+    /// The names of the other arguments.
     pub(crate) arguments: &'static [&'static str],
-    /// What stands behind the arguments of a call.
+    /// The text after the arguments in the example of a call, such as an `OVER` clause.
     pub(crate) over: &'static str,
     pub(crate) summary: &'static str,
 }
@@ -36,12 +36,13 @@ impl OfRows {
         Call::new(robots, &format!("{name}(robot, {time}{}){over}", arguments.join(", ")), summary)
     }
 
-    /// The types of all arguments of a call.
+    /// Returns the types to which the arguments of a call are converted.
     pub(crate) fn coerced(&self, given: &[DataType]) -> Result<Vec<DataType>> {
         if self.is_timed { time::coerced(self.name, given) } else { function::coerced(self.name, given) }
     }
 
-    /// The robot of a call and its columns, by the types of all arguments.
+    /// Returns the robot that a call names, and its columns. Returns an error if they are not the arguments of the
+    /// function.
     pub(crate) fn of<'a>(
         &'static self,
         call: &'a Call,
@@ -63,12 +64,12 @@ impl OfRows {
 pub(crate) struct Rows {
     of: &'static OfRows,
     pub(crate) robot: Robot,
-    /// Their names.
+    /// The names of these columns.
     pub(crate) columns: Vec<String>,
 }
 
 impl Rows {
-    /// The arguments in the columns of a batch, and which rows are null.
+    /// Returns the arguments in the columns of a batch, and which rows are null.
     pub(crate) fn arguments<'a>(&self, arrays: &'a [ArrayRef]) -> Result<(Vec<Argument<'a>>, Option<NullBuffer>)> {
         let columns: Vec<&str> = self.columns.iter().map(String::as_str).collect();
         argument::all(self.of.name, self.of.arguments, &columns, arrays, &self.robot)

@@ -1,4 +1,4 @@
-//! The time of a row: a time stamp, or a number of seconds.
+//! The time of a row: a time stamp or a number of seconds.
 
 use datafusion::arrow::array::{Array, ArrayRef, AsArray};
 use datafusion::arrow::datatypes::{DataType, Float64Type, TimeUnit, TimestampNanosecondType};
@@ -7,10 +7,10 @@ use datafusion::common::{Result, exec_err, plan_err};
 use crate::argument;
 use crate::function;
 
-/// ns
+/// Nanoseconds per second.
 const SECOND: i64 = 1_000_000_000;
 
-/// A time, exactly: whole seconds, and the rest.
+/// A time without rounding: whole seconds, and the rest in seconds.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub(crate) struct Instant {
     pub(crate) seconds: f64,
@@ -18,13 +18,13 @@ pub(crate) struct Instant {
 }
 
 impl Instant {
-    /// s after another time
+    /// Returns the time since an earlier one, s.
     pub(crate) fn since(self, other: Self) -> f64 {
         self.seconds - other.seconds + (self.rest - other.rest)
     }
 }
 
-/// The types of all arguments: a robot's name, a time, and numbers.
+/// Returns the types to which the arguments are converted: the name of a robot, a time, then numbers.
 pub(crate) fn coerced(function: &str, given: &[DataType]) -> Result<Vec<DataType>> {
     let [robot, time, columns @ ..] = given else {
         return plan_err!("{function}: the robot and the time are missing, the first two arguments");
@@ -47,7 +47,7 @@ pub(crate) fn at(function: &str, array: &ArrayRef, row: usize) -> Result<Option<
     }
     if let Some(stamps) = array.as_primitive_opt::<TimestampNanosecondType>() {
         let stamp = stamps.value(row);
-        #[allow(clippy::cast_precision_loss)] // seconds of some centuries, and less than a second
+        #[allow(clippy::cast_precision_loss)] // exact: seconds of some centuries, and nanoseconds below 1e9
         let [seconds, rest] = [stamp.div_euclid(SECOND) as f64, stamp.rem_euclid(SECOND) as f64 * 1e-9];
         return Ok(Some(Instant { seconds, rest }));
     }

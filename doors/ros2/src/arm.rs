@@ -5,10 +5,11 @@ use std::path::Path;
 use rne_convert::{Description, Selection};
 use rne_machine::CompiledArm;
 
-/// The arm of a file or of a shipped robot, with the rotors of its motors. `selection` chooses the chain of a URDF.
+/// Loads the arm of a file or a shipped robot, with the rotors of its motors. `selection` chooses the chain of links in
+/// a URDF.
 ///
 /// # Errors
-/// When there is no such file, or everything that is wrong with it.
+/// When there is no such file, or with all errors in the file.
 pub fn open(path: &Path, selection: Selection) -> Result<CompiledArm, String> {
     let description = Description::open(path).map_err(|error| error.to_string())?;
     if selection != Selection::default() && !matches!(description, Description::Urdf(_)) {

@@ -1,4 +1,4 @@
-//! The diagnostics of the node: what came in, what was rejected and why.
+//! The diagnostics of the node: messages that arrived, and messages that were rejected with the reasons.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ pub struct Source<'a> {
     pub publishers: usize,
 }
 
-/// Counts since the node began, and what happened since the last diagnostics.
+/// Counts since the node started, and events since the last diagnostics.
 #[derive(Debug, Default)]
 pub(crate) struct Report {
     counts: BTreeMap<&'static str, u64>,
@@ -25,7 +25,7 @@ pub(crate) struct Report {
     recent: Recent,
 }
 
-/// Events since the last diagnostics, counted.
+/// Counts of events since the last diagnostics.
 #[derive(Debug, Default)]
 struct Recent {
     received: u64,
@@ -96,7 +96,7 @@ impl Report {
         *self.counts.entry(key).or_default() += by;
     }
 
-    /// The diagnostics, after which the next ones begin.
+    /// Returns the diagnostics, and resets the events for the next ones.
     pub(crate) fn written(
         &mut self,
         now: Time,

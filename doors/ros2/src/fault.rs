@@ -1,19 +1,19 @@
-//! Why a message is not used, or not for everything.
+//! Reasons why a message is not used, or only for some results.
 
 use std::fmt;
 
 use rne_identify::Mismatch;
 
-/// The names that a text lists at most.
+/// The largest number of names that a text lists.
 const SHOWN: usize = 16;
 
-/// Why a message is not used at all. `Display` is the sentence of the diagnostics.
+/// Reason why a message is not used at all. `Display` gives the sentence for the diagnostics.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Fault {
-    /// The message has none of the joints of the arm: it is of another part of the robot. This is no fault.
+    /// The message has none of the arm's joints, so it is about another part of the robot. This is not an error.
     Foreign,
-    /// The message has some joints of the arm, and lacks this one.
+    /// The message has some of the arm's joints, but not this one.
     Incomplete {
         /// The joint that is missing.
         joint: String,
@@ -27,14 +27,14 @@ pub enum Fault {
         /// The difference.
         mismatch: Mismatch,
     },
-    /// The message has another number of positions than of names.
+    /// The number of positions differs from the number of names.
     Positions {
         /// The number of names.
         names: usize,
         /// The number of positions.
         positions: usize,
     },
-    /// A position is no finite number.
+    /// A position is not finite.
     Position {
         /// The joint, by the name in the message.
         joint: String,
@@ -55,22 +55,22 @@ pub enum Fault {
         /// The limit, s.
         limit: f64,
     },
-    /// The gravity torques are no finite numbers, or cannot be computed.
+    /// The gravity torques are not finite, or cannot be computed.
     Torques(String),
 }
 
-/// Why a message gives no external torques, though it gives gravity torques.
+/// Reason why a message gives no external torques, although it gives gravity torques.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Lacking {
-    /// It is the first message, or the first one after a gap: the observer begins with it.
+    /// It is the first message, or the first one after a gap, with which the observer starts.
     First,
     /// The message has no velocities, or no efforts.
     Missing {
         /// `velocities` or `efforts`.
         what: &'static str,
     },
-    /// The message has another number of velocities or efforts than of names.
+    /// The number of velocities or efforts differs from the number of names.
     Length {
         /// `velocities` or `efforts`.
         what: &'static str,
@@ -79,7 +79,7 @@ pub enum Lacking {
         /// The number of velocities or efforts.
         found: usize,
     },
-    /// A velocity or an effort is no finite number.
+    /// A velocity or an effort is not finite.
     Number {
         /// `velocity` or `effort`.
         what: &'static str,
@@ -88,12 +88,12 @@ pub enum Lacking {
         /// Its value.
         value: f64,
     },
-    /// The external torques are no finite numbers, or cannot be computed.
+    /// The external torques are not finite, or cannot be computed.
     Torques(String),
 }
 
 impl Fault {
-    /// The key of its count in the diagnostics.
+    /// The key under which the diagnostics count this fault.
     pub(crate) fn key(&self) -> &'static str {
         match self {
             Self::Foreign => "messages of other joints",
@@ -153,7 +153,7 @@ impl fmt::Display for Fault {
 }
 
 impl Lacking {
-    /// The key of its count in the diagnostics.
+    /// The key under which the diagnostics count this reason.
     pub(crate) fn key(&self) -> &'static str {
         match self {
             Self::First => "beginnings of the observer",
@@ -182,7 +182,7 @@ impl fmt::Display for Lacking {
     }
 }
 
-/// Names of joints, the first of them.
+/// Returns the names of joints as a text, at most the first [`SHOWN`] of them.
 pub(crate) fn listed(names: &[String]) -> String {
     let first: Vec<&str> = names.iter().take(SHOWN).map(String::as_str).collect();
     first.join(", ") + if names.len() > SHOWN { ", …" } else { "" }

@@ -32,7 +32,7 @@ impl Time {
 /// `std_msgs/msg/Header`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Header {
-    /// When the joints were measured.
+    /// The time of the measurement of the joints.
     pub stamp: Time,
     /// A name of a frame; the node copies it.
     pub frame_id: String,
@@ -58,7 +58,7 @@ pub struct JointState {
 pub struct DiagnosticArray {
     /// When the diagnostics were written.
     pub header: Header,
-    /// The parts of the node.
+    /// The diagnostics of the parts of the node.
     pub status: Vec<DiagnosticStatus>,
 }
 
@@ -107,7 +107,7 @@ mod tests {
         }
         assert_eq!(Time::of_nanoseconds(i64::MAX).sec, i32::MAX);
         assert_eq!(Time::of_nanoseconds(i64::MIN).sec, i32::MIN);
-        // no valid message has it, and it does not overflow
+        // no valid message has such a time, and the number does not overflow
         assert_eq!(Time { sec: i32::MAX, nanosec: u32::MAX }.nanoseconds(), 2_147_483_651_294_967_295);
     }
 }

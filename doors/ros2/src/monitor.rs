@@ -19,15 +19,14 @@ use crate::messages::{DiagnosticArray, JointState, Time};
 /// Settings of a monitor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// The joints by their names in the messages, base to tip. Without them the rule of the logs decides
-    /// ([`match_joints`]): the names of the robot file, or the order of a message that has as many joints with other
-    /// names.
+    /// The names that the joints have in the messages, base to tip. If it is `None`, [`match_joints`] decides as for
+    /// logs: by the names in the robot file, or by the order in a message that has as many joints with other names.
     pub joints: Option<Vec<String>>,
     /// The low-pass of the observer, Hz.
     pub gain: f64,
     /// A message whose stamp differs more than this from the clock is not used, s; 0: any stamp.
     pub stale_after: f64,
-    /// After a longer time between two stamps the observer begins anew, s.
+    /// The longest time between two stamps, s; after a longer one the observer starts anew.
     pub gap: f64,
 }
 
@@ -37,8 +36,8 @@ impl Default for Settings {
     }
 }
 
-/// The torques of one message: joint states with efforts only, with the header and the joint names of the message, base
-/// to tip. N m, or N of a joint that slides.
+/// The torques that belong to one message: joint states with efforts only, with the header and the joint names of the
+/// message, base to tip. N m, or N for a prismatic joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Torques {
     /// The torques of the actuators that hold the arm still in this position.
@@ -47,17 +46,17 @@ pub struct Torques {
     pub external: Result<JointState, Lacking>,
 }
 
-/// The arm, its observer and its diagnostics.
+/// An arm with its observer and its diagnostics.
 #[derive(Debug)]
 pub struct Monitor {
     arm: CompiledArm,
     settings: Settings,
     /// The names that messages must have, base to tip.
     joints: Vec<String>,
-    /// Whether a message had the joints, and whether they are taken in its order.
+    /// Whether a message with all joints has arrived, and whether the joints are matched by its order and not by names.
     is_matched: bool,
     is_by_order: bool,
-    /// The names of the last message, and where the joints are in it.
+    /// The names in the last message, and the index of each joint among them.
     places: (Vec<String>, Result<Vec<usize>, Fault>),
     observer: DynObserverState<f64>,
     friction: Vec<Friction>,
@@ -68,7 +67,7 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// A monitor of an arm.
+    /// Creates a monitor for an arm.
     ///
     /// # Errors
     /// When a setting is no possible value, when a function of the arm cannot be compiled, or when the settings have
@@ -100,7 +99,7 @@ impl Monitor {
                 return Err(format!("--joints names {} twice", joints[twice]));
             }
         }
-        // compiled now and not in the first message
+        // compiled now, so that the first message does not wait for it
         let zeros = vec![0.0; arm.dof()];
         let compiled = arm.gravity_torques(&zeros).and_then(|_| arm.momentum_and_rate(&zeros, &zeros, &zeros));
         compiled.map_err(|error| error.to_string())?;
@@ -119,7 +118,7 @@ impl Monitor {
         })
     }
 
-    /// The torques at a message that arrives at a time of the clock. Whatever is wrong is counted for the diagnostics.
+    /// Returns the torques for a message that arrives at the time `now`. Every fault is counted for the diagnostics.
     ///
     /// # Errors
     /// When the message is not used.
@@ -143,7 +142,7 @@ impl Monitor {
         self.report.failed(key, why);
     }
 
-    /// The diagnostics since the last call.
+    /// Returns the diagnostics of the time since the last call.
     pub fn diagnostics(&mut self, now: Time, source: &Source<'_>) -> DiagnosticArray {
         let robot = self.arm.robot();
         let of_robot = names_of(&self.arm);
@@ -185,7 +184,7 @@ impl Monitor {
         Ok(Torques { gravity, external })
     }
 
-    /// The places of the joints of the arm among the names of a message.
+    /// Returns the index of each joint of the arm among the names of a message.
     fn places(&mut self, names: &[String]) -> Result<Vec<usize>, Fault> {
         if self.places.0 != names {
             self.places = (names.to_vec(), self.matched(names));
@@ -193,13 +192,13 @@ impl Monitor {
         self.places.1.clone()
     }
 
-    /// The places, by the rule of the logs.
+    /// Finds the index of each joint among the names of a message, by the rule that also holds for logs.
     fn matched(&mut self, names: &[String]) -> Result<Vec<usize>, Fault> {
         let mut places: HashMap<&str, usize> = HashMap::with_capacity(names.len());
         for (place, name) in names.iter().enumerate() {
             places.entry(name).or_insert(place);
         }
-        // the names of the robot are better than an order
+        // if a later message has the names in the robot file, these replace the match by order
         if self.is_by_order {
             let of_robot = names_of(&self.arm);
             if match_joints(&of_robot, names) == Ok(JointMatch::ByName) {
@@ -207,7 +206,7 @@ impl Monitor {
                 self.begin();
             }
         }
-        // names that were given or found in a message are not matched by order once more
+        // names that were given, or found in an earlier message, are not matched by order again
         let is_known = self.settings.joints.is_some() || self.is_matched;
         match match_joints(&self.joints, names) {
             Ok(JointMatch::ByName) => {}
@@ -232,7 +231,7 @@ impl Monitor {
         Ok(self.joints.iter().filter_map(|joint| places.get(joint.as_str()).copied()).collect())
     }
 
-    /// The stamp of a message, ns, if it is one that follows the last.
+    /// Returns the stamp of a message, ns, if it is later than the last one.
     fn stamp(&mut self, message: &JointState, now: Time) -> Result<i64, Fault> {
         let stamp = message.header.stamp.nanoseconds();
         if stamp == 0 {
@@ -243,14 +242,14 @@ impl Monitor {
             return Err(Fault::Stale { age, limit });
         }
         let by = self.last.map_or(f64::NEG_INFINITY, |last| seconds(stamp, last));
-        // a simulation or a bag that begins again goes back by more than messages overtake each other
+        // a simulation or a bag that restarts goes back further than messages that overtake each other
         if by >= 0.0 && by <= self.settings.gap {
             return Err(Fault::NotLater { by });
         }
         Ok(stamp)
     }
 
-    /// Velocities and efforts of the joints of the arm.
+    /// Returns the velocities and the efforts of the joints of the arm.
     fn measured(&self, message: &JointState, places: &[usize]) -> Result<[Vec<f64>; 2], Lacking> {
         let names = message.name.len();
         let of = |list: &[f64], what, one| {
@@ -271,7 +270,7 @@ impl Monitor {
         Ok([of(&message.velocity, "velocities", "velocity")?, of(&message.effort, "efforts", "effort")?])
     }
 
-    /// A tick of the observer.
+    /// Updates the observer with a message and returns the external torques.
     fn external(&mut self, stamp: i64, q: &[f64], qd: &[f64], effort: &[f64]) -> Result<Vec<f64>, Lacking> {
         let period = self.observed.map(|last| seconds(last, stamp));
         let period = period.filter(|period| *period > 0.0 && *period <= self.settings.gap);
@@ -291,7 +290,7 @@ impl Monitor {
         finite(Ok(seen)).map_err(Lacking::Torques)
     }
 
-    /// The observer forgets all, and begins at the next message that has everything.
+    /// Resets the observer, which starts anew with the next complete message.
     fn begin(&mut self) {
         self.observer.reset();
         self.friction = self.arm.robot().independent_joints().map(Friction::of).collect();
@@ -299,18 +298,18 @@ impl Monitor {
     }
 }
 
-/// s from one time to another, in ns.
-#[allow(clippy::cast_precision_loss)] // of long times no nanoseconds matter
+/// Returns the time from one stamp to another, both in ns, in s.
+#[allow(clippy::cast_precision_loss)] // nanoseconds of long times do not matter
 fn seconds(from: i64, to: i64) -> f64 {
     to.saturating_sub(from) as f64 * 1e-9
 }
 
-/// The names of the joints of the robot file, base to tip.
+/// Returns the names of the joints in the robot file, base to tip.
 fn names_of(arm: &CompiledArm) -> Vec<String> {
     arm.robot().independent_joints().map(|joint| joint.name.clone()).collect()
 }
 
-/// Torques, if all of them are finite.
+/// Returns the torques if all of them are finite, otherwise an error.
 fn finite(torques: Result<Vec<f64>, EvaluationError>) -> Result<Vec<f64>, String> {
     let torques = torques.map_err(|error| error.to_string())?;
     match torques.iter().position(|torque| !torque.is_finite()) {

@@ -22,13 +22,13 @@ use crate::sequence::Sequences;
 /// The time between two diagnostics.
 const DIAGNOSTICS: Duration = Duration::from_secs(1);
 
-/// The longest wait for a message, after which the node looks whether it shall end.
+/// The longest wait for a message, after which the node checks whether it has to end.
 const WAIT: Duration = Duration::from_millis(100);
 
-/// The topic of diagnostics, as in all of ROS.
+/// The topic of diagnostics, which has this name in every ROS system.
 const DIAGNOSTICS_TOPIC: &str = "/diagnostics";
 
-/// Where the node reads and writes.
+/// Topics and network of the node.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Options {
     /// The DDS domain, 0 to 232.
@@ -92,13 +92,13 @@ pub fn run(
     }
     drop(topics);
     drop(node);
-    // it ends with the node
+    // this thread ends with the node
     let _ = spinning.join();
     Ok(())
 }
 
-/// Reads the messages that are there, and publishes their torques; at the latest until diagnostics are due, so that a
-/// flood of messages does not hide them.
+/// Reads the messages that have arrived and publishes their torques. It returns at the latest when diagnostics are due,
+/// so that a flood of messages does not delay them.
 fn read(monitor: &mut Monitor, topics: &Topics, sequences: &mut Sequences, until: Instant) {
     loop {
         match topics.joint_states.take() {
@@ -123,7 +123,7 @@ fn read(monitor: &mut Monitor, topics: &Topics, sequences: &mut Sequences, until
     }
 }
 
-/// Publishes without waiting: a subscriber that does not read must not stop the others.
+/// Publishes a message without waiting, so that a subscriber that does not read cannot block the others.
 fn publish<M: Serialize>(publisher: &Publisher<M>, message: M, monitor: &mut Monitor) {
     match publisher.publish(message) {
         Ok(()) => {}
@@ -179,7 +179,7 @@ fn topics(node: &mut Node, options: &Options, [gravity, external]: &[String; 2])
     })
 }
 
-/// The clock of the machine.
+/// Returns the time of the system clock.
 fn now() -> Time {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     Time::of_nanoseconds(i64::try_from(since.as_nanos()).unwrap_or(i64::MAX))

@@ -1,11 +1,11 @@
-//! Messages that DDS lost, by the sequence numbers of their publishers.
+//! Counts messages that DDS lost, from the sequence numbers of their publishers.
 
 use std::collections::HashMap;
 
 /// The identifier of a publisher.
 type Publisher = [u8; 16];
 
-/// The most publishers that are remembered. One that is new beyond them is the first of a new list.
+/// The largest number of publishers that are remembered. When one more appears, all others are forgotten.
 const MOST: usize = 64;
 
 /// The last sequence number of each publisher.
@@ -13,8 +13,8 @@ const MOST: usize = 64;
 pub struct Sequences(HashMap<Publisher, i64>);
 
 impl Sequences {
-    /// The number of messages between the last message of a publisher and this one, which were lost. The first message
-    /// of a publisher has none before it.
+    /// Returns how many messages were lost between the last message of a publisher and this one: 0 for the first
+    /// message of a publisher.
     pub fn lost(&mut self, publisher: Publisher, number: i64) -> u64 {
         if self.0.len() >= MOST && !self.0.contains_key(&publisher) {
             self.0.clear();

@@ -15,7 +15,7 @@ pub use self::joints::{JointMatch, check_units, joint_options, match_joints};
 use self::low_pass::{PART, WIDER, check_cutoff, highest};
 pub use self::remark::ArmLogRemark;
 
-/// States that are read at once: memory is this by the number of joints.
+/// Number of states that are read at once. The memory is proportional to it and to the number of joints.
 const PIECE: usize = 65_536;
 
 /// Logs of an arm that were opened and surveyed; reading them costs memory that does not grow with them.
@@ -36,7 +36,7 @@ const PIECE: usize = 65_536;
 #[derive(Debug)]
 pub struct ArmLog {
     log: Log,
-    /// How it was opened.
+    /// The options with which the log was opened.
     options: Options,
     survey: Survey,
     cutoff: f64,
@@ -44,30 +44,33 @@ pub struct ArmLog {
     remarks: Vec<ArmLogRemark>,
 }
 
-/// How logs of an arm are opened.
+/// Options for opening the logs of an arm.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ArmLogOptions {
-    /// Facts that the logs do not contain. [`Options::cutoff`] is the low-pass of both sides; without it the spectrum
-    /// chooses. [`Options::slides`] and [`Options::leave_out_spikes`] are set by the robot and the purpose.
+    /// Facts that the logs do not contain. [`Options::cutoff`] is the cut-off, Hz, of the low-pass filter of both sides
+    /// of the equations of motion; without it, the spectrum of the motion determines it. [`Options::slides`] and
+    /// [`Options::leave_out_spikes`] are overwritten: the robot and the purpose determine them.
     pub log: Options,
     /// The purpose for which the logs are read.
     pub purpose: Purpose,
 }
 
-/// The purpose for which logs of an arm are read. It chooses the log's own filter, and whether spikes are left out.
+/// The purpose for which logs of an arm are read. It determines the cut-off of the filter that smooths and
+/// differentiates the positions (the log's own filter), and whether spikes are left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Purpose {
-    /// A model is fitted: the log's own filter passes what a motion may contain, and spikes of efforts are left out.
+    /// To fit a model: the cut-off of the log's own filter is four times that of the low-pass filter, and spikes of
+    /// efforts are left out.
     #[default]
     Fit,
-    /// A model is judged: the filter is the same, and nothing is left out.
+    /// To judge a model: the filter is that of [`Purpose::Fit`], and nothing is left out.
     Judge,
-    /// Sudden events are sought: the filter passes all that it can, and nothing is left out.
+    /// To find sudden events: the cut-off of the log's own filter is as high as possible, and nothing is left out.
     Watch,
 }
 
 impl Purpose {
-    /// Ratio of the cut-off of the log's own filter to the low-pass.
+    /// Ratio of the cut-off of the log's own filter to that of the low-pass filter.
     fn wider(self) -> f64 {
         if self == Self::Watch { f64::INFINITY } else { WIDER }
     }
@@ -76,28 +79,26 @@ impl Purpose {
 /// Part of the logs, by time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Part {
-    /// All of it.
+    /// All states.
     All,
-    /// The part before this fraction of the whole, 0 to 1.
+    /// The states before this fraction of the whole duration, 0 to 1.
     Before(f64),
-    /// The part from this fraction of the whole on, 0 to 1.
+    /// The states from this fraction of the whole duration on, 0 to 1.
     From(f64),
 }
 
 impl ArmLog {
     /// Opens logs of a robot and surveys them.
     ///
-    /// # Errors
-    /// When a log cannot be read; when its joints or their units are not those of the robot; when it has no efforts or
-    /// no states; when the low-pass is not possible.
+    /// # Errors When a log cannot be read; when its joints or their units are not those of the robot; when it has no
+    /// efforts or no states; when the low-pass filter is not possible.
     pub fn open(paths: &[PathBuf], robot: &Robot, options: &ArmLogOptions) -> Result<Self, ArmLogError> {
         Self::open_with_progress(paths, robot, options, &mut |_| ())
     }
 
     /// Opens logs like [`ArmLog::open`] and reports the fraction that was read, 0 to 1, of each of two surveys.
     ///
-    /// # Errors
-    /// Those of [`ArmLog::open`].
+    /// # Errors The errors of [`ArmLog::open`].
     pub fn open_with_progress(
         paths: &[PathBuf],
         robot: &Robot,
@@ -106,14 +107,14 @@ impl ArmLog {
     ) -> Result<Self, ArmLogError> {
         let wider = options.purpose.wider();
         let mut options = Options { leave_out_spikes: options.purpose == Purpose::Fit, ..options.log.clone() };
-        // the log's own filter is chosen here
+        // the first survey takes no cut-off, so that it determines one from the spectrum
         let asked = options.cutoff.take();
         let (mut options, by_order) = joint_options(paths, robot, options)?;
         let log = Log::open(paths, options.clone())?;
         check_units(robot, log.layout())?;
         check_efforts(&log)?;
         let survey = log.survey(&mut *progress)?;
-        // a unit that nobody said is refused here
+        // refuses logs whose unit of angles or efforts is unknown
         if survey.may_be_degrees(&log).is_some() || !log.unsaid_currents().is_empty() {
             log.motions(&survey)?;
         }
@@ -125,7 +126,7 @@ impl ArmLog {
         let highest = highest(&log);
         let longest = survey.runs.iter().map(|run| run.duration).fold(0.0, f64::max);
         check_cutoff(&log, cutoff, longest, |cutoff| {
-            // who reads all that there is may go to the ends of runs
+            // without a finite ratio, the filter is as wide as possible and runs are used up to their ends
             if wider.is_finite() { log.left(&survey, (wider * cutoff).min(highest)) } else { longest }
         })?;
         let read_to = (wider * cutoff).min(highest);
@@ -136,7 +137,8 @@ impl ArmLog {
         Ok(Self { log, options, survey, cutoff, read_to, remarks })
     }
 
-    /// The logs through the filter with which a model is judged; runs that are too short for it are included.
+    /// Opens the same logs with the filter for judging a model ([`Purpose::Judge`]). Runs that are too short for it are
+    /// included.
     ///
     /// # Errors
     /// When a log cannot be read to its end.
@@ -184,7 +186,7 @@ impl ArmLog {
         &self.log
     }
 
-    /// The survey of the log, by its own filter.
+    /// The survey of the log, made with the log's own filter.
     #[must_use]
     pub fn survey(&self) -> &Survey {
         &self.survey
@@ -216,8 +218,8 @@ impl ArmLog {
         format!("{files} ({} states at {:.0} Hz)", self.states(), 1.0 / self.log.layout().step)
     }
 
-    /// Hands the motions of a part to a function, up to the ends of runs. At an end the log's own filter sees one side
-    /// alone, but the low-pass reaches farther than it.
+    /// Passes the motions of a part to `take`, up to the ends of runs. Near an end, the log's own filter has samples on
+    /// one side only, but the low-pass filter leaves out a longer time there.
     ///
     /// # Errors
     /// When a log cannot be read to its end, or the function returns an error.
@@ -225,10 +227,9 @@ impl ArmLog {
         self.pass_with_progress(part, take, &mut |_| ())
     }
 
-    /// Hands motions on like [`ArmLog::pass`] and reports the fraction that was read, 0 to 1.
+    /// Passes motions to `take` like [`ArmLog::pass`] and reports the fraction that was read, 0 to 1.
     ///
-    /// # Errors
-    /// Those of [`ArmLog::pass`].
+    /// # Errors The errors of [`ArmLog::pass`].
     pub fn pass_with_progress<E>(
         &self,
         part: Part,
@@ -238,11 +239,10 @@ impl ArmLog {
         self.hand_on(self.motions()?.with_ends(), part, &mut |_, motion| take(motion), progress)
     }
 
-    /// Hands the motions of a part to a function without the ends of runs, each with the number of its run, from 0, and
+    /// Passes the motions of a part without the ends of runs to `take`, each with the number of its run, from 0, and
     /// reports the fraction that was read, 0 to 1.
     ///
-    /// # Errors
-    /// Those of [`ArmLog::pass`].
+    /// # Errors The errors of [`ArmLog::pass`].
     pub fn pass_runs<E>(
         &self,
         part: Part,
@@ -267,7 +267,7 @@ impl ArmLog {
         let total: f64 = runs.iter().map(|run| run.duration).sum();
         let edge = |run: usize, edge: f64| {
             let before: f64 = runs.iter().take(run).map(|run| run.duration).sum();
-            // of runs that are not listed nothing is known: they are after the edge
+            // the survey lists only the first runs; all later ones count as after the edge
             runs.get(run).map_or(f64::NEG_INFINITY, |run| run.start + edge * total - before)
         };
         let mut motions = motions.with_length(PIECE);
@@ -288,7 +288,7 @@ impl ArmLog {
     }
 }
 
-/// The states at the times that are asked for: they follow each other.
+/// Returns the states at whose times `is_in` is true. These times must be one interval.
 fn cut(motion: &Motion, is_in: impl Fn(f64) -> bool) -> Motion {
     let start = motion.time.iter().position(|time| is_in(*time)).unwrap_or(motion.len());
     let end = motion.time.iter().rposition(|time| is_in(*time)).map_or(start, |last| last + 1);
@@ -303,7 +303,7 @@ fn cut(motion: &Motion, is_in: impl Fn(f64) -> bool) -> Motion {
     }
 }
 
-/// Remarks on a log whose efforts are those of all joints.
+/// Returns the remarks on a log that has efforts of all joints.
 fn remarks(log: &Log, survey: &Survey) -> Vec<ArmLogRemark> {
     let mut remarks: Vec<ArmLogRemark> = log.remarks(survey).into_iter().map(ArmLogRemark::Log).collect();
     for (joint, (least, greatest)) in log.layout().joints.iter().zip(&survey.efforts) {

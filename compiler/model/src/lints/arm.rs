@@ -1,4 +1,4 @@
-//! Lints of all joints together.
+//! Warnings that need all joints of an arm together.
 
 use std::ops::RangeInclusive;
 
@@ -12,11 +12,11 @@ use crate::text::expression::Names as _;
 use crate::text::source::six_digits;
 use crate::{Joint, JointKind};
 
-/// The sine of the angle between two axes below which their common normal may be far away.
+/// Sine of the angle between two joint axes below which their common normal may be far away.
 const NEARLY_PARALLEL: f64 = 0.05;
 
-/// Frames that are far away because axes are nearly parallel, and not because lengths are in millimetres: then common
-/// normals are short.
+/// Changes the warning about millimetres where frames are far away because joint axes are nearly parallel. Lengths in
+/// millimetres are not the reason then, because the common normals are short.
 pub(crate) fn nearly_parallel(cx: &Context, joints: &[Joint]) {
     let is_tilted = |joint: &Joint| (1e-15..NEARLY_PARALLEL).contains(&joint.row.dh.alpha.sin.abs());
     if !joints.iter().any(is_tilted) || joints.iter().any(|joint| joint.row.dh.a.abs() > LONGEST) {
@@ -37,15 +37,17 @@ pub(crate) fn nearly_parallel(cx: &Context, joints: &[Joint]) {
     cx.problems.relabel(MILLIMETRES, "far from the arm", &help);
 }
 
-/// Links at least, and a part of those with mass, that are alike where an exporter wrote placeholders.
+/// Number of links that must be alike for a warning about placeholders; they must also be at least 1 in `PART_ALIKE` of
+/// the links with mass.
 const ALIKE: usize = 3;
 
 const PART_ALIKE: usize = 2;
 
-/// Masses and moments that differ by a smaller part of themselves are the same.
+/// Two masses or moments are the same if their relative difference is below this.
 const SAME: f64 = 1e-6;
 
-/// Links with the same mass and the same ball for an inertia: what exporters write where CAD knows no material.
+/// Warns of links that have the same mass and the same moment of inertia about every axis: exporters write such
+/// placeholders where the CAD model has no material.
 pub(crate) fn placeholders(cx: &Context, root: &Node, joints: &[Joint]) {
     let items = root.list("joints");
     let is_same = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
@@ -78,11 +80,11 @@ pub(crate) fn placeholders(cx: &Context, root: &Node, joints: &[Joint]) {
     }
 }
 
-/// Joints with friction at least, beside which one without friction was probably forgotten.
+/// Number of joints with friction from which a single joint without friction was probably forgotten.
 const WITH_FRICTION: usize = 2;
 
-/// One joint without a key of friction where all others have one. Joints that follow others or share motors have their
-/// friction elsewhere.
+/// Notes a single joint without a key for friction where all other joints have one. Robots with couplings, motors or
+/// loops are skipped: their joints may have their friction elsewhere.
 pub(crate) fn missing_friction(cx: &Context, root: &Node) {
     let items = root.list("joints");
     if ["couplings", "motors", "loops"].iter().any(|key| root.has_entries(key)) {
@@ -104,8 +106,8 @@ pub(crate) fn missing_friction(cx: &Context, root: &Node) {
     );
 }
 
-/// Numbers of joints of arms that are built in similar proportions. Textbooks have shorter arms of any mass, and longer
-/// ones are slender.
+/// Numbers of joints of arms whose proportions are similar. Shorter arms of textbooks may have any mass, and longer
+/// arms are slender.
 const PROPORTIONATE: RangeInclusive<usize> = 4..=7;
 
 /// Mass of an arm per cube of its reach, kg/m³, below which masses are probably missing: half of what the lightest
@@ -113,9 +115,10 @@ const PROPORTIONATE: RangeInclusive<usize> = 4..=7;
 /// 2.9 (KUKA KR 5) to 22 kg/m³; a URDF of the KUKA KR 120, which weighs a tonne, has 0.5: 2 kg for each link.
 const LIGHTEST: f64 = 1.25;
 
-/// A sum of masses that is small for the reach: the longest way along the links, and along the axes of sliding joints.
+/// Warns if the sum of all masses is small for the reach of the arm: the sum of the link lengths, and of the travel of
+/// sliding joints.
 pub(crate) fn light_for_reach(cx: &Context, root: &Node, joints: &[Joint]) {
-    // mass that was moved to other links says nothing about the arm
+    // a file with first moments instead of masses has moved mass between links: their sum says nothing about the arm
     if !PROPORTIONATE.contains(&joints.len()) || joints.iter().any(|joint| joint.row.link.has_first_moment()) {
         return;
     }
@@ -124,7 +127,7 @@ pub(crate) fn light_for_reach(cx: &Context, root: &Node, joints: &[Joint]) {
         let travel = travel.map_or(0.0, |(lower, upper)| lower.abs().max(upper.abs()));
         libm::hypot(joint.row.dh.a, joint.row.dh.d) + travel
     };
-    // such a length is in millimetres, and a lint says so
+    // a longer length is in millimetres, and another lint reports it
     if joints.iter().any(|joint| joint.row.dh.a.abs().max(joint.row.dh.d.abs()) > LONGEST) {
         return;
     }

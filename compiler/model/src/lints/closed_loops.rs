@@ -8,7 +8,8 @@ use crate::text::document::Node;
 use crate::text::source::quoted;
 use crate::{ClosedLoop, Joint};
 
-/// Closed loops that were found closed in few configurations, and singular ones within the limits.
+/// Reports loops for which few closed configurations were found, loops that cannot move or are closed only beyond the
+/// limits, and singular configurations within the limits.
 pub(crate) fn closed_loops(cx: &Context, item: &Node, joints: &[Joint], loops: &[ClosedLoop], remarks: &Remarks) {
     let place = item.get("dependent").unwrap_or(item).head();
     if let Some((found, wanted)) = remarks.few {
@@ -26,7 +27,7 @@ pub(crate) fn closed_loops(cx: &Context, item: &Node, joints: &[Joint], loops: &
         let help = "check the position limits of the joints of the loops, and the lengths";
         cx.report(Diagnostic::lint(place.clone(), message).label("beyond the limits").help(help));
     }
-    // what rounding leaves of a zero
+    // shows a zero as 0 although rounding left a tiny number
     let rounded = |position: f64| short(if position.abs() < 1e-9 { 0.0 } else { position });
     let at = |positions: &[f64]| {
         let shown = remarks.joints.iter().take(8);

@@ -1,4 +1,4 @@
-//! Lints of masses and inertias: those that no body has, and joints that none resists.
+//! Warnings about masses and inertias: values that no physical body has, and joints that no inertia resists.
 
 use std::ops::Range;
 
@@ -11,14 +11,14 @@ use crate::text::expression::Names as _;
 use crate::text::source::six_digits;
 use crate::{Convention, Joint, JointKind, Link, QuarterTurns};
 
-/// No link has its mass farther from its centre of mass, in the mean, m.
+/// Largest plausible radius of gyration of a link, m.
 const WIDEST_GYRATION: f64 = 2.0;
 
-/// The part of the largest moment by which numbers of three digits may violate what holds of bodies, after the import
-/// has turned them, too.
+/// The part of the largest moment by which numbers of three digits may violate the rules for physical bodies, also
+/// after an import has rotated the tensor.
 const ROUNDED: f64 = 0.02;
 
-/// An inertia that no distribution of mass has.
+/// Reports an inertia that violates the triangle inequality of principal moments: no distribution of mass has it.
 pub(crate) fn triangle_inequality(cx: &Context, place: Range<usize>, moments: Option<[f64; 3]>, physical: bool) {
     if let Some([a, b, c]) = moments {
         let message = format!(
@@ -42,7 +42,7 @@ pub(crate) fn triangle_inequality(cx: &Context, place: Range<usize>, moments: Op
     }
 }
 
-/// A first moment without mass in a file that knows it.
+/// Notes a first moment without mass in a file that declares it with `physical: false`.
 pub(crate) fn first_moment_without_mass(cx: &Context, moment: &Node) {
     let message = "the link has a first moment but no mass, as `physical: false` allows: no real body is like this, \
                    but a set of base parameters can be";
@@ -52,7 +52,7 @@ pub(crate) fn first_moment_without_mass(cx: &Context, moment: &Node) {
     ));
 }
 
-/// A negative principal moment in a file that knows it.
+/// Reports a negative principal moment in a file that declares it with `physical: false`.
 pub(crate) fn unphysical(cx: &Context, place: Range<usize>, [smallest, _, largest]: [f64; 3]) {
     let message = format!(
         "the inertia is not positive semidefinite, as `physical: false` allows: its smallest eigenvalue about the \
@@ -63,12 +63,12 @@ pub(crate) fn unphysical(cx: &Context, place: Range<usize>, [smallest, _, larges
         "inverse dynamics accepts this inertia; if the mass matrix is not positive definite, forward dynamics cannot \
          be computed",
     );
-    // the inertia of a rod, say, of few digits
+    // a small negative moment may be due to rounding, such as for a thin rod whose inertia has few digits
     let severity = if -smallest <= ROUNDED * largest { Severity::Note } else { Severity::Warning };
     cx.report(Diagnostic { severity, ..lint });
 }
 
-/// Grams or millimetres in an inertia: no link has its mass so far out.
+/// Warns of an inertia in grams or millimetres: its radius of gyration is larger than that of any link.
 pub(crate) fn radius_of_gyration(cx: &Context, place: Range<usize>, mass: f64, [.., largest]: [f64; 3]) {
     if mass <= 0.0 || largest <= 0.0 {
         return;
@@ -80,19 +80,20 @@ pub(crate) fn radius_of_gyration(cx: &Context, place: Range<usize>, mass: f64, [
             "the inertia has a radius of gyration of {shown} m: this is as if the {mass} kg of the link were this far \
              away from its centre of mass"
         );
-        // sqrt(1e6) and sqrt(1e9): of the units that CAD programs have
+        // numbers in g mm² make the radius sqrt(1e9) times too large, numbers in kg mm² sqrt(1e6) times
         let label = if radius > 1000.0 * WIDEST_GYRATION { "g mm²?" } else { "kg mm²?" };
         let help = "inertias are in kg m²: 1 kg mm² is 1e-6 kg m², 1 g mm² is 1e-9 kg m²";
         cx.report(Diagnostic::lint(place, message).label(label).help(help));
     }
 }
 
-/// Checks the joints' inertias together: joints that nothing resists, and masses whose inertia is forgotten.
+/// Checks the inertias of all joints together: joints that nothing resists, and masses whose inertia is forgotten.
 ///
-/// The joints `of_loops` are moved by closed loops, too, and inertia behind these resists them.
+/// The joints `of_loops` are not reported as unresisted: closed loops move other joints together with them, whose
+/// inertia resists them.
 pub(crate) fn inertias(cx: &Context, root: &Node, convention: Convention, joints: &[Joint], of_loops: &[usize]) {
     let items = root.list("joints");
-    // a base that floats has a mass
+    // a floating base always has a key for its mass
     let is_geometry = root.get("floating_base").is_none();
     if is_geometry
         && joints.iter().all(|joint| joint.row.link.is_empty() && joint.motor.is_none_or(|motor| motor.inertia == 0.0))
@@ -115,7 +116,7 @@ pub(crate) fn inertias(cx: &Context, root: &Node, convention: Convention, joints
         turns |= joint.row.kind == JointKind::Revolute;
         let unresisted = unresisted.filter(|_| !of_loops.contains(&index));
         match unresisted {
-            // which asks for the mass of a sliding joint
+            // for a sliding joint this message asks for the missing mass, so it comes first
             Some(unresisted) if joint.row.kind == JointKind::Prismatic => {
                 no_resistance(cx, item, convention, (index, joint), unresisted);
             }
@@ -127,7 +128,7 @@ pub(crate) fn inertias(cx: &Context, root: &Node, convention: Convention, joints
     }
 }
 
-/// A floating base that no inertia resists: what its joints carry must resist it in every direction.
+/// Warns of a floating base that no inertia resists: the links that its joints carry must resist it in every direction.
 pub(crate) fn floating_inertia(cx: &Context, root: &Node, base: &Link, convention: Convention, joints: &[Joint]) {
     // joints that follow others do not move freely
     if joints.iter().any(|joint| joint.coupling.is_some()) {
@@ -145,7 +146,7 @@ pub(crate) fn floating_inertia(cx: &Context, root: &Node, base: &Link, conventio
     }
 }
 
-/// A joint that moves without any torque or force: the mass matrix is singular.
+/// Reports a joint that moves without any torque or force, so that the mass matrix is singular.
 fn no_resistance(
     cx: &Context,
     item: &Node,
@@ -177,7 +178,7 @@ fn no_resistance(
     };
     let consequence = "or accelerations (`forward_dynamics`) are not finite";
     if joint.motor.is_some_and(|motor| motor.inertia > 0.0) {
-        // what real arms with light wrists have; with its rotor the joint is in order
+        // real arms with light wrists are like this; with the inertia of its rotor the joint is no mistake
         let message = format!("no link's inertia resists joint {number}, only the rotor of its motor does");
         let help = format!("for results without rotors, give link {number} {missing}, {consequence}");
         cx.report(Diagnostic::note(place, message).label("resists nothing").help(help));
@@ -187,8 +188,8 @@ fn no_resistance(
     cx.report(Diagnostic::lint(place, message).label("resists nothing").help(help));
 }
 
-/// A centre of mass of a link whose mass is not even said to be zero; whether there is one. An inertia without mass is
-/// what published tables give of light links.
+/// Warns of a link that has a centre of mass but no key `mass`, and returns whether it is so. An inertia without mass
+/// causes no warning: published tables have it for light links.
 fn centre_without_mass(cx: &Context, item: &Node, index: usize, joint: &Joint) -> bool {
     let is_centre = joint.row.link.com != [0.0; 3];
     let Some(link) = item.get("link").filter(|link| is_centre && link.get("mass").is_none()) else { return false };
@@ -201,7 +202,7 @@ fn centre_without_mass(cx: &Context, item: &Node, index: usize, joint: &Joint) -
     true
 }
 
-/// A mass whose inertia is not even said to be zero.
+/// Warns of a link with a mass but without a key `inertia`.
 fn mass_without_inertia(cx: &Context, item: &Node, index: usize, joint: &Joint) {
     let Some(link) = item.get("link").filter(|link| link.get("inertia").is_none()) else { return };
     let Some(mass) = link.get("mass").filter(|_| joint.row.link.mass > 0.0) else { return };

@@ -1,7 +1,8 @@
-//! Left and right: links of a robot that are mirror images of each other by the names of their joints, and differ.
+//! Compares the left and the right side of a robot: warns where two links are mirror images by the names of their
+//! joints, but have different masses or inertias.
 //!
-//! A mirror image has the same mass and the same principal moments of inertia, in whichever axes its tensor is written.
-//! So nothing is compared that depends on the frames of the table.
+//! Mirror images have the same mass and the same principal moments of inertia, in whatever axes a tensor is written.
+//! Only these are compared, because they do not depend on the frames of the table.
 
 use std::collections::BTreeMap;
 
@@ -14,15 +15,15 @@ use crate::text::expression::Names as _;
 use crate::text::source::{quoted, six_digits};
 use crate::{Joint, Link};
 
-/// Links whose numbers differ by a larger part of the larger one are no mirror images. CAD programs give numbers that
-/// differ by up to 0.3 %, as in the wrists of Romeo; known mistakes begin at 25 %, as in the legs of Atlas and the
+/// Relative difference above which the numbers of two links are not those of mirror images. CAD programs give numbers
+/// that differ by up to 0.3 %, as in the wrists of Romeo; known mistakes begin at 25 %, as in the legs of Atlas and the
 /// iCub.
 const ALIKE: f64 = 0.01;
 
-/// Longer names are no names of sides.
+/// Names with more bytes are not searched for the word of a side.
 const LONGEST_NAME: usize = 100;
 
-/// Pairs of links that are named beside the first, at most.
+/// Largest number of further pairs of links that a message names after the first pair.
 const NAMED: usize = 3;
 
 /// The words for the two sides.
@@ -52,9 +53,9 @@ pub(crate) fn twins(cx: &Context, root: &Node, joints: &[Joint]) {
     ));
 }
 
-/// A difference of two links.
+/// A difference between two links that should be mirror images.
 struct Difference {
-    /// The key of the link that has the numbers.
+    /// The key of the robot file under which the differing numbers are.
     key: &'static str,
     what: String,
 }
@@ -79,7 +80,8 @@ fn difference(joints: &[Joint], [one, other]: [usize; 2]) -> Option<Difference> 
     })
 }
 
-/// The joints, counted from 0, whose names differ in the side alone, and of which neither carries the other.
+/// Returns the pairs of joints, counted from 0, whose names differ only in the side, and of which neither carries the
+/// other.
 fn pairs(joints: &[Joint]) -> Vec<[usize; 2]> {
     let places: BTreeMap<&str, usize> =
         joints.iter().enumerate().map(|(index, joint)| (joint.name.as_str(), index)).collect();
@@ -101,8 +103,8 @@ fn pairs(joints: &[Joint]) -> Vec<[usize; 2]> {
     pairs
 }
 
-/// The names that a joint of the other side may have: `arm_right_1` for `arm_left_1`, `rf_haa` for `lf_haa`, `FR_hip`
-/// for `FL_hip`, `RHipYaw` for `LHipYaw`.
+/// Returns the names that the same joint on the other side may have: `arm_right_1` for `arm_left_1`, `rf_haa` for
+/// `lf_haa`, `FR_hip` for `FL_hip`, `RHipYaw` for `LHipYaw`.
 fn other_side(name: &str) -> Vec<String> {
     let mut names = Vec::new();
     if name.len() > LONGEST_NAME {
@@ -111,7 +113,7 @@ fn other_side(name: &str) -> Vec<String> {
     let mut start = 0;
     for word in name.split(|c: char| !c.is_ascii_alphabetic()) {
         let range = start..start + word.len();
-        // each character that separates words may have several bytes
+        // a character between two words may have several bytes
         start = range.end + name[range.end..].chars().next().map_or(0, char::len_utf8);
         let mut put = |at: usize, old: &str, new: &str| {
             let at = range.start + at;

@@ -1,4 +1,4 @@
-//! Values that are allowed and yet are probably not what was meant.
+//! Warnings and notes about values that are allowed but are probably not what the author meant.
 
 pub(crate) mod arm;
 pub(crate) mod closed_loops;

@@ -3,15 +3,15 @@
 use crate::robot::parent;
 use crate::{Angle, Convention, FixedFrame, Joint, JointKind, Link, Row};
 
-/// An inertia below this part of the largest moment that the links could have, at their distance from the base, is
-/// rounding.
+/// An inertia is taken for rounding if it is below this part of the largest moment that the links could have at their
+/// distance from the base.
 const ROUNDING: f64 = 1e-12;
 
-/// Number of states, at irrational parts of a turn. A joint without resistance at all of them never has any, because
-/// the determinant of the mass matrix is analytic in the positions.
+/// Number of states at which resistance is computed, at irrational parts of a turn. A joint without resistance at all
+/// of them never has any, because the determinant of the mass matrix is analytic in the positions.
 const STATES: u32 = 3;
 
-/// Rows of a floating base in the mass matrix: along the axes of frame 0, then about them.
+/// Number of rows of a floating base in the mass matrix: three along the axes of frame 0, then three about them.
 const BASE: usize = 6;
 
 const UNIT: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -19,18 +19,18 @@ const UNIT: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 /// A joint that no inertia resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Unresisted {
-    /// It moves no mass and turns no inertia.
+    /// Even with all other joints at rest the joint moves no mass and turns no inertia.
     Alone,
-    /// It moves without resistance if later joints move against it.
+    /// The joint moves without resistance if distal joints move against it.
     WithOthers,
 }
 
-/// For each joint whether anything resists it, base to tip; `None` where something does.
+/// Returns for each joint, base to tip, how it lacks resistance; `None` where an inertia resists it.
 ///
-/// M(q) = Σ m Jvᵀ Jv + Jωᵀ I Jω over the links (Siciliano et al., Robotics, 2009, 7.32), of a link with a first
-/// moment h beside `com` + Jvᵀ (Jω × h) and its transpose; and M = Lᵀ L from the tip to
-/// the base: the pivot of a joint is the inertia that resists it while all joints behind it move freely. Only the link
-/// of the joint itself, and what is before it, cannot be moved against it, so that is the link to look at.
+/// The mass matrix is M(q) = Σ m Jvᵀ Jv + Jωᵀ I Jω over the links (Siciliano et al., Robotics, 2009, 7.32); a link with
+/// a first moment h beside `com` adds Jvᵀ (Jω × h) and its transpose. M is factorised as Lᵀ L from the tip to the base:
+/// the pivot of a joint is the inertia that resists it while all distal joints move freely. Only the link of the joint
+/// itself, and links before it, cannot move away, so the joint's own link is the one that a message names.
 pub(crate) fn unresisted(convention: Convention, joints: &[Joint]) -> Vec<Option<Unresisted>> {
     let mut all = vec![Some(Unresisted::Alone); joints.len()];
     for state in 1..=STATES {
@@ -51,7 +51,8 @@ pub(crate) fn base_is_unresisted(convention: Convention, joints: &[Joint], base:
     (1..=STATES).all(|state| in_state(convention, joints, Some(base), state)[..BASE].iter().any(Option::is_some))
 }
 
-/// The rows of a floating base, if there is one, then those of the joints.
+/// Returns how each row of the mass matrix lacks resistance at a state: the rows of a floating base, if there is one,
+/// then those of the joints.
 fn in_state(convention: Convention, joints: &[Joint], base: Option<&Link>, state: u32) -> Vec<Option<Unresisted>> {
     let (whole, reach) = mass_matrix(convention, joints, base, state);
     let mut matrix = whole.clone();
@@ -75,8 +76,8 @@ fn in_state(convention: Convention, joints: &[Joint], base: Option<&Link>, state
 
 type Vector = [f64; 3];
 
-/// The mass matrix, and for each row the moment that the links after it could have at their distance from
-/// the base: what rounding is relative to.
+/// Returns the mass matrix, and for each row the largest moment that the distal links could have at their distance from
+/// the base, which rounding errors are relative to.
 fn mass_matrix(convention: Convention, joints: &[Joint], base: Option<&Link>, state: u32) -> (Vec<Vec<f64>>, Vec<f64>) {
     let first = if base.is_some() { BASE } else { 0 };
     let size = first + joints.len();
@@ -93,14 +94,15 @@ fn mass_matrix(convention: Convention, joints: &[Joint], base: Option<&Link>, st
         let trace = link.inertia.xx + link.inertia.yy + link.inertia.zz;
         let moment = link.has_first_moment().then_some(link.first_moment);
         let moment_size = libm::sqrt(dot(link.first_moment, link.first_moment));
-        // what is no body may have any sign
+        // the moments of an unphysical link may have any sign
         let trace = if moment.is_some() { trace.abs() } else { trace };
         let mut about = |row: usize, axis: Vector, foot: Vector| {
             reach[row] += link.mass * (dot(com, com) + dot(foot, foot)) + trace;
             reach[row] += moment_size * (libm::sqrt(dot(com, com)) + libm::sqrt(dot(foot, foot)));
             (row, cross(axis, sub(com, foot)), turned_back(&rotation, axis))
         };
-        // velocity of the centre of mass, and rotation in the link's axes, per joint that carries the link
+        // for each joint that carries the link: velocity of the centre of mass, and angular velocity in the axes of the
+        // link
         let mut columns: Vec<(usize, Vector, Vector)> = Vec::new();
         for carrier in carriers {
             let Frame { axis, foot, .. } = &frames[carrier];
@@ -131,12 +133,12 @@ fn mass_matrix(convention: Convention, joints: &[Joint], base: Option<&Link>, st
     (matrix, reach)
 }
 
-/// A link frame in frame 0, with the axis of the joint before it.
+/// A link frame in the axes of frame 0, with the axis of the joint that moves the link.
 struct Frame {
     rotation: [Vector; 3],
     origin: Vector,
     axis: Vector,
-    /// A point of the axis.
+    /// A point on the axis.
     foot: Vector,
 }
 
@@ -150,7 +152,7 @@ fn frames(convention: Convention, joints: &[Joint], state: u32) -> Vec<Frame> {
             origin = add(origin, turned(&rotation, placement.xyz));
             rotation = product(&rotation, &turn(placement.rpy));
         }
-        // multiples of the golden ratio: no joint at a right angle, no two in step
+        // multiples of the golden ratio: no joint is at a right angle, and no two joints have equal positions
         #[allow(clippy::cast_precision_loss)] // small numbers
         let q = 0.3 + 1.618_033_988_749_895 * ((index + 1) as f64 * f64::from(state)).rem_euclid(3.7);
         let (theta, d) = match kind {
@@ -179,7 +181,7 @@ fn frames(convention: Convention, joints: &[Joint], state: u32) -> Vec<Frame> {
     frames
 }
 
-/// Rz(yaw) Ry(pitch) Rx(roll)
+/// Returns the rotation Rz(yaw) Ry(pitch) Rx(roll).
 fn turn([roll, pitch, yaw]: [Angle; 3]) -> [Vector; 3] {
     let x = [[1.0, 0.0, 0.0], [0.0, roll.cos, -roll.sin], [0.0, roll.sin, roll.cos]];
     let y = [[pitch.cos, 0.0, pitch.sin], [0.0, 1.0, 0.0], [-pitch.sin, 0.0, pitch.cos]];
@@ -222,7 +224,8 @@ mod tests {
     use super::*;
     use crate::Robot;
 
-    /// An arm of revolute joints about z, one after the other: length of the link, then what is under `link`.
+    /// Tests an arm of revolute joints about parallel z axes: each entry has the length of a link and the text under
+    /// its key `link`.
     fn planar(links: &[(f64, &str)]) -> Vec<Option<Unresisted>> {
         let mut text = "format: 1\nname: x\nsource: x\nconvention: standard\ngravity: [0, 0, 0]\njoints:\n".to_owned();
         for (length, link) in links {
@@ -239,21 +242,22 @@ mod tests {
         assert_eq!(planar(&[(0.4, bar)]), [None]);
         assert_eq!(planar(&[(0.4, "")]), [Some(Unresisted::Alone)]);
         assert_eq!(planar(&[(0.4, bar), (0.4, "")]), [None, Some(Unresisted::Alone)]);
-        // the second carries a mass, and so resists the first
+        // the second link has a mass, which resists the first joint, too
         assert_eq!(planar(&[(0.4, ""), (0.4, bar)]), [None, None]);
-        // on its axis
+        // the mass of the second link is on its own joint axis
         assert_eq!(planar(&[(0.4, bar), (0.4, "mass: 2, com: [-0.4, 0, 0]")]), [None, Some(Unresisted::Alone)]);
         assert_eq!(planar(&[(0.0, "inertia: {zz: 0.1}")]), [None]);
     }
 
     #[test]
     fn a_first_moment_resists_without_mass() {
-        // about the joint, 0.4 m away: 2 · 0.3 · 0.4 kg m²
+        // about the joint, 0.4 m away, the first moment gives 2 · 0.3 · 0.4 kg m²
         let moment = "first_moment: [0.3, 0, 0], physical: false";
         assert_eq!(planar(&[(0.4, moment)]), [None]);
         assert_eq!(planar(&[(0.4, &format!("{moment}, inertia: {{zz: -0.24}}"))]), [Some(Unresisted::Alone)]);
         assert_eq!(planar(&[(0.0, moment)]), [Some(Unresisted::Alone)]);
-        // the joint before moves it sideways: 2 · 0.3 · 0.4 there too, and nothing about its own joint
+        // the first joint moves this link sideways, which gives 2 · 0.3 · 0.4 kg m² again; about its own joint it has
+        // nothing
         assert_eq!(planar(&[(0.4, "inertia: {zz: 1}"), (0.0, moment)]), [None, Some(Unresisted::Alone)]);
     }
 
@@ -264,7 +268,8 @@ mod tests {
         assert_eq!(planar(&[(0.0, "inertia: {zz: 0.001}"), (0.4, bar)]), [None, None]);
     }
 
-    /// A floating base with the link `base` and legs: the key `dh` of the joint of each, and what is under `link`.
+    /// Tests a floating base with the link `base` and legs: each leg has the text of its key `dh` and that under its
+    /// `link`.
     fn floating(base: &str, legs: &[(&str, &str)]) -> bool {
         let mut text = format!(
             "format: 2\nname: x\nsource: x\nconvention: modified\ngravity: [0, 0, 0]\ntool: {{on: j0}}\n\
@@ -285,13 +290,14 @@ mod tests {
         assert!(!floating(BODY, &[about_z]));
         assert!(!floating(BODY, &[("a: 0.3, alpha: 0", "")]), "the base alone is resisted, the joint is not");
         assert!(floating("mass: 0", &[("a: 0.3, alpha: 0", "")]));
-        // it turns about the axis of its only leg
+        // the base turns about the axis of its only leg
         assert!(floating("mass: 0", &[about_z]));
         assert!(!floating("mass: 0", &[about_z, about_y]));
-        // the base turns about one line, or about none of two that are parallel
+        // with both leg axes on one line the base turns about it; with two parallel axes apart from each other it
+        // cannot
         assert!(floating("mass: 0", &[about_z, about_z]));
         assert!(!floating("mass: 0", &[about_z, ("a: -0.3, alpha: 0", BODY)]));
-        // two points have six freedoms, the robot has seven
+        // two point masses have six degrees of freedom, but this robot has seven
         assert!(floating("mass: 2", &[("a: 0.3, alpha: 0", "mass: 2, com: [0.1, 0, 0]")]));
     }
 

@@ -1,7 +1,7 @@
-//! Lints: values that are allowed and yet are probably not what was meant.
+//! Warnings about single values that are allowed but are probably not what the author meant.
 //!
-//! A warning is probably a mistake, so that a build repeats it until it is dealt with. What published tables have is a
-//! note: `rne check` shows it, a build does not.
+//! A warning is for a probable mistake, so a build repeats it until the author reacts. Values that published tables
+//! have cause a note only: `rne check` shows it, a build does not.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::ops::RangeInclusive;
@@ -13,22 +13,22 @@ use crate::text::document::Node;
 use crate::text::source::{is_invisible, quoted, six_digits};
 use crate::{Angle, JointKind, Limits, Transform};
 
-/// How near a right angle an angle must lie to be taken for a rounded one, rad.
+/// Largest distance from a right angle at which an angle is taken for a rounded right angle, rad.
 const NEARLY: f64 = 2e-4;
-/// No arm has a longer link, m.
+/// Length above which a link is longer than that of any arm, m.
 pub(crate) const LONGEST: f64 = 20.0;
-/// No link has its centre of mass farther along an axis of its frame, m.
+/// Distance of a centre of mass along an axis of the link frame above which no link has it, m.
 pub(crate) const FARTHEST: f64 = 5.0;
-/// No arm has a heavier link, kg.
+/// Mass above which a link is heavier than that of any arm, kg.
 const HEAVIEST: f64 = 2000.0;
-/// Beside a length that is probably in millimetres.
+/// The label of a warning about a length that is probably in millimetres.
 pub(crate) const MILLIMETRES: &str = "millimetres?";
 /// The range of the acceleration of gravity on Earth, generously, m/s².
 const GRAVITY: RangeInclusive<f64> = 8.0..=11.0;
-/// Four turns; more in a revolute joint's limits are degrees.
+/// Four turns, rad: larger position limits of a revolute joint are taken for degrees.
 const WIDEST: f64 = 8.0 * PI;
 
-/// Degrees taken for radians, and right angles that lost their exactness to rounding.
+/// Warns of degrees written as radians, and of right angles that are rounded and so are not exact.
 pub(crate) fn angle(cx: &Context, node: &Node, value: f64) {
     let shown = cx.shown(node, value);
     let raw = cx.raw(node);
@@ -54,7 +54,7 @@ pub(crate) fn angle(cx: &Context, node: &Node, value: f64) {
     }
 }
 
-/// A multiple of a right angle as the expression one would write: `0`, `pi/2`, `-pi`, `3*pi/2`.
+/// Returns a multiple of a right angle as an expression of a robot file: `0`, `pi/2`, `-pi`, `3*pi/2`.
 fn right_angle_spelling(radians: f64) -> String {
     let quarters = libm::round(radians / FRAC_PI_2);
     let sign = if quarters < 0.0 { "-" } else { "" };
@@ -67,13 +67,13 @@ fn right_angle_spelling(radians: f64) -> String {
     }
 }
 
-/// Characters that nobody sees, in a text of the file: two names that look alike are not the same then.
+/// Warns of invisible characters in a text of the file: with them, two names that look alike are not equal.
 pub(crate) fn invisible(cx: &Context, node: &Node, text: &str) {
     let Some(hidden) = text.chars().find(|&c| is_invisible(c)) else { return };
-    // an escape in quotes has no such character in the file
+    // a character written as an escape in quotes is not in the text of the file itself
     let at = cx.text.get(node.span.clone()).and_then(|raw| raw.find(hidden)).map(|at| node.span.start + at);
     let span = at.map_or(node.span.clone(), |at| at..at + hidden.len_utf8());
-    // a long text may have it far behind
+    // the character may be far from the beginning of a long text, so only its surroundings are shown
     let (before, behind) = text.split_once(hidden).unwrap_or_default();
     let start = before.char_indices().rev().nth(9).map_or(0, |(start, _)| start);
     let near = before.chars().skip(before.get(..start).map_or(0, |left| left.chars().count()));
@@ -86,9 +86,9 @@ pub(crate) fn invisible(cx: &Context, node: &Node, text: &str) {
     );
 }
 
-/// Gravity of another size than on Earth.
+/// Warns of a gravity whose size differs from that on Earth.
 pub(crate) fn gravity(cx: &Context, node: &Node, [x, y, z]: [f64; 3]) {
-    // neither a square nor the sum of two numbers overflows in what is shown
+    // nothing overflows: `hypot` squares no large number, and `min` keeps the number finite for the message
     let size = libm::hypot(libm::hypot(x, y), z).min(f64::MAX);
     if size != 0.0 && !GRAVITY.contains(&size) {
         let message = format!("gravity accelerates by {} m/s²; on Earth it is 9.81 m/s²", six_digits(size));
@@ -107,7 +107,7 @@ pub(crate) fn gravity(cx: &Context, node: &Node, [x, y, z]: [f64; 3]) {
     }
 }
 
-/// Gravity that points up, in frame 0 and in the world: a sign, unless the arm hangs.
+/// Warns of gravity that points up in frame 0 and in the world, which is a wrong sign unless the arm hangs.
 pub(crate) fn gravity_upwards(cx: &Context, node: &Node, [x, y, z]: [f64; 3], base: &Transform) {
     let [roll, pitch, _] = base.rpy;
     let up = -pitch.sin * x + pitch.cos * (roll.sin * y + roll.cos * z);
@@ -121,7 +121,7 @@ pub(crate) fn gravity_upwards(cx: &Context, node: &Node, [x, y, z]: [f64; 3], ba
     }
 }
 
-/// Millimetres taken for metres, in a centre of mass.
+/// Warns of a centre of mass that is probably in millimetres.
 pub(crate) fn com(cx: &Context, node: &Node, value: f64) {
     if value.abs() > FARTHEST {
         let shown = cx.shown(node, value);
@@ -130,7 +130,7 @@ pub(crate) fn com(cx: &Context, node: &Node, value: f64) {
     }
 }
 
-/// Warns of millimetres, where the parameter is defined if the number is one.
+/// Warns of millimetres; if the number is a parameter, at the place where that parameter is defined.
 fn millimetres(cx: &Context, node: &Node, message: String) {
     let place = cx.parameters.borrow().get(cx.raw(node)).map_or(node.span.clone(), |it| it.value.clone());
     let written = cx.text.get(place.clone()).filter(|text| text.parse::<f64>().is_ok());
@@ -138,14 +138,14 @@ fn millimetres(cx: &Context, node: &Node, message: String) {
     cx.report(Diagnostic::lint(place, message).label(MILLIMETRES).help(format!("lengths are in metres{help}")));
 }
 
-/// Millimetres taken for metres.
+/// Warns of a length that is probably in millimetres.
 pub(crate) fn length(cx: &Context, node: &Node, value: f64) {
     if value.abs() > LONGEST {
         millimetres(cx, node, format!("the length {} m is over {LONGEST} m", cx.shown(node, value)));
     }
 }
 
-/// Grams taken for kilograms.
+/// Warns of a mass that is probably in grams.
 pub(crate) fn mass(cx: &Context, node: &Node, value: f64) {
     if value > HEAVIEST {
         let message = format!("the mass {} kg is over {HEAVIEST} kg", cx.shown(node, value));
@@ -153,7 +153,7 @@ pub(crate) fn mass(cx: &Context, node: &Node, value: f64) {
     }
 }
 
-/// Degrees in the position limits of a revolute joint.
+/// Warns of position limits of a revolute joint that are probably in degrees.
 pub(crate) fn position_limits(cx: &Context, position: &Node, kind: JointKind, limits: &Limits) {
     let Some((lower, upper)) = limits.position.filter(|_| kind == JointKind::Revolute) else { return };
     if lower.abs().max(upper.abs()) > WIDEST {
@@ -166,14 +166,14 @@ pub(crate) fn position_limits(cx: &Context, position: &Node, kind: JointKind, li
     }
 }
 
-/// A speed about which friction changes its sign, beside a displacement over which it does.
+/// Warns of a `coulomb_width` beside a `coulomb_displacement`: only the second is used.
 pub(crate) fn width_beside_displacement(cx: &Context, width: &Node) {
     let message = "rne ignores `coulomb_width` because `coulomb_displacement` is given: the friction then changes its \
                    sign over the displacement, and not with the speed";
     cx.report(Diagnostic::lint(width.head(), message).label("not used").help("keep only one of the two keys"));
 }
 
-/// Parameters that no number uses; of a run-time parameter that is an error.
+/// Warns of parameters that no number uses. Run-time parameters are skipped, because for them it is an error.
 pub(crate) fn unused_parameters(cx: &Context) {
     for (name, parameter) in cx.parameters.borrow().iter().filter(|(_, parameter)| !parameter.used.get()) {
         if cx.run_time_index(name).is_some() {

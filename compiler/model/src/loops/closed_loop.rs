@@ -1,8 +1,8 @@
-//! Closed loops: a cut joint joins two places of the tree, and the positions of some joints follow from those of the
-//! others.
+//! Closed loops: a cut joint connects two places on links of the tree, so that the positions of some joints follow from
+//! those of the other joints.
 //!
-//! A loop is cut where the file says so. What is left is a tree, and the cut joint is a list of equations between two
-//! places, of which each is on a link of the tree. Their axes are x₁, y₁, z₁ and x₂, y₂, z₂:
+//! A loop is cut at the joint that the file names. The rest is a tree, and the cut joint becomes a list of equations
+//! between two places, each on a link of the tree. The axes of the places are x₁, y₁, z₁ and x₂, y₂, z₂:
 //!
 //! ```text
 //! revolute    p₂ - p₁ = 0,  x₁·z₂ = 0,  y₁·z₂ = 0                z₁ = z₂ is the axis
@@ -11,46 +11,47 @@
 //! weld        p₂ - p₁ = 0,  y₁·z₂ = 0,  z₁·x₂ = 0,  x₁·y₂ = 0
 //! ```
 //!
-//! z₁ and z₂ of a revolute cut have one direction, and so have the axes of a weld: at opposite ones the equations hold,
-//! too, but the loop is assembled otherwise than the places say.
+//! z₁ and z₂ of a revolute cut must have one direction, and so must the axes of a weld: with opposite directions the
+//! equations are satisfied, too, but the loop is assembled otherwise than the places say.
 //!
-//! p₂ - p₁ is in the axes of the loop: those of the first joint that moves one place and not the other, as its link
-//! carries it, before the joint turns.
+//! p₂ - p₁ is written in the axes of the loop: the frame of the first joint that moves one place and not the other, as
+//! the link before that joint carries it, so that it does not turn with the joint.
 
 use crate::parts::pose::own_joints;
 use crate::{FixedFrame, Robot};
 
-/// A closed loop: `loops` of a robot file, without the parallelograms, which are couplings.
+/// A closed loop: an entry of `loops` in a robot file. Parallelograms are not among them, because they become
+/// couplings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedLoop {
     /// Its name.
     pub name: String,
-    /// The joint that is cut.
+    /// The kind of the joint at which the loop is cut.
     pub cut: Cut,
-    /// The two places that it joins, x₁ y₁ z₁ and x₂ y₂ z₂, each on a link of the tree.
+    /// The two places that the cut joint connects, with the axes x₁ y₁ z₁ and x₂ y₂ z₂, each on a link of the tree.
     pub between: [FixedFrame; 2],
-    /// The joints that its list `dependent` names, counted from 0, in the order of the file.
+    /// The joints of the key `dependent`, counted from 0, in the order of the file.
     pub dependent: Vec<usize>,
 }
 
-/// The joint that closes a loop.
+/// The kind of the cut joint, which closes a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cut {
-    /// It turns about z of both places.
+    /// The joint turns about z of both places.
     Revolute,
-    /// It turns about every axis.
+    /// The joint turns about every axis.
     Spherical,
-    /// It turns about x of the first place and about y of the second, which stay perpendicular.
+    /// The joint turns about x of the first place and about y of the second, which stay perpendicular.
     Universal,
-    /// It does not move.
+    /// The joint does not move.
     Weld,
 }
 
 impl Cut {
-    /// All of them, in the order in which documents list them.
+    /// All kinds of cut joints, in the order in which documents list them.
     pub const ALL: [Self; 4] = [Self::Revolute, Self::Spherical, Self::Universal, Self::Weld];
 
-    /// Its name in robot files: `revolute`, …
+    /// Returns the name of this kind of joint in robot files, such as `revolute`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -61,7 +62,8 @@ impl Cut {
         }
     }
 
-    /// The axes of the first and of the second place (0 to 2 for x to z) whose products are zero.
+    /// Returns pairs of axes, one of the first and one of the second place (0 to 2 for x to z), whose scalar product is
+    /// zero.
     #[must_use]
     pub const fn perpendicular(self) -> &'static [[usize; 2]] {
         match self {
@@ -72,44 +74,48 @@ impl Cut {
         }
     }
 
-    /// How many equations it has: three of positions, and one for each pair of perpendicular axes.
+    /// Returns the number of equations of this joint: three for positions, and one for each pair of perpendicular axes.
     #[must_use]
     pub const fn equations(self) -> usize {
         3 + self.perpendicular().len()
     }
 }
 
-/// The closed loops of a robot, and how their equations are solved. A robot without closed loops has none of it.
+/// The closed loops of a robot, and how their equations are solved. Everything is empty for a robot without closed
+/// loops.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct ClosedLoops {
     /// The loops, in the order of the file.
     pub loops: Vec<ClosedLoop>,
-    /// The dependent joints, counted from 0, in the order of the joints. Their positions are `passive`.
+    /// The dependent joints, counted from 0, in the order of the joints.
     pub passive: Vec<usize>,
-    /// The order of elimination: one equation for each dependent joint.
+    /// The order of elimination, with one equation for each dependent joint.
     pub elimination: Vec<Pivot>,
-    /// The positions of all joints at which the loops are closed, that were found when the file was read: up to 20,
-    /// within the limits as far as such were found. The dependent joints follow from the others at each.
+    /// Up to 20 configurations that close the loops, each with the positions of all joints; they were found when the
+    /// file was read, within the position limits as far as possible. At each of them the dependent joints follow from
+    /// the others.
     pub closures: Vec<Vec<f64>>,
-    /// The smallest and the largest singular value of the equations that are kept, by the dependent joints, at these
-    /// closures and where a search downhill from them leads within the limits; m or 1 per rad or m.
+    /// The smallest and the largest singular value of the Jacobian of the eliminated equations with respect to the
+    /// dependent joints; at the closures, and at the worst configuration that a search from them found within the
+    /// limits; m or 1 per rad or m.
     pub singular_values: [f64; 2],
-    /// The smallest pivot there, and where another such search leads: a pivot within the limits is hardly smaller.
+    /// The smallest pivot at the closures and at the configuration to which a search for small pivots led; pivots
+    /// within the limits are hardly smaller.
     pub smallest_pivot: f64,
 }
 
-/// A step of the elimination: the equation that gives a dependent joint.
+/// A step of the elimination: which equation gives which dependent joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pivot {
-    /// Counted from 0 through the equations of all loops: those of a loop begin behind those of the loops before it,
-    /// with the three of positions.
+    /// The equation, counted from 0 through all loops in their order. Each loop has its three position equations first.
     pub equation: usize,
-    /// The place of the joint in [`ClosedLoops::passive`].
+    /// The index of the joint in [`ClosedLoops::passive`].
     pub passive: usize,
 }
 
 impl Robot {
-    /// The joints that move one place of a loop and not the other, base first: for the first and for the second place.
+    /// Returns the joints that move one place of a loop and not the other, base first: those of the first place, then
+    /// those of the second.
     #[must_use]
     pub fn ways_of_loop(&self, closed: &ClosedLoop) -> [Vec<usize>; 2] {
         own_joints(&self.joints, &closed.between)
@@ -123,7 +129,7 @@ impl ClosedLoops {
         self.loops.is_empty()
     }
 
-    /// How many equations all loops have.
+    /// Returns the number of equations of all loops together.
     #[must_use]
     pub fn equations(&self) -> usize {
         self.loops.iter().map(|closed| closed.cut.equations()).sum()

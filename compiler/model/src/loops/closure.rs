@@ -1,5 +1,5 @@
-//! The equations of closed loops as numbers: positions of the joints at which the loops are closed, and the Jacobian
-//! of the equations there.
+//! The equations of closed loops as numbers: how far positions of the joints are from closing the loops, and the
+//! Jacobian of the equations.
 
 mod search;
 
@@ -9,33 +9,33 @@ use crate::loops::matrix::Matrix;
 use crate::parts::pose::{Pose, axis_on_link, cross, difference, dot, link_behind_axis, own_joints};
 use crate::{ClosedLoop, Convention, Cut, Joint, JointKind};
 
-/// The joints of a loop.
+/// The joints and the two places of a closed loop.
 struct Ways {
     cut: Cut,
-    /// The places on their links.
+    /// The placement of both places, each in the frame of its link.
     places: [Pose; 2],
     /// The joints that move one place and not the other, base first.
     joints: [Vec<usize>; 2],
-    /// The axes of the loop, from there to the last link that carries both places, without a translation.
+    /// The rotation from the axes of the loop to the last link that carries both places.
     start: Pose,
 }
 
-/// The equations of all closed loops of a robot, by the joints that follow no other and move a loop.
+/// The equations of all closed loops of a robot, as functions of the joints that move a loop and follow no other joint.
 pub(crate) struct Equations<'a> {
     joints: &'a [Joint],
     convention: Convention,
     ways: Vec<Ways>,
-    /// The joints that follow no other, and of which some loop depends.
+    /// The joints that move a loop and follow no other joint.
     pub(crate) variables: Vec<usize>,
-    /// The lengths along the loops together, m: what small lengths are relative to.
+    /// The largest sum of lengths along a loop, m, which lengths are compared with.
     pub(crate) size: f64,
 }
 
-/// A place of a loop, and its joints at some positions.
+/// A loop at some positions of its joints.
 struct State {
     /// Both places, in the axes of the loop.
     places: [Pose; 2],
-    /// The joints, the place that each moves, and the frame at its axis.
+    /// For each joint of the loop: its index, the place (0 or 1) that it moves, and the frame at its axis.
     axes: Vec<(usize, usize, Pose)>,
 }
 
@@ -47,13 +47,13 @@ impl<'a> Equations<'a> {
         Self { joints, convention, ways, variables, size: if size > 0.0 { size } else { 1.0 } }
     }
 
-    /// The equations of a loop.
+    /// Returns the rows of the equations of a loop.
     pub(crate) fn rows_of(&self, index: usize) -> Range<usize> {
         let first = self.ways[..index].iter().map(|ways| ways.cut.equations()).sum();
         first..first + self.ways[index].cut.equations()
     }
 
-    /// All equations, each with the factor that makes it free of units.
+    /// Returns all rows of the equations, each with the factor that makes the row free of units.
     pub(crate) fn rows(&self) -> Vec<(usize, f64)> {
         let of_loop = |index: usize| {
             let rows = self.rows_of(index);
@@ -62,7 +62,7 @@ impl<'a> Equations<'a> {
         (0..self.ways.len()).flat_map(of_loop).collect()
     }
 
-    /// All variables, by their columns, each with the factor that makes it free of units.
+    /// Returns all columns of the variables, each with the factor that makes the column free of units.
     pub(crate) fn columns(&self) -> Vec<(usize, f64)> {
         self.variables.iter().map(|&joint| self.unit(joint)).enumerate().collect()
     }
@@ -74,9 +74,9 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// The derivatives of the equations (rows, as [`Cut`] orders them) by the variables (columns) at positions of all
-    /// joints, m or 1 per rad or m: of p₂ - p₁ in the axes of the loop, and of a product a·b of an axis of the first
-    /// place with one of the second, (b × a)·(ω₂ - ω₁).
+    /// Returns the Jacobian of the equations at positions of all joints: rows are equations in the order of [`Cut`],
+    /// columns are variables, elements are in m or 1 per rad or m. Rows of p₂ - p₁ are in the axes of the loop; a
+    /// product a·b of an axis of the first place and one of the second has the derivative (b × a)·(ω₂ - ω₁).
     pub(crate) fn jacobian(&self, positions: &[f64]) -> Matrix {
         let rows = self.ways.iter().map(|ways| ways.cut.equations()).sum();
         let mut jacobian = Matrix::zero(rows, self.variables.len());
@@ -96,7 +96,7 @@ impl<'a> Equations<'a> {
         jacobian
     }
 
-    /// The velocity of p₂ - p₁ and ω₂ - ω₁ where a joint moves one place at the speed 1.
+    /// Returns the velocity of p₂ - p₁ and ω₂ - ω₁ while a joint moves one of the two places at unit speed.
     fn motion(&self, joint: usize, place: usize, axis: &Pose, moved: &Pose) -> ([f64; 3], [f64; 3]) {
         let z = axis.axis(2).map(|z| if place == 0 { -z } else { z });
         match self.joints[joint].row.kind {
@@ -105,7 +105,8 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// Adds the column of a joint to those of the variables that it follows.
+    /// Adds the column of a joint to the matrix; the column of a follower is added to those of the variables that it
+    /// follows.
     fn enter(
         &self,
         matrix: &mut Matrix,
@@ -145,7 +146,8 @@ impl<'a> Equations<'a> {
                 let turned = equal.iter().flat_map(|&axis| cross(rotation, state.places[*place].axis(axis)));
                 let product = (ways.cut == Cut::Universal).then(|| dot(cross(other.axis(1), one.axis(0)), rotation));
                 let column = velocity.into_iter().map(|v| v / self.size).chain(turned).chain(product);
-                // a follower moves as far as its leader does
+                // each column gets the unit of the leader, because that is the variable, also where a follower moves
+                // the place
                 self.enter(&mut derivatives, start, *joint, |leader| self.unit(leader), column);
             }
         }
@@ -166,7 +168,8 @@ impl<'a> Equations<'a> {
         State { places, axes }
     }
 
-    /// How far apart the places of a loop are, m, and the axes that must be the same or perpendicular, rad.
+    /// Returns the distance between the two places of a loop, m, and the largest angle by which axes miss their
+    /// required direction, rad.
     pub(crate) fn apart(&self, index: usize, positions: &[f64]) -> [f64; 2] {
         let ways = &self.ways[index];
         let [one, other] = self.state(ways, positions).places;
@@ -182,7 +185,8 @@ impl<'a> Equations<'a> {
         [length(difference(other.translation, one.translation)), turned]
     }
 
-    /// The loop whose places are farthest apart, in parts of the loops' size or in rad, and how far, m and rad.
+    /// Returns the loop whose places are farthest apart, comparing lengths as parts of the loops' size with angles in
+    /// rad; and how far apart they are, m and rad.
     pub(crate) fn farthest(&self, positions: &[f64]) -> (usize, [f64; 2]) {
         let off = |index: &usize| {
             let [length, angle] = self.apart(*index, positions);
@@ -192,7 +196,7 @@ impl<'a> Equations<'a> {
         (index, self.apart(index, positions))
     }
 
-    /// Gives the joints that follow others their positions.
+    /// Computes the positions of the joints that follow others.
     fn complete(&self, positions: &mut [f64]) {
         for (joint, of) in self.joints.iter().enumerate() {
             if let Some(coupling) = &of.coupling {
@@ -203,7 +207,8 @@ impl<'a> Equations<'a> {
     }
 }
 
-/// The joints that follow no other and that move the places of a loop against each other, in the order of the joints.
+/// Returns the joints that move one place of a loop relative to the other and follow no other joint, in the order of
+/// the joints.
 pub(crate) fn moving(joints: &[Joint], closed: &ClosedLoop) -> Vec<usize> {
     let of_joint = |joint: usize| match &joints[joint].coupling {
         Some(coupling) => coupling.follows.iter().map(|(leader, _)| *leader).collect(),
@@ -212,7 +217,7 @@ pub(crate) fn moving(joints: &[Joint], closed: &ClosedLoop) -> Vec<usize> {
     sorted(own_joints(joints, &closed.between).into_iter().flatten().flat_map(of_joint).collect())
 }
 
-/// In their order, each once.
+/// Sorts the joints and removes repetitions.
 pub(crate) fn sorted(mut joints: Vec<usize>) -> Vec<usize> {
     joints.sort_unstable();
     joints.dedup();
@@ -227,7 +232,7 @@ impl Ways {
         Self { cut: closed.cut, places: closed.between.map(|end| Pose::of(&end.placement)), joints: ways, start }
     }
 
-    /// The lengths along the loop together, m.
+    /// Returns the sum of the lengths along the loop, m.
     fn size(&self, joints: &[Joint]) -> f64 {
         let sum = |lengths: [f64; 3]| lengths.iter().map(|it| it.abs()).sum::<f64>();
         let of_joint = |&joint: &usize| {
@@ -240,7 +245,7 @@ impl Ways {
 }
 
 impl Cut {
-    /// The axes that are the same at both places.
+    /// Returns the axes (0 to 2 for x to z) that must be equal at both places.
     const fn equal(self) -> &'static [usize] {
         match self {
             Self::Revolute => &[2],
@@ -249,7 +254,7 @@ impl Cut {
         }
     }
 
-    /// The numbers that say how far the axes are from that.
+    /// Returns how many residuals the directions of the axes have.
     const fn differences(self) -> usize {
         match self {
             Self::Universal => 1,
@@ -263,7 +268,7 @@ mod tests {
     use super::*;
     use crate::{Angle, FixedFrame, Reader, Robot, Transform};
 
-    /// Branches with slides, standard or modified rows, a follower, and a loop between the ends of both.
+    /// Makes a robot with two branches, sliding joints and a follower, and a loop between the ends of the branches.
     fn robot(convention: &str, cut: Cut) -> Robot {
         let text = format!(
             "{{format: 2, name: x, source: own, convention: {convention}, gravity: [0, 0, 0], tool: {{on: c}}, joints: [
@@ -289,14 +294,14 @@ mod tests {
         robot
     }
 
-    /// The equations as they are defined.
+    /// Evaluates the equations as the documentation of closed loops defines them.
     fn defined(equations: &Equations<'_>, cut: Cut, positions: &[f64]) -> Vec<f64> {
         let [one, other] = equations.state(&equations.ways[0], positions).places;
         let products = cut.perpendicular().iter().map(|&[a, b]| dot(one.axis(a), other.axis(b)));
         difference(other.translation, one.translation).into_iter().chain(products).collect()
     }
 
-    /// Both Jacobians against differences of what they derive, at positions where the loop is open.
+    /// Compares both Jacobians with finite differences, at positions where the loop is open.
     #[test]
     fn jacobians_are_the_derivatives_of_the_equations() {
         const STEP: f64 = 1e-6;
@@ -327,8 +332,8 @@ mod tests {
         }
     }
 
-    /// The axes of the loop are those of the first joint of the first place's own, as its link carries it: for a
-    /// modified row behind Rx(alpha) Tx(a), whatever the joint's position is.
+    /// The axes of the loop are fixed to the link that carries the first joint: for a modified row after Rx(alpha)
+    /// Tx(a), whatever the position of the joint is.
     #[test]
     fn positions_are_in_the_axes_of_the_loop() {
         let robot = robot("modified", Cut::Spherical);

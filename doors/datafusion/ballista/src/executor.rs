@@ -1,4 +1,4 @@
-//! The process that computes.
+//! The process that computes the tasks of a scheduler.
 
 use std::net::SocketAddr;
 use std::path::Path;
@@ -16,8 +16,8 @@ use rne_datafusion::{Robots, aggregates, functions, windows};
 /// Seconds for which an executor waits for its scheduler.
 const PATIENCE: u16 = 60;
 
-/// Does the work of a scheduler until it is stopped: so many parts beside each other, with what passes between the
-/// stages of a query in a folder.
+/// Computes tasks of a scheduler until it is stopped, `cores` of them at once. Data between the stages of a query are
+/// stored in the folder `work`.
 ///
 /// # Errors
 /// When it cannot listen there, or no scheduler answers within a minute.
@@ -29,7 +29,7 @@ pub async fn executor(
     work: Option<&Path>,
     robots: &Robots,
 ) -> Result<()> {
-    // the registry replaces the engine's own functions, so it starts with them
+    // the registry replaces the engine's own functions, so these are added to it first
     let state = default_session_builder(SessionConfig::new_with_ballista())?;
     let mut registry = BallistaFunctionRegistry::from(&state);
     for function in functions(robots) {

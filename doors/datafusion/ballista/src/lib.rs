@@ -5,8 +5,8 @@ mod executor;
 mod scheduler;
 mod session;
 
-/// Whether executors ask for tasks or are sent them. With what is sent, Ballista 55.0 loses slots of executors when
-/// another one dies after a shuffle: `docs/control/fleet.md`.
+/// How tasks reach executors: executors ask for them (pull), or the scheduler sends them (push). With push, Ballista
+/// 55.0 loses slots of executors when another executor dies after a shuffle: `docs/control/fleet.md`.
 pub use ballista_core::config::TaskSchedulingPolicy;
 
 pub use crate::executor::executor;

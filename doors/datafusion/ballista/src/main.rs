@@ -1,4 +1,4 @@
-//! `rne-fleet`: arguments and printing; what is done is in the library.
+//! `rne-fleet`: reads the arguments and prints; the library does the work.
 
 use std::io::Write as _;
 use std::net::SocketAddr;
@@ -98,7 +98,7 @@ impl Query {
     }
 }
 
-/// Whether there is somebody who reads on: a pipe that was closed wants no more.
+/// Whether the reader of the output still reads. A closed pipe is no error: then nothing more is written.
 fn is_taken(written: std::io::Result<()>) -> Result<bool> {
     match written {
         Ok(()) => Ok(true),
@@ -107,7 +107,7 @@ fn is_taken(written: std::io::Result<()>) -> Result<bool> {
     }
 }
 
-/// The names of robots with their hashes, a line each.
+/// Prints the keys of all robots, names with hashes, one per line.
 fn list(files: &Files) -> Result<()> {
     let mut out = std::io::stdout().lock();
     for key in files.read()?.keys() {

@@ -13,8 +13,9 @@ use datafusion::common::{Result, exec_datafusion_err};
 use datafusion::execution::FunctionRegistry as _;
 use rne_datafusion::{Robots, aggregates, functions, windows};
 
-/// Gives work to executors until it is stopped; one without a sign of life for so long is lost. Executors have the same
-/// policy; busy ones give a sign of life every five seconds when they pull.
+/// Gives tasks to executors until it is stopped. An executor without a sign of life for the time `lost_after` counts as
+/// lost. All executors must have the same policy; if they pull tasks, a busy one gives a sign of life every five
+/// seconds.
 ///
 /// # Errors
 /// When it cannot listen there.
@@ -32,7 +33,7 @@ pub async fn scheduler(
         scheduling_policy: policy,
         executor_timeout_seconds: lost_after,
         expire_dead_executor_interval_seconds: lost_after.div_ceil(5).max(1),
-        // functions travel by name: a session of this process has them too
+        // functions are sent by name, so each session of this process needs them
         override_session_builder: Some(Arc::new(move |config| {
             let mut state = default_session_builder(config)?;
             for function in functions(&robots) {

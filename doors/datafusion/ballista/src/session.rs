@@ -1,4 +1,4 @@
-//! Queries, here or on a fleet.
+//! Queries, in this process or on a fleet.
 
 use ballista::prelude::{SessionConfigExt as _, SessionContextExt as _};
 use datafusion::common::{DataFusionError, Result, exec_datafusion_err};
@@ -6,15 +6,15 @@ use datafusion::execution::SessionStateBuilder;
 use datafusion::prelude::{DataFrame, ParquetReadOptions, SessionConfig, SessionContext};
 use rne_datafusion::{Robots, register};
 
-/// A session with the functions of some robots.
+/// A session whose queries have the functions of some robots.
 pub struct Session {
     context: SessionContext,
     robots: Robots,
 }
 
 impl Session {
-    /// A session on the fleet of a scheduler (`127.0.0.1:50050`), or without one in this process; `partitions` are
-    /// computed beside each other. `settings` are keys and values of the engine.
+    /// Opens a session on the fleet of a scheduler (`127.0.0.1:50050`), or in this process without one. At most
+    /// `partitions` parts of a query are computed at once. `settings` are keys and values of the engine.
     ///
     /// # Errors
     /// When no scheduler answers there, or there is no such setting.
@@ -46,8 +46,8 @@ impl Session {
         Ok(Self { context, robots })
     }
 
-    /// Makes a Parquet file, or a folder of them, a table. A fleet reads it on every executor: it stands on storage
-    /// that they share.
+    /// Makes a table of a Parquet file, or of a folder of them. In a fleet every executor reads it, so it must be on
+    /// storage that they share.
     ///
     /// # Errors
     /// When it cannot be read.
@@ -55,7 +55,7 @@ impl Session {
         self.context.register_parquet(name, path, ParquetReadOptions::default()).await
     }
 
-    /// A query, in which `{puma560}` stands for the robot of that name with its hash.
+    /// Plans a query, in which `{puma560}` is replaced by the key of this robot, its name with its hash.
     ///
     /// # Errors
     /// Everything that is wrong with it.

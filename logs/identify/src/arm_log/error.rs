@@ -1,4 +1,4 @@
-//! The reasons why logs are not logs of an arm, as data.
+//! The errors of reading the logs of an arm.
 
 use std::fmt;
 
@@ -6,21 +6,21 @@ use rne_logs::number::rounded;
 use rne_logs::{LeftOut, LogError, Quantity};
 use rne_model::{JointKind, one_line};
 
-/// The names that a message lists at most.
+/// Largest number of names that a message lists.
 pub(crate) const SHOWN: usize = 16;
 
 /// Why logs cannot be read as logs of an arm. `Display` says it without the options of any interface.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ArmLogError {
-    /// A log cannot be read, or not as it was asked for.
+    /// A log cannot be read, or not with these options.
     Log {
         /// The error, with its remedies.
         error: LogError,
         /// The joints of the robot, where they help to word a remedy.
         joints: Vec<String>,
     },
-    /// The options name another number of joints than the robot has.
+    /// The number of joints that the options name differs from that of the robot.
     NamedJoints {
         /// How many joints are named.
         named: usize,
@@ -29,7 +29,7 @@ pub enum ArmLogError {
         /// The joints of the robot, base to tip.
         joints: Vec<String>,
     },
-    /// The joints of the log cannot be told to be those of the robot.
+    /// It is unclear which joints of the log are those of the robot.
     Unmatched {
         /// The joints of the log.
         logged: Vec<String>,
@@ -46,7 +46,7 @@ pub enum ArmLogError {
         logged: String,
         /// The kind of the robot's joint.
         kind: JointKind,
-        /// The quantity that is of another kind of joint.
+        /// The quantity whose unit belongs to the other kind of joint.
         quantity: Quantity,
     },
     /// The log has no efforts.
@@ -63,20 +63,20 @@ pub enum ArmLogError {
     },
     /// No message or row of the log is a state of the arm.
     NoStates {
-        /// Why they are left out.
+        /// Numbers of messages or rows that are left out, with the reasons.
         left_out: Vec<LeftOut>,
     },
-    /// No run is long enough to choose a low-pass, and none is given.
+    /// No run is long enough to choose the cut-off of the low-pass filter, and none is given.
     NoCutoff,
-    /// The low-pass is not possible for these logs.
+    /// The cut-off of the low-pass filter is not possible for these logs.
     Cutoff {
-        /// The low-pass, Hz.
+        /// The cut-off, Hz.
         cutoff: f64,
         /// States per second of the log.
         rate: f64,
         /// The longest run, s.
         longest: f64,
-        /// The lowest and the highest low-pass that are possible, Hz; none where the runs are too short for any.
+        /// The lowest and the highest possible cut-off, Hz; `None` if the runs are too short for any.
         possible: Option<[f64; 2]>,
     },
 }
@@ -87,17 +87,17 @@ pub enum ArmLogError {
 pub enum Mismatch {
     /// The log has fewer joints.
     Fewer,
-    /// The log has more joints, and not all the names of the robot's.
+    /// The log has more joints than the robot, and some names of the robot's joints are missing.
     More,
-    /// The log has as many joints, some with names of the robot's, in another order.
+    /// The log has as many joints as the robot. Some have names of the robot's joints, but in another order.
     Order {
-        /// A joint of the robot that has another place in the log.
+        /// A joint of the robot whose position in the order of the log is another one.
         joint: String,
     },
 }
 
 impl ArmLogError {
-    /// Whether the files are in order and what was asked for is not: other options help.
+    /// Whether the files are valid but the options do not fit them, so that other options help.
     #[must_use]
     pub fn is_of_request(&self) -> bool {
         match self {
@@ -221,7 +221,7 @@ fn possible_cutoffs(possible: Option<[f64; 2]>) -> String {
 const ALL_NEEDED: &str = "the positions and torques of all joints are needed, so use a log with all joints, or a robot \
     file of the logged joints";
 
-/// Names of joints, the first of them.
+/// Lists the first names of joints, separated by commas.
 pub(crate) fn shown(names: &[String]) -> String {
     let first: Vec<String> = names.iter().take(SHOWN).map(|name| one_line(name)).collect();
     let more = if names.len() > SHOWN { ", …" } else { "" };
@@ -232,7 +232,7 @@ fn of_joints(count: usize) -> String {
     if count == 1 { "1 joint".to_owned() } else { format!("{count} joints") }
 }
 
-/// Why a reading of the logs of an arm stopped.
+/// The reason why reading the logs of an arm stopped.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PassError<E> {
     /// A log cannot be read to its end.

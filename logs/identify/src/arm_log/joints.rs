@@ -1,4 +1,4 @@
-//! The joints of a log that are those of a robot.
+//! Finds the joints of a robot in a log.
 
 use std::path::PathBuf;
 
@@ -8,13 +8,12 @@ use rne_model::{JointKind, Robot};
 use crate::arm_log::error::{ArmLogError, Mismatch};
 use crate::arm_log::remark::ArmLogRemark;
 
-/// Completes the options of a log by what the robot says: the names of its joints in the log, and which of them slide.
+/// Completes the options of a log from the robot: the names of its joints in the log, and which joints are prismatic.
 ///
-/// Names that the options have are kept. Else the joints of the log are taken by the robot's names, where the log has
-/// all of them; a log with other names and as many joints is taken in its order, with a remark.
+/// Names in the options are kept. Otherwise, joints are matched by name if the log has all names of the robot's joints.
+/// If a log has other names but as many joints, its joints are matched by their order, with a remark.
 ///
-/// # Errors
-/// When the log cannot be opened, or its joints cannot be told to be those of the robot.
+/// # Errors When the log cannot be opened, or its joints cannot be matched with those of the robot.
 pub fn joint_options(
     paths: &[PathBuf],
     robot: &Robot,
@@ -29,7 +28,7 @@ pub fn joint_options(
         options.joints = Some(names);
         return Ok((options, remark));
     };
-    // an empty name is refused with those that there are
+    // empty names are refused later, when the log is opened: that message lists the names in the log
     if names.len() != joints.len() && names.iter().all(|name| !name.trim().is_empty()) {
         let logged = unnamed().map(|log| log.layout().joints.clone()).unwrap_or_default();
         return Err(ArmLogError::NamedJoints { named: names.len(), logged, joints });
@@ -37,12 +36,12 @@ pub fn joint_options(
     Ok((options, None))
 }
 
-/// Whether each joint is prismatic: no option converts its lengths into angles.
+/// Whether each joint is prismatic, so that no option for angles converts its lengths.
 fn slides(robot: &Robot) -> Vec<bool> {
     robot.independent_joints().map(|joint| joint.row.kind == JointKind::Prismatic).collect()
 }
 
-/// The joints of the log that are those of the robot, base to tip.
+/// Returns the names that the joints of the robot have in the log, base to tip.
 fn matched(joints: Vec<String>, logged: &[String]) -> Result<(Vec<String>, Option<ArmLogRemark>), ArmLogError> {
     match match_joints(&joints, logged) {
         Ok(JointMatch::ByName) => Ok((joints, None)),
@@ -53,17 +52,17 @@ fn matched(joints: Vec<String>, logged: &[String]) -> Result<(Vec<String>, Optio
     }
 }
 
-/// How the joints of measurements are matched with those of a robot.
+/// The way in which the joints of measurements are matched with those of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointMatch {
-    /// The measurements have all names of the robot's joints, in any order and among others.
+    /// The measurements have all names of the robot's joints, in any order. They may have other joints, too.
     ByName,
-    /// The measurements have other names and as many joints: the joints are taken in the order of the measurements.
+    /// The measurements have other names but as many joints: these are taken in the order of the measurements.
     ByOrder,
 }
 
-/// Matches the joints of measurements, by their names, with the joints of a robot, base to tip: the one rule for logs
-/// and for messages.
+/// Matches the joints of measurements, by their names, with the joints of a robot, base to tip: logs and messages both
+/// follow this rule.
 ///
 /// # Errors
 /// When the joints cannot be matched.
@@ -71,7 +70,7 @@ pub fn match_joints(joints: &[String], measured: &[String]) -> Result<JointMatch
     if joints.iter().all(|name| measured.contains(name)) {
         return Ok(JointMatch::ByName);
     }
-    // some names are those of the robot, and say another order
+    // a name of the robot's joints that occurs elsewhere in the measurements shows that their order differs
     let is_elsewhere = |(at, name): &(usize, &String)| measured.contains(name) && measured[*at] != **name;
     if measured.len() < joints.len() {
         Err(Mismatch::Fewer)
@@ -84,11 +83,9 @@ pub fn match_joints(joints: &[String], measured: &[String]) -> Result<JointMatch
     }
 }
 
-/// Checks that the units that names of columns say are those of the robot's joints: a joint that turns has no position
-/// in mm.
+/// Checks that the units in the names of columns suit the robot's joints: a revolute joint has no position in mm.
 ///
-/// # Errors
-/// When they are those of another kind of joint.
+/// # Errors When a unit belongs to the other kind of joint.
 pub fn check_units(robot: &Robot, layout: &Layout) -> Result<(), ArmLogError> {
     for ((joint, logged), units) in robot.independent_joints().zip(&layout.joints).zip(&layout.units) {
         let JointUnits { position, velocity, effort, .. } = *units;

@@ -1,27 +1,28 @@
-//! The low-passes that are possible for a log.
+//! The cut-offs of the low-pass filter that are possible for a log.
 
 use rne_logs::Log;
 
 use crate::Options;
 use crate::arm_log::error::ArmLogError;
 
-/// Ratio of the cut-off of the log's own filter to that of the low-pass. The first is wider, so that it does not shape
-/// torques.
+/// Ratio of the cut-off of the log's own filter, which smooths positions, to that of the low-pass filter. The former is
+/// higher, so that it does not change the torques in the band that is used.
 pub(crate) const WIDER: f64 = 4.0;
 
-/// Ratio of the low-pass to the filter that the spectrum chooses: what moves passes, and most noise does not.
+/// Ratio of the cut-off of the low-pass filter to the one that the spectrum of the motion determines: the motion
+/// passes, and most noise does not.
 pub(crate) const PART: f64 = 0.5;
 
-/// Highest cut-off of the log's filter, as part of the sampling rate.
+/// Highest cut-off of the log's own filter, as part of the sampling rate.
 const HIGHEST: f64 = 0.3;
 
-/// Highest cut-off of the log's filter, Hz.
+/// Returns the highest possible cut-off of the log's own filter, Hz.
 pub(crate) fn highest(log: &Log) -> f64 {
     HIGHEST / log.layout().step
 }
 
-/// Refuses a low-pass that samples are too far apart for, or that the longest run, s, has no room for: what is `left`
-/// of it beside a low-pass.
+/// Refuses a cut-off of the low-pass filter, Hz, that is too high for the sampling rate or too low for the longest run,
+/// s. `left` returns how much of that run, s, the log's own filter leaves for a cut-off of the low-pass filter.
 pub(crate) fn check_cutoff(log: &Log, cutoff: f64, longest: f64, left: impl Fn(f64) -> f64) -> Result<(), ArmLogError> {
     let rate = 1.0 / log.layout().step;
     let highest = highest(log);
@@ -29,7 +30,7 @@ pub(crate) fn check_cutoff(log: &Log, cutoff: f64, longest: f64, left: impl Fn(f
     if cutoff <= highest && is_left(cutoff) {
         return Ok(());
     }
-    // what is left grows with the low-pass
+    // bisection: the time that is left grows with the cut-off
     let (mut too_low, mut lowest) = (0.0, highest);
     while lowest - too_low > 1e-3 * lowest {
         let middle = f64::midpoint(too_low, lowest);

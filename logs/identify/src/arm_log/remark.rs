@@ -1,4 +1,4 @@
-//! Remarks on the logs of an arm, as data.
+//! Remarks on the logs of an arm.
 
 use std::fmt;
 
@@ -11,7 +11,8 @@ use crate::arm_log::error::SHOWN;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ArmLogRemark {
-    /// The log has other names of joints, or only numbers: its joints are taken for those of the robot by their order.
+    /// The log has other names of joints, or only numbers: its joints are matched with those of the robot by their
+    /// order.
     MatchedByOrder {
         /// The joints of the log, base to tip.
         logged: Vec<String>,
@@ -22,9 +23,9 @@ pub enum ArmLogRemark {
     Log(rne_logs::Remark),
     /// All efforts of a joint are the same number.
     ConstantEffort {
-        /// The joint by the log's name.
+        /// The name of the joint in the log.
         joint: String,
-        /// N m or N
+        /// The effort, N m or N.
         effort: f64,
     },
     /// Messages or rows that are left out.
@@ -36,7 +37,7 @@ impl ArmLogRemark {
     #[must_use]
     pub fn is_warning(&self) -> bool {
         match self {
-            // another order makes numbers that look like those of a bad model
+            // if the order is wrong, the results look like those of a bad model
             Self::MatchedByOrder { logged, .. } => logged.len() > 1 && are_numbers(logged),
             Self::Log(remark) => remark.is_warning(),
             Self::ConstantEffort { .. } | Self::LeftOut(_) => true,
@@ -68,7 +69,7 @@ impl fmt::Display for ArmLogRemark {
     }
 }
 
-/// Whether joints have numbers for names, as in a table with the columns `q1`, `q2`, ….
+/// Whether the names of joints are numbers, as in a table with the columns `q1`, `q2` and so on.
 fn are_numbers(joints: &[String]) -> bool {
     joints.iter().all(|joint| !joint.is_empty() && joint.bytes().all(|byte| byte.is_ascii_digit()))
 }

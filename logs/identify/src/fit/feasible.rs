@@ -1,7 +1,7 @@
-//! The links and friction that explain the logs best among those that bodies and motors can have.
+//! Finds the physically possible parameters of links, rotors and friction that explain the logs best.
 //!
-//! The problem is convex: least squares on the triangle of the rows, the pseudo-inertia of every link positive
-//! definite, frictions and rotors positive, and a weak regularization towards what is known before,
+//! The problem is convex: least squares on the triangular factor R of the rows, with a positive definite pseudo-inertia
+//! P of every link, positive friction and rotor inertia y, and a weak regularization towards prior values,
 //!
 //! ```text
 //! min ½ |R u(y) - z|² + γ Σ (tr(P₀⁻¹ P) - log det P) + γ Σ (y / y₀ - log y)
@@ -9,12 +9,13 @@
 //!
 //! The regularization is Bregman's divergence of the log determinant (T. Lee, F. C. Park, A geometric algorithm for
 //! robust multibody inertial parameter identification, IEEE RA-L 3(3), 2018): it does not depend on the frames, is
-//! least at the prior P₀, and grows beyond all bounds where a link ceases to be a body. It decides where the logs do
-//! not. Newton's method follows the minima from large γ to the one that was asked for.
+//! least at the prior P₀, and tends to infinity where a link ceases to be physically possible. It determines the
+//! parameters that the logs do not determine. Newton's method computes the minimum for a large γ first and then for
+//! smaller ones, down to the required γ.
 //!
-//! G = γ P⁻¹ and g = γ / y are multipliers of P ⪰ 0 and y ≥ 0 in the problem without logarithms: the gradient is
-//! theirs, they are positive, and tr(G P) is γ for each row of a matrix, so the minimum is within the [`Certificate`]'s
-//! gap of the exact one.
+//! G = γ P⁻¹ and g = γ / y are multipliers of P ⪰ 0 and y ≥ 0 in the problem without logarithms: its gradient vanishes
+//! with them, they are positive, and tr(G P) is γ for each row of a matrix, so the minimum is within the
+//! [`Certificate`]'s gap of the exact one.
 
 use nalgebra::{DMatrix, DVector, Matrix4};
 
@@ -24,17 +25,18 @@ use crate::fit::pseudo_inertia;
 use crate::fit::structure::{FRICTION, Structure};
 use rne_model::PER_LINK;
 
-/// How γ decreases, and from where.
+/// First value of γ, and the factor by which γ decreases in each step.
 const START: f64 = 1e6;
 const STEP: f64 = 0.2;
-/// Newton's steps at each γ, at most.
+/// Largest number of Newton steps at each γ.
 const STEPS: usize = 60;
-/// Half the square of Newton's decrement at which a minimum is one.
+/// Half the square of the Newton decrement below which a point counts as the minimum.
 const CLOSE: f64 = 1e-11;
-/// Part of the plausible that friction and rotors are expected to be.
+/// Expected friction and rotor inertia without values in the robot file, as a part of the joint's effort and of the
+/// inertia of the distal links.
 const PART: f64 = 0.1;
 
-/// Links, rotors and friction that bodies and motors can have.
+/// Physically possible parameters of links, rotors and friction.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Feasible {
@@ -45,9 +47,9 @@ pub struct Feasible {
     /// Viscous friction and Coulomb friction forward and backward of each joint, all positive; zeros when friction was
     /// not asked for.
     pub friction: Vec<[f64; FRICTION]>,
-    /// The unknowns that they make, as [`LeastSquares::solution`] has them.
+    /// The unknowns that follow from these parameters, in the order of [`LeastSquares::solution`].
     pub unknowns: DVector<f64>,
-    /// How near the minimum it is.
+    /// Numbers that show how near to the minimum these parameters are.
     pub certificate: Certificate,
 }
 
@@ -61,36 +63,38 @@ pub struct Certificate {
     pub misfit: f64,
     /// Half the sum of squares at the unconstrained minimum.
     pub least_misfit: f64,
-    /// Newton's decrement: what another step would gain, relative to one.
+    /// Half the square of the Newton decrement: what another Newton step would gain, divided by γ where γ is less than
+    /// 1.
     pub decrement: f64,
     /// Σ tr(G P) + Σ g y: how far the objective without logarithms can be from its minimum.
     pub gap: f64,
-    /// The smallest eigenvalue of a link's pseudo-inertia over its largest, of all links.
+    /// The ratio of the smallest to the largest eigenvalue of a link's pseudo-inertia; the smallest ratio of all links.
     pub margin: f64,
 }
 
-/// The convex problem, in coordinates of order one.
+/// The convex problem in scaled coordinates, whose magnitude is about 1.
 struct Problem {
-    /// Unknowns of coordinates.
+    /// The matrix from scaled coordinates to unknowns.
     map: DMatrix<f64>,
-    /// R and z of the unknowns, and those that explain z best.
+    /// R, z, and the unknowns that minimize |R u - z|.
     design: DMatrix<f64>,
     target: DVector<f64>,
     least: DVector<f64>,
     links: usize,
-    /// The value of each coordinate for 1.
+    /// The parameter that a scaled coordinate of 1 means.
     scale: DVector<f64>,
-    /// The priors' inverses.
+    /// The inverses of the prior pseudo-inertias P₀.
     inverses: Vec<Matrix4<f64>>,
     units: [Matrix4<f64>; PER_LINK],
-    /// Coordinates that are positive, from the first behind the links on.
+    /// Number of coordinates that must be positive: rotors and friction. They follow those of the links.
     positive: usize,
-    /// Their priors.
+    /// The prior values y₀ of the positive coordinates, not scaled.
     expected: Vec<f64>,
 }
 
 impl Feasible {
-    /// Solves for a least-squares estimate, regularized towards the prior by γ: one is as strong as one row of noise.
+    /// Finds the feasible parameters nearest to a least-squares estimate. `regularization` is γ: a weight of 1 is as
+    /// strong as one row of noise.
     #[must_use]
     pub fn of(structure: &Structure, fit: &LeastSquares, scales: &Scales, regularization: f64) -> Self {
         let problem = Problem::new(structure, fit, scales);
@@ -144,7 +148,7 @@ impl Problem {
         }
         let triangle = fit.triangle.triangle();
         let design = triangle.view((0, 0), (count, count)).clone_owned();
-        // what no friction can be is none of the bodies' either
+        // an offset beyond Coulomb friction is cut to it, so that the links do not take over the rest
         let mut least = fit.solution.clone();
         for joint in 0..dof {
             let loose = fit.loose_offset(structure, joint, scales.friction[joint]);
@@ -154,7 +158,7 @@ impl Problem {
         }
         let target = triangle.view((0, count), (count, 1)).column(0) - &design * (&fit.solution - &least);
         let inverses = priors.iter().map(|prior| {
-            // all of them are positive definite
+            // the inverse exists: all priors are positive definite
             prior.pseudo_inertia.try_inverse().unwrap_or_else(Matrix4::identity)
         });
         Self {
@@ -190,7 +194,7 @@ impl Problem {
         pseudo_inertia::of(&std::array::from_fn(parameter))
     }
 
-    /// The objective; infinite where a link is no body.
+    /// Returns the objective; infinite where a link or a positive coordinate is not physically possible.
     fn value(&self, at: &DVector<f64>, regularization: f64) -> f64 {
         let mut value = 0.5 * (&self.design * (&self.map * at) - &self.target).norm_squared();
         for link in 0..self.links {
@@ -210,7 +214,7 @@ impl Problem {
         value
     }
 
-    /// One of Newton's steps; returns half the square of the decrement, relative to its weight.
+    /// Takes one Newton step; returns half the square of the Newton decrement, divided by γ where γ is less than 1.
     fn step(&self, at: &mut DVector<f64>, regularization: f64) -> f64 {
         let design = &self.design * &self.map;
         let residual = &design * &*at - &self.target;
@@ -281,8 +285,8 @@ impl Problem {
     }
 }
 
-/// The matrix from coordinates to unknowns: from the inertial parameters of links, rotors, frictions of both directions
-/// and the delay to base parameters, friction with offsets and the delay.
+/// Returns the matrix from coordinates (inertial parameters of links, rotors, friction of both directions and the
+/// delay) to unknowns (base parameters, friction with offsets and the delay).
 fn map(structure: &Structure, inertial: usize, of_rotors: usize, of_friction: usize) -> DMatrix<f64> {
     let (count, rank) = (structure.count(), structure.parameters.rank());
     let positive = of_rotors + of_friction;
@@ -292,7 +296,7 @@ fn map(structure: &Structure, inertial: usize, of_rotors: usize, of_friction: us
     for joint in 0..of_friction / FRICTION {
         let (row, column) = (rank + FRICTION * joint, inertial + of_rotors + FRICTION * joint);
         map[(row, column)] = 1.0;
-        // forward p and backward n: ½ (p + n) s + ½ (p - n)
+        // with p forward, n backward and the sign s of the speed, Coulomb friction is ½ (p + n) s + ½ (p - n)
         for (row, signs) in [(row + 1, [0.5, 0.5]), (row + 2, [0.5, -0.5])] {
             map[(row, column + 1)] = signs[0];
             map[(row, column + 2)] = signs[1];
@@ -304,15 +308,15 @@ fn map(structure: &Structure, inertial: usize, of_rotors: usize, of_friction: us
     map
 }
 
-/// The inertia of a rotor, at its joint, that is expected: that of the robot file, or a part of the inertia `behind`
-/// the joint.
+/// Returns the expected inertia of a rotor, at its joint: that of the robot file or, without one, a part of `behind`,
+/// the inertia of the distal links.
 fn expected_rotor(structure: &Structure, joint: usize, behind: f64) -> f64 {
     let motor = structure.robot.independent_joint(joint).and_then(|joint| joint.motor);
     let known = motor.map(|motor| motor.gear_ratio.powi(2) * motor.inertia);
     known.filter(|known| *known > 0.0).unwrap_or(PART * behind)
 }
 
-/// The friction of a joint that is expected: that of the robot file, or a part of its effort.
+/// Returns the expected friction of a joint: that of the robot file or, without one, a part of the joint's effort.
 fn expected_friction(structure: &Structure, joint: usize, effort: f64) -> [f64; FRICTION] {
     let motor = structure.robot.independent_joint(joint).and_then(|joint| joint.motor);
     let of_file = motor.map_or([0.0; FRICTION], |motor| {

@@ -9,11 +9,11 @@ use crate::fit::information::{MotionError, WINDOW, Walk, Weighting, checked, pla
 use crate::fit::stretches::{Stretch, Stretches};
 use crate::fit::structure::{FRICTION, Structure};
 
-/// A model that was fitted to logs, with the information that the logs leave about its unknowns.
+/// A model that was fitted to logs, with the information of the logs about its unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FittedModel {
-    /// Base parameters; viscous friction, Coulomb friction and the offset of each joint; the delay that is left after
-    /// [`delay`](Self::delay), s.
+    /// Base parameters; viscous friction, Coulomb friction and the offset of each joint; the remaining delay in
+    /// addition to [`delay`](Self::delay), s.
     pub solution: DVector<f64>,
     /// The inverse of the covariance of the unknowns, for errors that are white before the filter.
     pub information: DMatrix<f64>,
@@ -32,18 +32,17 @@ pub enum FrictionParameter {
     Viscous,
     /// Coulomb friction, N m or N.
     Coulomb,
-    /// The torque that does not depend on the motion, N m or N.
+    /// The constant part of the friction torque, N m or N.
     Offset,
 }
 
 impl FittedModel {
-    /// Fits a model to the motions that `pass` hands on, each with the number of its run; `pass` is called several
-    /// times. What the motions do not excite stays as in the robot file. The second value contains the equations of the
-    /// motions.
+    /// Fits a model to motions. `pass` is called several times and passes all motions to its argument, each with the
+    /// number of its run. Parameters that the motions do not excite stay as in the robot file. The second value
+    /// contains the equations of the motions.
     ///
-    /// # Errors
-    /// When a motion is of another robot; when all of them make too few rows, or have no efforts; or what `pass` fails
-    /// with.
+    /// # Errors When a motion is of another robot; when all motions give too few rows, or have no efforts; or when
+    /// `pass` fails.
     pub fn of<E: From<MotionError>>(
         structure: &Structure,
         mut pass: impl FnMut(&mut dyn FnMut(u64, &Motion) -> Result<(), MotionError>) -> Result<(), E>,
@@ -97,7 +96,8 @@ impl FittedModel {
         }
     }
 
-    /// The model without some of the stretches from which it was fitted; `None` where the rest tells too little.
+    /// Returns the model without some of the stretches from which it was fitted; `None` if the rest is too little for a
+    /// fit.
     #[must_use]
     pub fn without(&self, structure: &Structure, stretches: &[Stretch]) -> Option<Self> {
         let count = structure.count();
@@ -112,8 +112,8 @@ impl FittedModel {
         Some(Self { solution: solved(&information, &target)?, information, ..self.clone() })
     }
 
-    /// The torques that a change of the unknowns adds along a motion, joint by joint, N m or N. A change of the delay
-    /// adds none.
+    /// Returns the torques of each joint that a change of the unknowns adds along a motion, N m or N. A change of the
+    /// delay adds none.
     ///
     /// # Errors
     /// When the motion is of another robot, or has numbers that are not finite.
@@ -143,13 +143,14 @@ impl FittedModel {
         Ok(torques)
     }
 
-    /// The place of a joint's friction parameter among the unknowns; none without friction.
+    /// Returns the index of a joint's friction parameter among the unknowns; `None` without friction.
     #[must_use]
     pub fn place(structure: &Structure, joint: usize, parameter: FrictionParameter) -> Option<usize> {
         Some(structure.friction_at(joint)? + parameter as usize)
     }
 
-    /// The weighting of rows of other logs: rows near rest count less, and no row counts less because it is far off.
+    /// Returns the weighting of rows of other logs: rows near rest have less weight; large residuals do not reduce the
+    /// weight.
     #[must_use]
     pub fn weighting(&self, structure: &Structure) -> Weighting {
         Weighting::new(structure, &self.solution, &self.transitions, self.noise.clone(), self.delay)
@@ -158,7 +159,8 @@ impl FittedModel {
     }
 }
 
-/// Viscous friction, the odd part of Coulomb friction and its even part at a joint, as the robot file has them.
+/// Returns the friction of a joint in the robot file: viscous friction, and half the sum and half the difference of
+/// Coulomb friction in both directions.
 pub(crate) fn file_friction(robot: &Robot, joint: usize) -> [f64; FRICTION] {
     let Some(motor) = robot.independent_joint(joint).and_then(|joint| joint.motor) else { return [0.0; FRICTION] };
     let ratio = motor.gear_ratio.abs();
@@ -166,7 +168,8 @@ pub(crate) fn file_friction(robot: &Robot, joint: usize) -> [f64; FRICTION] {
     [ratio * ratio * motor.viscous, 0.5 * (forward - backward), 0.5 * (forward + backward)]
 }
 
-/// The solution of symmetric equations whose unknowns have units of their own; `None` where they are not positive.
+/// Solves symmetric equations, scaled first because their unknowns have different units; `None` if the matrix is not
+/// positive definite.
 pub(crate) fn solved(matrix: &DMatrix<f64>, target: &DVector<f64>) -> Option<DVector<f64>> {
     let scale = unit_diagonal(matrix);
     let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |row, column| {
@@ -175,8 +178,8 @@ pub(crate) fn solved(matrix: &DMatrix<f64>, target: &DVector<f64>) -> Option<DVe
     Some(scaled.cholesky()?.solve(&target.component_mul(&scale)).component_mul(&scale))
 }
 
-/// The inverse of a matrix of information, whose unknowns have units of their own: the covariance. `None` where the
-/// matrix is not positive.
+/// Returns the inverse of an information matrix, which is the covariance. The matrix is scaled first, because its
+/// unknowns have different units. `None` if it is not positive definite.
 #[must_use]
 pub fn inverse_of_information(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let scale = unit_diagonal(matrix);

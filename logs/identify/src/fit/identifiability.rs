@@ -1,24 +1,24 @@
-//! The inertial parameters that the torques can see, computed exactly.
+//! Finds exactly which inertial parameters the torques depend on.
 //!
-//! The regressor is written as the compiler writes any function, and its graph is evaluated at random points of two
-//! prime fields: sines and cosines are random points of the circle there, and nothing is rounded. The rows that a point
-//! gives are eliminated, columns from the base to the tip. A column without a pivot is a combination of those before
-//! it: no tolerance says so.
+//! The regressor is generated as the compiler generates any function, and its graph is evaluated at random points of
+//! two prime fields: sines and cosines are random points of the circle there, and nothing is rounded. The rows at a
+//! point are eliminated, columns from the base to the tip. A column without a pivot is a linear combination of the
+//! columns before it: no tolerance is needed.
 //!
-//! A rank over the fields is never above the true one, and below it with a probability under 10⁻²⁵ (J. T. Schwartz,
-//! J. ACM 27, 1980). Angles of the table that are no right angles stand for any angle: an arm whose parameters a twist
-//! of just 60° couples would be found to have more base parameters than it has.
+//! A rank over the fields is never above the true one, and below it with a probability under 10⁻²⁵ (J. T. Schwartz, J.
+//! ACM 27, 1980). Angles of the table that are no right angles are treated as arbitrary angles: an arm whose parameters
+//! a twist of just 60° couples would be found to have more base parameters than it has.
 
 use rne_codegen::{ExactFunction, Function, Name, Quantity, Residue};
 use rne_model::{PER_LINK, Robot};
 
-/// The order in which a link's parameters are kept: J, m c, m, so that Jxx stays where Jyy or Jzz goes.
+/// Order in which a link's parameters are tried as base parameters: J, m c, m. So Jxx is preferred to Jyy and Jzz.
 const ORDER: [usize; PER_LINK] = [4, 5, 6, 7, 8, 9, 1, 2, 3, 0];
 
-/// Points that must not add to the rank before it is believed; one would do.
+/// Number of successive points that must not increase the rank before it is accepted; one would be enough.
 const IDLE: usize = 2;
 
-/// Largest factor of a regrouped parameter that counts as a whole number.
+/// Largest factor of a regrouped parameter that is recognized as a whole number.
 const LARGEST_WHOLE: i32 = 8;
 
 /// A parameter that torques may depend on linearly.
@@ -37,10 +37,10 @@ pub enum Parameter {
 pub enum Visibility {
     /// The parameter represents a base parameter.
     Kept,
-    /// It is a part of these base parameters, each given by its place among [`Identifiability::kept`]; with its factor
-    /// where that is a small whole number.
+    /// The parameter is a part of these base parameters, each given by its index in [`Identifiability::kept`], with its
+    /// factor if that is a small whole number.
     Regrouped(Vec<(usize, Option<i32>)>),
-    /// No torque depends on it.
+    /// No torque depends on the parameter.
     WithoutEffect,
 }
 
@@ -48,7 +48,7 @@ pub enum Visibility {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Identifiability {
-    /// Every parameter with what is seen of it: link by link in the order J, m c, m, then the rotors.
+    /// Every parameter with its effect: link by link in the order J, m c, m, then the rotors.
     pub parameters: Vec<(Parameter, Visibility)>,
 }
 
@@ -60,8 +60,8 @@ impl Identifiability {
         kept.map(|(parameter, _)| *parameter).collect()
     }
 
-    /// Finds what the torques can see of the parameters of the links, and of the rotors where `rotors` asks for them,
-    /// without rounding and without a tolerance. The numbers of the links do not matter.
+    /// Finds which parameters of the links, and of the rotors if `rotors` is true, the torques depend on, without
+    /// rounding and without a tolerance. The values of the links' parameters have no influence.
     #[must_use]
     pub fn of(robot: &Robot, rotors: bool) -> Self {
         let links = (0..robot.joints.len()).flat_map(|link| ORDER.map(|index| Parameter::Link(link, index)));
@@ -94,13 +94,13 @@ struct Regressor {
 
 impl Regressor {
     fn new(robot: &Robot) -> Self {
-        // what a link has does not enter, but rotors would
+        // the regressor does not depend on the links' parameters, but it would on rotors
         let robot = Robot { rotors: false, ..robot.clone() };
         let coordinates = robot.coordinates().collect();
         Self { function: ExactFunction::new(&robot, Function::Regressor), links: robot.joints.len(), coordinates }
     }
 
-    /// A row per coordinate, in the order of the parameters.
+    /// Returns a row for each coordinate at a point, with columns in the given order of the parameters.
     fn rows(&self, point: u64, order: &[Parameter]) -> Vec<Vec<Residue>> {
         let outputs = self.function.at(point);
         let output = |at: usize| outputs[at];
@@ -164,7 +164,7 @@ fn subtract(row: &mut [Residue], factor: Residue, other: &[Residue]) {
     }
 }
 
-/// The small whole number whose image this is.
+/// Returns the small whole number that this element of the prime field represents, if there is one.
 fn whole(residue: Residue) -> Option<i32> {
     (1..=LARGEST_WHOLE).find_map(|value| {
         let image = Residue::integer(u64::from(value.unsigned_abs()));

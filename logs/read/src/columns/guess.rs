@@ -31,11 +31,9 @@ const PATTERNS: [Pattern; 12] = [
 ];
 
 /// The names of columns that are lists, a number of each joint in a row; an optional unit follows.
-#[cfg(feature = "parquet")]
 const LISTS: [Pattern; 1] = [Pattern(Form::List, "", "")];
 
 /// Names of lists of positions in collections for learning.
-#[cfg(feature = "parquet")]
 const STATES: [&str; 3] = ["observation.state", "observation/state", "observation_state"];
 
 const TIMES: [&str; 8] = ["time", "t", "ts", "timestamp", "stamp", "__time", "seconds", "time_from_start"];
@@ -91,7 +89,6 @@ enum Form {
     /// `position.elbow`
     JointBehind,
     /// `joint_positions`
-    #[cfg(feature = "parquet")]
     List,
 }
 
@@ -113,9 +110,7 @@ impl Pattern {
                 (word, joint.trim_end_matches(SEPARATORS).rsplit('/').next().filter(|joint| !joint.is_empty())?)
             }
             Form::JointBehind => name.split_once(between).filter(|(_, joint)| !joint.is_empty())?,
-            #[cfg(feature = "parquet")]
             Form::List if STATES.contains(&name) => ("position", ""),
-            #[cfg(feature = "parquet")]
             Form::List => (last(name), ""),
         };
         let is_word = |known: &&str| word.eq_ignore_ascii_case(known);
@@ -125,17 +120,14 @@ impl Pattern {
     }
 }
 
-/// The meaning of the name of a column of numbers.
-pub(crate) fn meaning(name: &str) -> Meaning {
+/// The meaning of the name of a column, whose rows are numbers or lists. A list is never that of a single joint.
+pub(crate) fn meaning(name: &str, is_list: bool) -> Meaning {
+    if is_list {
+        return by(&LISTS, name);
+    }
     // the tool centre point is no joint
     let is_tip = |name: &str| name.split(SEPARATORS).any(|word| word.eq_ignore_ascii_case("tcp"));
     if !is_too_long(name) && is_tip(name) { Meaning::Nothing } else { by(&PATTERNS, name) }
-}
-
-/// The meaning of the name of a column of lists, which is never one of a joint alone.
-#[cfg(feature = "parquet")]
-pub(crate) fn list(name: &str) -> Meaning {
-    by(&LISTS, name)
 }
 
 fn by(patterns: &[Pattern], name: &str) -> Meaning {
@@ -233,7 +225,7 @@ mod tests {
     use super::*;
 
     fn joint(name: &str) -> Option<(Quantity, String, Option<f64>)> {
-        match meaning(name) {
+        match meaning(name, false) {
             Meaning::Joint(named) => Some((named.quantity, named.joint, named.unit.map(|unit| unit.factor))),
             _ => None,
         }
@@ -289,7 +281,7 @@ mod tests {
             ("temperature [C]", Meaning::Nothing),
             ("actual_TCP_speed_0", Meaning::Nothing),
         ] {
-            assert_eq!(meaning(name), wanted, "{name}");
+            assert_eq!(meaning(name, false), wanted, "{name}");
         }
     }
 
@@ -310,7 +302,7 @@ mod tests {
             };
             let examples: Vec<String> = words.split(' ').map(|word| names(word, example)).collect();
             for example in &examples {
-                assert!(matches!(meaning(example.trim_matches('`')), Meaning::Joint(_)), "{example}");
+                assert!(matches!(meaning(example.trim_matches('`'), false), Meaning::Joint(_)), "{example}");
             }
             has(&format!("\n| {} | {} |", names("{quantity}", joint), examples.join(", ")));
         }

@@ -61,7 +61,7 @@ impl<'a> Header<'a> {
                 continue;
             }
             let inner = within(name, options);
-            match inner.map_or(Meaning::Nothing, meaning) {
+            match inner.map_or(Meaning::Nothing, |name| meaning(name, false)) {
                 Meaning::Joint(named) if targets.contains(&Target::of(&named)) => header.unread.push(place),
                 Meaning::Joint(named) => header.found.push(Found { named, place }),
                 Meaning::Unknown { quantity, unit } => return Err(Unit::unknown(path, name, quantity, &unit)),

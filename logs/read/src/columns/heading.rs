@@ -41,7 +41,7 @@ impl Form {
 
     /// Whether a log reads this joint back from the columns. No column of accelerations is read by its name.
     fn says(self, joint: &str) -> bool {
-        Quantity::ALL.into_iter().all(|quantity| match meaning(&self.column(0, joint, quantity)) {
+        Quantity::ALL.into_iter().all(|quantity| match meaning(&self.column(0, joint, quantity), false) {
             Meaning::Joint(named) => named.quantity == quantity && named.joint == joint && named.unit.is_none(),
             Meaning::Nothing | Meaning::Like => quantity == Quantity::Acceleration,
             Meaning::Unknown { .. } => false,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::columns::guess::{Meaning, Named, list};
+use crate::columns::guess::{Meaning, Named, meaning};
 use crate::columns::quantity::Quantity;
 use crate::columns::time_column::within;
 use crate::columns::unit::{Dimension, JointUnits, Unit};
@@ -34,7 +34,7 @@ impl ListColumns {
         // by quantity: the name and the unit
         let mut found: Vec<(Quantity, &str, Option<Unit>)> = Vec::new();
         for (place, name) in columns {
-            let Named { quantity, is_current, unit, .. } = match list(name) {
+            let Named { quantity, is_current, unit, .. } = match meaning(name, true) {
                 Meaning::Joint(named) => named,
                 Meaning::Unknown { quantity, unit } => return Err(Unit::unknown(path, name, quantity, &unit)),
                 Meaning::Like | Meaning::Nothing => continue,
