@@ -26,6 +26,7 @@ pub(crate) mod momentum;
 pub(crate) mod motors;
 pub(crate) mod per_joint;
 pub(crate) mod regressor;
+pub(crate) mod still_wrenches;
 
 use rne_model::{Contact, FixedFrame};
 

@@ -1,8 +1,8 @@
-//! The functions that C sees: pointers become texts, slices and references here, and nowhere else.
+//! The functions that C calls. Only here pointers become texts, slices and references.
 //!
-//! Every function that is `unsafe` trusts its caller with what C cannot say: that a pointer which is not NULL points to
-//! as much as is told, for as long as the call takes. What can be checked is: NULL, alignment, sizes beyond memory,
-//! outputs that share memory with an input. No panic crosses the border.
+//! Every `unsafe` function trusts its caller in what C cannot express: that a pointer which is not NULL points to as
+//! many values as the call states, for the duration of the call. The following is checked: NULL, alignment, sizes
+//! beyond memory, and outputs that share memory with an input. No panic reaches the caller.
 #![allow(unsafe_code)]
 
 mod pointer;
@@ -77,7 +77,7 @@ pub extern "C" fn rne_last_error() -> *const c_char {
 /// `path` is NULL or ends with a zero byte; `arm` is NULL or a place for a pointer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_arm_load_file(path: *const c_char, arm: *mut *mut Arm) -> Status {
-    // SAFETY: the caller's promise of both pointers.
+    // SAFETY: the caller promises that both pointers are valid.
     unsafe { made(arm, || Arm::of_file(text(path, "path")?)) }
 }
 
@@ -87,7 +87,7 @@ pub unsafe extern "C" fn rne_arm_load_file(path: *const c_char, arm: *mut *mut A
 /// `yaml` is NULL or ends with a zero byte; `arm` is NULL or a place for a pointer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_arm_load_text(yaml: *const c_char, arm: *mut *mut Arm) -> Status {
-    // SAFETY: the caller's promise of both pointers.
+    // SAFETY: the caller promises that both pointers are valid.
     unsafe { made(arm, || Arm::of_text(text(yaml, "yaml")?)) }
 }
 
@@ -111,7 +111,7 @@ pub unsafe extern "C" fn rne_arm_load_urdf(
     lock_others: bool,
     arm: *mut *mut Arm,
 ) -> Status {
-    // SAFETY: the caller's promise of all pointers.
+    // SAFETY: the caller promises that all pointers are valid.
     unsafe {
         made(arm, || {
             let path = text(path, "path")?;
@@ -135,7 +135,7 @@ pub unsafe extern "C" fn rne_arm_load_urdf(
 /// `name` is NULL or ends with a zero byte; `arm` is NULL or a place for a pointer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_arm_builtin(name: *const c_char, arm: *mut *mut Arm) -> Status {
-    // SAFETY: the caller's promise of both pointers.
+    // SAFETY: the caller promises that both pointers are valid.
     unsafe { made(arm, || Arm::of_name(text(name, "name")?)) }
 }
 
@@ -150,7 +150,7 @@ pub unsafe extern "C" fn rne_arm_builtin(name: *const c_char, arm: *mut *mut Arm
 /// `arm` is NULL or an arm; `frame` is NULL or ends with a zero byte; `at` is NULL or a place for a pointer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_arm_at_frame(arm: *const Arm, frame: *const c_char, at: *mut *mut Arm) -> Status {
-    // SAFETY: the caller's promise of all pointers.
+    // SAFETY: the caller promises that all pointers are valid.
     unsafe { made(at, || reference(arm, "arm")?.at_frame(text(frame, "frame")?)) }
 }
 
@@ -161,7 +161,7 @@ pub unsafe extern "C" fn rne_arm_at_frame(arm: *const Arm, frame: *const c_char,
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_arm_free(arm: *mut Arm) {
     if !arm.is_null() {
-        // SAFETY: every arm that C has is of `Box::into_raw`, and the caller frees it once.
+        // SAFETY: every arm that C has comes from `Box::into_raw`, and the caller frees it once.
         let arm = unsafe { Box::from_raw(arm) };
         let _ = guarded(|| {
             drop(arm);
@@ -176,7 +176,7 @@ pub unsafe extern "C" fn rne_arm_free(arm: *mut Arm) {
 /// `arm` is NULL or an arm.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_arm_name(arm: *const Arm) -> *const c_char {
-    // SAFETY: the caller's promise of the arm.
+    // SAFETY: the caller promises that the arm is valid.
     guarded(|| Ok(unsafe { reference(arm, "arm") }?.name().as_ptr())).unwrap_or(ptr::null())
 }
 
@@ -186,7 +186,7 @@ pub unsafe extern "C" fn rne_arm_name(arm: *const Arm) -> *const c_char {
 /// `arm` is NULL or an arm.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_arm_dof(arm: *const Arm) -> usize {
-    // SAFETY: the caller's promise of the arm.
+    // SAFETY: the caller promises that the arm is valid.
     guarded(|| Ok(unsafe { reference(arm, "arm") }?.compiled().dof())).unwrap_or(0)
 }
 
@@ -197,7 +197,7 @@ pub unsafe extern "C" fn rne_arm_dof(arm: *const Arm) -> usize {
 /// `arm` is NULL or an arm.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_arm_joint_name(arm: *const Arm, joint: usize) -> *const c_char {
-    // SAFETY: the caller's promise of the arm.
+    // SAFETY: the caller promises that the arm is valid.
     guarded(|| Ok(unsafe { reference(arm, "arm") }?.joint_name(joint)?.as_ptr())).unwrap_or(ptr::null())
 }
 
@@ -207,7 +207,7 @@ pub unsafe extern "C" fn rne_arm_joint_name(arm: *const Arm, joint: usize) -> *c
 /// `arm` is NULL or an arm; `kind` is NULL or a place for it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_arm_joint_kind(arm: *const Arm, joint: usize, kind: *mut JointKind) -> Status {
-    // SAFETY: the caller's promise of both pointers.
+    // SAFETY: the caller promises that both pointers are valid.
     status::status(|| unsafe { give(kind, "kind", reference(arm, "arm")?.joint_kind(joint)?) })
 }
 
@@ -217,7 +217,7 @@ pub unsafe extern "C" fn rne_arm_joint_kind(arm: *const Arm, joint: usize, kind:
 /// `arm` is NULL or an arm; `limits` is NULL or a place for them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_arm_joint_limits(arm: *const Arm, joint: usize, limits: *mut Limits) -> Status {
-    // SAFETY: the caller's promise of both pointers.
+    // SAFETY: the caller promises that both pointers are valid.
     status::status(|| unsafe { give(limits, "limits", reference(arm, "arm")?.limits(joint)?) })
 }
 
@@ -228,7 +228,7 @@ pub unsafe extern "C" fn rne_arm_joint_limits(arm: *const Arm, joint: usize, lim
 /// `name` is NULL or ends with a zero byte; `id` is NULL or a place for a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_function_find(name: *const c_char, id: *mut u32) -> Status {
-    // SAFETY: the caller's promise of both pointers.
+    // SAFETY: the caller promises that both pointers are valid.
     status::status(|| unsafe { give(id, "id", handle::function_id(text(name, "name")?)?) })
 }
 
@@ -244,7 +244,7 @@ pub extern "C" fn rne_function_count() -> u32 {
 /// `arm` is NULL or an arm.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_function_prepare(arm: *const Arm, id: u32) -> Status {
-    // SAFETY: the caller's promise of the arm.
+    // SAFETY: the caller promises that the arm is valid.
     status::status(|| unsafe { reference(arm, "arm") }?.prepare(id))
 }
 
@@ -255,7 +255,7 @@ pub unsafe extern "C" fn rne_function_prepare(arm: *const Arm, id: u32) -> Statu
 /// `arm` is NULL or an arm; `outputs` is NULL or a place for a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_function_outputs(arm: *const Arm, id: u32, outputs: *mut usize) -> Status {
-    // SAFETY: the caller's promise of both pointers.
+    // SAFETY: the caller promises that both pointers are valid.
     status::status(|| unsafe { give(outputs, "outputs", reference(arm, "arm")?.function(id)?.outputs()) })
 }
 
@@ -265,7 +265,7 @@ pub unsafe extern "C" fn rne_function_outputs(arm: *const Arm, id: u32, outputs:
 /// `arm` is NULL or an arm; `arguments` is NULL or a place for a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_function_arguments(arm: *const Arm, id: u32, arguments: *mut usize) -> Status {
-    // SAFETY: the caller's promise of both pointers.
+    // SAFETY: the caller promises that both pointers are valid.
     status::status(|| unsafe { give(arguments, "arguments", reference(arm, "arm")?.function(id)?.arguments().len()) })
 }
 
@@ -283,17 +283,17 @@ pub unsafe extern "C" fn rne_function_argument(
     elements: *mut usize,
 ) -> Status {
     status::status(|| {
-        // SAFETY: the caller's promise of the arm.
+        // SAFETY: the caller promises that the arm is valid.
         let (found, count) = unsafe { reference(arm, "arm") }?.argument(id, argument)?;
-        // both places are looked at before one is written to
+        // both pointers are checked before anything is written
         checked(name.cast_const(), usize::from(!name.is_null()), "name")?;
         checked(elements.cast_const(), usize::from(!elements.is_null()), "elements")?;
         if !name.is_null() {
-            // SAFETY: it is aligned; for the rest the caller's promise of the place.
+            // SAFETY: `name` was checked to be aligned, and the caller promises that it is valid.
             unsafe { name.write(found.as_ptr()) };
         }
         if !elements.is_null() {
-            // SAFETY: it is aligned; for the rest the caller's promise of the place.
+            // SAFETY: `elements` was checked to be aligned, and the caller promises that it is valid.
             unsafe { elements.write(count) };
         }
         Ok(())
@@ -319,7 +319,7 @@ pub unsafe extern "C" fn rne_evaluate(
     outputs: *mut f64,
     output_count: usize,
 ) -> Status {
-    // SAFETY: the caller's promise of all pointers.
+    // SAFETY: the caller promises that all pointers are valid.
     unsafe { evaluate(arm, id, Extent::One, inputs, input_count, outputs, output_count) }
 }
 
@@ -341,7 +341,7 @@ pub unsafe extern "C" fn rne_evaluate_batch(
     outputs: *mut f64,
     output_count: usize,
 ) -> Status {
-    // SAFETY: the caller's promise of all pointers.
+    // SAFETY: the caller promises that all pointers are valid.
     unsafe { evaluate(arm, id, Extent::Many(states), inputs, input_count, outputs, output_count) }
 }
 
@@ -364,7 +364,7 @@ pub unsafe extern "C" fn rne_evaluate_batch_threads(
     outputs: *mut f64,
     output_count: usize,
 ) -> Status {
-    // SAFETY: the caller's promise of all pointers.
+    // SAFETY: the caller promises that all pointers are valid.
     unsafe { evaluate(arm, id, Extent::Threads(states, threads), inputs, input_count, outputs, output_count) }
 }
 
@@ -381,7 +381,7 @@ pub unsafe extern "C" fn rne_evaluate_f32(
     outputs: *mut f32,
     output_count: usize,
 ) -> Status {
-    // SAFETY: the caller's promise of all pointers.
+    // SAFETY: the caller promises that all pointers are valid.
     unsafe { evaluate(arm, id, Extent::One, inputs, input_count, outputs, output_count) }
 }
 
@@ -399,7 +399,7 @@ pub unsafe extern "C" fn rne_evaluate_batch_f32(
     outputs: *mut f32,
     output_count: usize,
 ) -> Status {
-    // SAFETY: the caller's promise of all pointers.
+    // SAFETY: the caller promises that all pointers are valid.
     unsafe { evaluate(arm, id, Extent::Many(states), inputs, input_count, outputs, output_count) }
 }
 
@@ -418,13 +418,13 @@ pub unsafe extern "C" fn rne_evaluate_batch_threads_f32(
     outputs: *mut f32,
     output_count: usize,
 ) -> Status {
-    // SAFETY: the caller's promise of all pointers.
+    // SAFETY: the caller promises that all pointers are valid.
     unsafe { evaluate(arm, id, Extent::Threads(states, threads), inputs, input_count, outputs, output_count) }
 }
 
-/// An input of either precision.
+/// An input of either precision, `rne_input` or `rne_input_f32`.
 trait Raw<T>: Copy {
-    /// Name, numbers and their count, distances of states and elements.
+    /// Returns the name, the address of the numbers, their count, and the strides of states and of elements.
     fn parts(self) -> (*const c_char, *const T, usize, usize, usize);
 }
 
@@ -440,7 +440,7 @@ impl Raw<f32> for InputF32 {
     }
 }
 
-/// How much is computed: one state, states, or states in so many threads.
+/// The states of a call: one, many in this thread, or many on several threads (states, threads).
 #[derive(Clone, Copy)]
 enum Extent {
     One,
@@ -448,10 +448,10 @@ enum Extent {
     Threads(usize, usize),
 }
 
-/// Computes one state, or as many as told.
+/// Computes a function for the states that `extent` says, and returns the status of the call.
 ///
 /// # Safety
-/// As [`rne_evaluate`].
+/// As for [`rne_evaluate`].
 unsafe fn evaluate<T: Number + Send + Sync, I: Raw<T>>(
     arm: *const Arm,
     id: u32,
@@ -462,13 +462,13 @@ unsafe fn evaluate<T: Number + Send + Sync, I: Raw<T>>(
     output_count: usize,
 ) -> Status {
     status::status(|| {
-        // SAFETY: the caller's promise of the arm and of the array of inputs.
+        // SAFETY: the caller promises that the arm and the array of inputs are valid.
         let (arm, inputs) = unsafe { (reference(arm, "arm")?, slice(inputs, input_count, "inputs")?) };
         let room = checked(outputs.cast_const(), output_count, "outputs")?;
         let read = |(index, input): (usize, &I)| {
             let (name, data, count, state, element) = input.parts();
-            // SAFETY: the caller's promise of the name and of the numbers, which nobody writes to during the call: they
-            // are apart from the room for the outputs, which is checked below before the slice is used.
+            // SAFETY: the caller promises that the name and the numbers are valid and that nobody writes to them during
+            // the call. The outputs do not overlap them either: this is checked below, before the slice is used.
             let given = unsafe {
                 let name = text(name, "name of an input")
                     .map_err(|Failure { status, message }| Failure::new(status, format!("input {index}: {message}")))?;
@@ -481,12 +481,12 @@ unsafe fn evaluate<T: Number + Send + Sync, I: Raw<T>>(
             };
             Ok(given)
         };
-        // the array of inputs itself must not be written over either
+        // the array of inputs must not overlap the outputs either
         let array = checked(inputs.as_ptr(), inputs.len(), "inputs")?;
         if array.start < room.end && room.start < array.end {
             return Err(Failure::new(Status::WrongMemory, "`outputs` and `inputs` share memory"));
         }
-        // SAFETY: the caller's promise of the room; it is apart from all that is read.
+        // SAFETY: the caller promises memory for the outputs; by the checks above it overlaps nothing that is read.
         let outputs = unsafe { slice_mut(outputs, output_count) };
         let given = inputs.iter().enumerate().map(read);
         match extent {

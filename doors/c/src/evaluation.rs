@@ -1,4 +1,4 @@
-//! Inputs in a caller's arrays, checked, and a function over them.
+//! Checks the inputs of a call, which are arrays of the caller, and computes a function with them.
 
 use std::panic::resume_unwind;
 use std::sync::{Mutex, PoisonError};
@@ -10,21 +10,22 @@ use rne_runtime::VectorUnit;
 use crate::handle::Arm;
 use crate::status::{Failure, Status};
 
-/// States that a thread takes at once: some tens of microseconds of torques.
+/// How many states a thread computes at a time: their torques take some tens of microseconds.
 const TASK: usize = 4096;
 
-/// An argument: its numbers and how far apart they are.
+/// An argument: its numbers, with the strides of states and elements.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Given<'a, T> {
     pub(crate) name: &'a str,
     pub(crate) numbers: &'a [T],
-    /// How far apart states are; 0 where all have the same.
+    /// The distance between states, in numbers; 0 if all states have the same numbers.
     pub(crate) state: usize,
-    /// How far apart elements are; 0 means 1.
+    /// The distance between elements, in numbers; 0 means 1.
     pub(crate) element: usize,
 }
 
-/// What is given, as the machine takes it. What the function does not take is not looked at, but for its name.
+/// Checks the inputs and returns them as the arguments of the function. Of inputs that the function does not take only
+/// the name is checked.
 fn arguments<'a, T: Number>(
     function: &CompiledFunction,
     inputs: impl Iterator<Item = Result<Given<'a, T>, Failure>>,
@@ -63,7 +64,7 @@ fn arguments<'a, T: Number>(
     Ok(arguments)
 }
 
-/// Computes one state. After the first call of a thread nothing is allocated.
+/// Computes one state. Allocates nothing after the first call of a thread.
 pub(crate) fn one<'a, T: Number>(
     arm: &Arm,
     id: u32,
@@ -75,7 +76,7 @@ pub(crate) fn one<'a, T: Number>(
     Ok(function.run_one(VectorUnit::widest(), &arguments, outputs)?)
 }
 
-/// Computes so many states.
+/// Computes many states in the calling thread.
 pub(crate) fn many<'a, T: Number>(
     arm: &Arm,
     id: u32,
@@ -88,8 +89,8 @@ pub(crate) fn many<'a, T: Number>(
     Ok(function.run(VectorUnit::widest(), states, &arguments, Destination::Rows(outputs))?)
 }
 
-/// Computes so many states in as many threads, the caller's among them; 0 are as many as there are cores. What a state
-/// gives does not depend on who computes it.
+/// Computes many states on `threads` threads, including the calling one; 0 means one per core. The results do not
+/// depend on the number of threads.
 pub(crate) fn on_threads<'a, T: Number + Send + Sync>(
     arm: &Arm,
     id: u32,
@@ -99,7 +100,7 @@ pub(crate) fn on_threads<'a, T: Number + Send + Sync>(
 ) -> Result<(), Failure> {
     let function = arm.function(id)?;
     let given: Vec<Given<'a, T>> = inputs.collect::<Result<_, _>>()?;
-    // all that is wrong is told before a number is written
+    // all errors are found before a result is written
     let all = arguments(function, given.iter().copied().map(Ok), states)?;
     let threads = match threads {
         0 => thread::available_parallelism().map_or(1, usize::from),
@@ -121,7 +122,7 @@ pub(crate) fn on_threads<'a, T: Number + Send + Sync>(
             let Some((index, room)) = task else { return Ok(()) };
             let (first, count) = (index * TASK, room.len() / width.max(1));
             let part = given.iter().map(|given| {
-                // an input that the function does not take may have any stride
+                // an input that the function does not take was not checked, so its stride may be too large
                 let start = first.saturating_mul(given.state);
                 Ok(Given { numbers: given.numbers.get(start..).unwrap_or_default(), ..*given })
             });
@@ -130,7 +131,7 @@ pub(crate) fn on_threads<'a, T: Number + Send + Sync>(
         }
     };
     thread::scope(|scope| {
-        // where the system has no thread to give, the others do the work
+        // if the system cannot start a thread, the others do its work
         let start = |_| thread::Builder::new().spawn_scoped(scope, work).ok();
         let running: Vec<_> = (0..helpers).filter_map(start).collect();
         let mine = work();

@@ -1,4 +1,4 @@
-//! The arm behind a handle: how it is read, and what it tells of itself.
+//! The arm to which a handle of C points: how it is loaded, and its properties.
 
 use std::ffi::{CStr, CString};
 use std::path::Path;
@@ -53,21 +53,21 @@ impl Arm {
         Self { compiled: arm, name, joints }
     }
 
-    /// Of a robot file and the plan file beside it, or of a shipped robot.
+    /// Loads the arm of a robot file and the plan file beside it, or of a shipped robot.
     pub(crate) fn of_file(path: &str) -> Result<Self, Failure> {
         match Description::open(Path::new(path))? {
             Description::Shipped(file) => Self::of_shipped(file),
-            // a URDF is refused with the function that reads it
+            // a URDF is refused, with the name of the function that reads it
             _ => Ok(Self::new(CompiledArm::from_file(path)?)),
         }
     }
 
-    /// Of the text of a robot file.
+    /// Loads the arm that the text of a robot file describes.
     pub(crate) fn of_text(text: &str) -> Result<Self, Failure> {
         Ok(Self::new(CompiledArm::from_yaml(text)?))
     }
 
-    /// The arm of a URDF, as `rne import` converts it.
+    /// Loads the arm of a URDF, as `rne import` converts it.
     pub(crate) fn of_urdf(path: &str, selection: Selection) -> Result<Self, Failure> {
         let (Description::Urdf(bytes) | Description::RobotFile(bytes)) = Description::open(Path::new(path))? else {
             return Err(Failure::new(Status::InvalidFile, format!("{path} is a shipped robot, no URDF")));
@@ -76,7 +76,7 @@ impl Arm {
         Ok(Self::new(CompiledArm::from_yaml(&imported.text)?))
     }
 
-    /// Of a shipped robot by its name, with its plan.
+    /// Loads a shipped robot by its name, with its plan.
     pub(crate) fn of_name(name: &str) -> Result<Self, Failure> {
         Self::of_shipped(rne_convert::shipped(name).map_err(|message| Failure::new(Status::UnknownName, message))?)
     }
@@ -88,13 +88,13 @@ impl Arm {
         }))
     }
 
-    /// The arm with a frame in the place of the tip.
+    /// Returns an arm that has a frame in the place of the tip.
     pub(crate) fn at_frame(&self, frame: &str) -> Result<Self, Failure> {
         let arm = self.compiled.at_frame(frame);
         Ok(Self::new(arm.map_err(|unknown| Failure::new(Status::UnknownName, unknown.to_string()))?))
     }
 
-    /// What computes.
+    /// Returns the compiled arm, which computes the functions.
     pub(crate) fn compiled(&self) -> &CompiledArm {
         &self.compiled
     }
@@ -128,12 +128,12 @@ impl Arm {
         Failure::new(Status::OutOfRange, message)
     }
 
-    /// A function, compiled.
+    /// Compiles a function, if this has not been done yet, and returns it.
     pub(crate) fn function(&self, id: u32) -> Result<&CompiledFunction, Failure> {
         Ok(self.compiled.function(function(id)?)?)
     }
 
-    /// Makes a function ready for single states.
+    /// Compiles a function for single states, in both precisions.
     pub(crate) fn prepare(&self, id: u32) -> Result<(), Failure> {
         let function = self.function(id)?;
         function.prepare::<f64>();
@@ -141,7 +141,7 @@ impl Arm {
         Ok(())
     }
 
-    /// The name of an argument of a function, and how many elements it has for a state.
+    /// Returns the name of an argument of a function, and how many elements it has for a state.
     pub(crate) fn argument(&self, id: u32, argument: usize) -> Result<(&'static CStr, usize), Failure> {
         let arguments = self.function(id)?.arguments();
         let none = || {
@@ -153,7 +153,7 @@ impl Arm {
     }
 }
 
-/// The function of an id.
+/// Returns the function with this id.
 pub(crate) fn function(id: u32) -> Result<Function, Failure> {
     let found = usize::try_from(id).ok().and_then(|id| Function::ALL.get(id).copied());
     found.ok_or_else(|| {
@@ -162,7 +162,7 @@ pub(crate) fn function(id: u32) -> Result<Function, Failure> {
     })
 }
 
-/// The id of a function.
+/// Returns the id of the function with this name.
 pub(crate) fn function_id(name: &str) -> Result<u32, Failure> {
     let function = rne_codegen::function_named(name)
         .map_err(|error: UnknownName| Failure::new(Status::UnknownName, error.to_string()))?;
@@ -170,7 +170,7 @@ pub(crate) fn function_id(name: &str) -> Result<u32, Failure> {
     id.ok_or_else(|| Failure::new(Status::UnknownName, format!("there is no function `{name}`")))
 }
 
-/// The name of an argument as C reads it.
+/// Returns the name of an argument as a text of C.
 fn argument_name(name: &str) -> Option<&'static CStr> {
     static NAMES: LazyLock<Vec<CString>> = LazyLock::new(|| ARGUMENTS.iter().map(|name| c_text(name)).collect());
     NAMES.iter().map(CString::as_c_str).find(|known| known.to_bytes() == name.as_bytes())

@@ -1,4 +1,4 @@
-//! What a call came to: a status, the words of the last failure of a thread, and no panic.
+//! The outcome of a call: a status, and the message of the last failure of each thread. Panics become a status, too.
 
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char};
@@ -39,7 +39,7 @@ pub enum Status {
     Panic = 11,
 }
 
-/// Why a call failed: its status and the words.
+/// Why a call failed: its status and the message.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Failure {
     pub(crate) status: Status,
@@ -51,18 +51,18 @@ impl Failure {
         Self { status, message: message.into() }
     }
 
-    /// A pointer that is called so must not be NULL.
+    /// The failure of a call whose pointer with this name is NULL.
     pub(crate) fn null(what: &str) -> Self {
         Self::new(Status::NullPointer, format!("`{what}` is NULL"))
     }
 }
 
-/// A remedy as arguments of rne_arm_load_urdf().
+/// Returns the remedy for an error of an import, as arguments of rne_arm_load_urdf().
 fn in_arguments(remedy: &Remedy) -> Option<String> {
     Some(match remedy {
         Remedy::ImportUrdf { .. } => "rne_arm_load_urdf() reads a URDF".to_owned(),
         Remedy::NameTip => "name the tip by `tip`".to_owned(),
-        // it loads an arm, so it has no whole robot
+        // the C library loads arms only, so the remedy to import the whole robot does not exist
         Remedy::LockJoint { joint } | Remedy::WholeOrLock { joint } => {
             format!("write `{joint}` into `lock_names` to hold this joint still")
         }
@@ -112,13 +112,13 @@ thread_local! {
     static LAST: RefCell<CString> = RefCell::default();
 }
 
-/// The words of the last failure of this thread; empty before the first.
+/// Returns the message of the last failure of this thread; it is empty before the first one.
 pub(crate) fn last_error() -> *const c_char {
-    // a thread that is ending has no words any more
+    // when a thread ends, its message may be destroyed already
     LAST.try_with(|last| last.borrow().as_ptr()).unwrap_or(c"".as_ptr())
 }
 
-/// A text for C, which ends at the first zero byte: without those.
+/// Returns a text for C, without its zero bytes, because C texts end at the first one.
 pub(crate) fn c_text(text: &str) -> CString {
     CString::new(text.replace('\0', "\u{fffd}")).unwrap_or_default()
 }
@@ -128,17 +128,18 @@ fn tell(failure: &Failure) {
     let _ = LAST.try_with(|last| last.replace(text));
 }
 
-/// Does the work of a call: its value, or nothing and the words of why.
+/// Does the work of a call and returns its value. A failure or a panic becomes a status, and its message is kept for
+/// `last_error`.
 pub(crate) fn guarded<T>(work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Status> {
-    // What a panic leaves half done is not seen again: handles are not changed by a call, but for what is compiled
-    // once, and that is whole or not there.
+    // After a panic no half-made state is visible: calls do not change handles. They only compile functions, and a
+    // function is either compiled completely or not at all.
     let failure = match catch_unwind(AssertUnwindSafe(work)) {
         Ok(Ok(value)) => return Ok(value),
         Ok(Err(failure)) => failure,
         Err(payload) => {
             let words = payload.downcast_ref::<&str>().copied().map(str::to_owned);
             let words = words.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();
-            // a payload whose own end panics must not come here again
+            // dropping the payload could panic again, outside of `catch_unwind`
             std::mem::forget(payload);
             Failure::new(Status::Panic, format!("a mistake in this library, please report it: {words}"))
         }
@@ -147,12 +148,12 @@ pub(crate) fn guarded<T>(work: impl FnOnce() -> Result<T, Failure>) -> Result<T,
     Err(failure.status)
 }
 
-/// The same of a call that returns nothing but its status.
+/// Does the work of a call that returns nothing but its status.
 pub(crate) fn status(work: impl FnOnce() -> Result<(), Failure>) -> Status {
     guarded(work).err().unwrap_or(Status::Ok)
 }
 
-/// The version of this library.
+/// The version of this library, ending with a zero byte.
 pub(crate) const VERSION: &CStr = match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes()) {
     Ok(version) => version,
     Err(_) => c"",
@@ -169,7 +170,7 @@ mod tests {
         assert_eq!(message, "a mistake in this library, please report it: for the test");
         assert_eq!(status(|| panic!("of {}", "pieces")), Status::Panic);
         assert!(super::LAST.with_borrow(|last| last.to_str().expect("UTF-8").ends_with("it: of pieces")));
-        // what went well leaves the words alone
+        // a success leaves the message of the last failure unchanged
         assert_eq!(status(|| Ok(())), Status::Ok);
         assert!(super::LAST.with_borrow(|last| !last.is_empty()));
     }

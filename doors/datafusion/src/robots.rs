@@ -14,6 +14,7 @@ use sha2::{Digest, Sha256};
 const DIGITS: usize = 16;
 
 /// The robots that SQL functions may name.
+///
 /// A query names a robot by its *key*, `NAME@HASH`. The hash is the first 16 digits of the SHA-256 of the robot file,
 /// followed by its plan file if it has one, as `cat NAME.yaml NAME.plan.yaml | sha256sum` prints it. Functions are sent
 /// to other machines by name alone, so a process that has another file under the same name would compute other torques,

@@ -1,5 +1,5 @@
 //! The functions of an arm on a card.
-#![allow(unsafe_code)] // launches, whose arrays the caller or a check vouches for
+#![allow(unsafe_code)] // for launches: callers or checks ensure that arrays are valid
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -11,7 +11,7 @@ use rne_machine::{CompiledArm, CompiledFunction};
 use crate::driver::{Kernel, Module, Real};
 use crate::{Device, GpuError, Memory};
 
-/// Threads of a block: all kernels may have as many.
+/// Threads of a block; every kernel can run with this number.
 const WIDTH: u32 = 64;
 /// The largest number of states of a launch.
 const MOST_STATES: u64 = i32::MAX as u64;
@@ -25,7 +25,7 @@ pub enum Order {
     Columns,
 }
 
-/// A rollout on a card: as [`rne_machine::Rollout`] without friction and limits, with the same bits.
+/// A rollout on a card, with the bits of a [`rne_machine::Rollout`] without friction and limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GpuRollout {
     /// The number T of steps, at least 1.
@@ -53,7 +53,7 @@ impl GpuRollout {
     }
 }
 
-/// The kernel of a launch: that of the function, or a rollout by it.
+/// What a launch computes: a function, or a rollout by this function.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Work {
     Function,
@@ -84,7 +84,7 @@ impl Drop for Kernels {
 }
 
 impl GpuArm {
-    /// An arm on a card.
+    /// Creates the functions of an arm on a card.
     #[must_use]
     pub fn new(arm: &CompiledArm, device: &Device) -> Self {
         Self { arm: arm.clone(), device: device.clone(), modules: Mutex::default() }
@@ -102,8 +102,8 @@ impl GpuArm {
         &self.device
     }
 
-    /// Translates a function for a number type, or rollouts by it, if that has not been done: before the capture of a
-    /// graph, in which nothing can be translated.
+    /// Translates a function, or rollouts by it, for a number type, unless that has been done. Call it before the
+    /// capture of a graph, during which nothing can be translated.
     ///
     /// # Errors
     /// When the arm does not have the function, no rollout is possible by it, or the driver cannot translate it.
@@ -128,8 +128,8 @@ impl GpuArm {
         let outputs = self.compiled(function)?.outputs();
         let addresses = self.checked(function, states, 1, arguments)?;
         self.sized("results", outputs.saturating_mul(states), results)?;
-        // SAFETY: all arrays are on this card and have the numbers that are read and written; the results are borrowed
-        // alone, and the wait outlasts the kernel
+        // SAFETY: all arrays are on this card and have as many numbers as are read and written; the results are
+        // borrowed exclusively, and this call waits for the end of the kernel
         unsafe { self.launch::<T>(function, order, states, &addresses, &[results.address()], 0)? };
         self.device.wait(0)
     }
@@ -181,7 +181,7 @@ impl GpuArm {
         results: &[u64],
         stream: u64,
     ) -> Result<(), GpuError> {
-        // SAFETY: the caller's
+        // SAFETY: promised by the caller of this function
         unsafe { self.launched::<T>(function, Work::Function, order, states, arguments, results, stream) }
     }
 
@@ -194,7 +194,7 @@ impl GpuArm {
     ///
     /// # Errors
     /// As for [`launch`](Self::launch), and when the rollout has no step.
-    #[allow(clippy::too_many_arguments)] // what a launch is made of
+    #[allow(clippy::too_many_arguments)] // all of them are parameters of a launch
     pub unsafe fn launch_rollout<T: Real>(
         &self,
         function: Function,
@@ -205,7 +205,7 @@ impl GpuArm {
         results: &[u64],
         stream: u64,
     ) -> Result<(), GpuError> {
-        // SAFETY: the caller's
+        // SAFETY: promised by the caller of this function
         unsafe { self.launched::<T>(function, Work::Rollout(*rollout), order, samples, arguments, results, stream) }
     }
 
@@ -239,7 +239,8 @@ impl GpuArm {
             if every == 0 || every > steps {
                 return Err(GpuError::Range { what: "every", found: every.into(), allowed });
             }
-            // the steps that the processor takes, too: finite and with a square above zero, once they are rounded
+            // as on the processor, the step and its square must be finite and above zero after rounding to the number
+            // type
             let (bits, is_usable) = match T::PRECISION {
                 #[allow(clippy::cast_possible_truncation)]
                 Precision::Single => {
@@ -260,8 +261,8 @@ impl GpuArm {
         }
         let kernel = if order == Order::Rows { kernels.rows } else { kernels.columns };
         let size = [states.div_ceil(WIDTH), WIDTH];
-        // SAFETY: the parameters are those of the kernel: addresses, for a rollout a number of the type of the arrays
-        // and two of 32 bits, and the number of states; the rest is the caller's
+        // SAFETY: the parameters have the types of the kernel: addresses; for a rollout the step in the type of the
+        // arrays and two numbers of 32 bits; and the number of states. The caller promises the rest
         unsafe { self.device.driver().launch(self.device.context(), kernel, size, stream, &parameters) }
     }
 
@@ -269,7 +270,7 @@ impl GpuArm {
         self.arm.function(function).map_err(GpuError::Function)
     }
 
-    /// The addresses of the arguments in the order of the function, where each has its size.
+    /// Returns the addresses of the arguments in the order of the function, after a check of their names and sizes.
     fn checked<T: Real>(
         &self,
         function: Function,
@@ -304,7 +305,7 @@ impl GpuArm {
     }
 
     fn kernels(&self, function: Function, precision: Precision, is_rollout: bool) -> Result<Arc<Kernels>, GpuError> {
-        // one translation at a time: two threads that ask for the same function wait for one
+        // locked during a translation, so that two threads do not translate the same function twice
         let mut modules = self.modules.lock().unwrap_or_else(PoisonError::into_inner);
         let key = (function, precision, is_rollout);
         if let Some(kernels) = modules.get(&key) {

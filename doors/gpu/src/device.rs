@@ -8,9 +8,9 @@ use std::sync::Arc;
 use crate::GpuError;
 use crate::driver::{Context, Driver, Real};
 
-/// A graphics card of NVIDIA: its primary context, which other libraries of this process share.
+/// A graphics card of NVIDIA with its primary context, which other libraries of this process share.
 ///
-/// Clones are the same card.
+/// Clones refer to the same card.
 #[derive(Clone, Debug)]
 pub struct Device(Arc<Card>);
 
@@ -32,7 +32,7 @@ impl Drop for Card {
 const LIBRARY: &str = if cfg!(windows) { "nvcuda.dll" } else { "libcuda.so.1" };
 
 impl Device {
-    /// The card of a number, from 0, in the order of `CUDA_VISIBLE_DEVICES`.
+    /// Opens the card with this number, from 0, in the order of `CUDA_VISIBLE_DEVICES`.
     ///
     /// The driver is the library `libcuda.so.1`, under Windows `nvcuda.dll`, or the library that the environment
     /// variable `RNE_LIBCUDA` names.
@@ -62,7 +62,7 @@ impl Device {
         self.0.ordinal
     }
 
-    /// Memory for some numbers, all zero.
+    /// Allocates memory for some numbers, all zero.
     ///
     /// # Errors
     /// When the card has too little memory.
@@ -70,7 +70,7 @@ impl Device {
         self.upload(&vec![T::default(); numbers])
     }
 
-    /// Memory with these numbers.
+    /// Copies numbers to new memory on the card.
     ///
     /// # Errors
     /// When the card has too little memory.
@@ -83,7 +83,7 @@ impl Device {
         Ok(memory)
     }
 
-    /// Waits until all that was launched on a stream has been computed; 0 is the default stream.
+    /// Waits until everything that was launched on a stream has been computed; 0 is the default stream.
     ///
     /// # Errors
     /// When something that was launched failed.

@@ -1,7 +1,7 @@
-//! The calls of NVIDIA's driver. All but launches are safe to the rest of the crate.
+//! The calls of NVIDIA's driver. All functions of this module except launches are safe.
 //!
-//! The types of the calls are those of the header `cuda.h` of CUDA 12, in which handles are pointers to what the driver
-//! alone reads; here they are numbers of the same size.
+//! The types of the calls are those of the header `cuda.h` of CUDA 12. There, handles are pointers to data that only
+//! the driver reads; here they are numbers of the same size.
 #![allow(unsafe_code)]
 
 use std::error::Error as _;
@@ -12,7 +12,7 @@ use libloading::Library;
 
 use crate::GpuError;
 
-/// The number by which the driver says that a text could not be translated.
+/// The error numbers with which the driver says that PTX could not be translated.
 const INVALID_PTX: [c_int; 3] = [218, 221, 222];
 
 macro_rules! calls {
@@ -21,23 +21,23 @@ macro_rules! calls {
         #[derive(Debug)]
         pub(crate) struct Driver {
             $($name: unsafe extern "C" fn($($type),*) -> c_int,)*
-            // after the functions, which it contains
+            // a field after the functions, which are part of it: the library is dropped last
             _library: Library,
         }
 
         impl Driver {
             /// Opens the library of this name.
             pub(crate) fn open(name: &Path) -> Result<Self, GpuError> {
-                // SAFETY: opening a library runs its initialisers. The name is that of the driver, which the system
-                // trusts as it trusts its kernel, or that of the variable RNE_LIBCUDA, by which the one who starts the
-                // program chooses another library, as by LD_LIBRARY_PATH. Initialisers of a driver need nothing.
+                // SAFETY: opening a library runs its initialisers. Its name is that of the driver, which the system
+                // trusts like its kernel, or that in the variable RNE_LIBCUDA, with which the user of the program
+                // chooses another library, as with LD_LIBRARY_PATH. Initialisers of a driver have no preconditions.
                 let library = unsafe { Library::new(name) }.map_err(|error| GpuError::NoDriver {
                     library: name.to_owned(),
                     reason: error.source().map_or_else(|| error.to_string(), ToString::to_string),
                 })?;
                 $(
-                    // SAFETY: the type is that of the function in `cuda.h`, whose names ending in _v2 fix it. The
-                    // pointer lives no longer than the library, which is a field beside it.
+                    // SAFETY: the type is that of the function in `cuda.h`; for names ending in _v2 this type is fixed.
+                    // The pointer lives no longer than the library, which is a field of the same struct.
                     let $name = *unsafe { library.get::<unsafe extern "C" fn($($type),*) -> c_int>($symbol) }
                         .map_err(|_| GpuError::OldDriver { library: name.to_owned(), call: symbol($symbol) })?;
                 )*
@@ -90,9 +90,9 @@ pub(crate) struct Kernel {
     parameters: usize,
 }
 
-/// A number type of arrays; no type outside of this crate is one.
+/// A number type of arrays on the card: `f32` or `f64`.
 pub trait Real: sealed::Sealed + Copy {
-    /// The number type of kernels.
+    /// The precision of the kernels for this type.
     const PRECISION: rne_emit::Precision;
 }
 
@@ -110,13 +110,13 @@ impl Real for f64 {
     const PRECISION: rne_emit::Precision = rne_emit::Precision::Double;
 }
 
-/// Takes the context away again.
+/// Makes the pushed context no longer current when it is dropped.
 struct Current<'a>(&'a Driver);
 
 impl Drop for Current<'_> {
     fn drop(&mut self) {
         let mut context = 0;
-        // SAFETY: writes the handle that `push` made current
+        // SAFETY: writes the handle of the context that `push` made current
         let _ = unsafe { (self.0.pop)(&raw mut context) };
     }
 }
@@ -128,62 +128,62 @@ impl Driver {
         }
         let text = |of: unsafe extern "C" fn(c_int, *mut *const c_char) -> c_int| {
             let mut text = std::ptr::null();
-            // SAFETY: writes the address of a text that is never freed, or null for an unknown number
+            // SAFETY: writes the address of a text that is never freed, or null if the number is unknown
             let is_known = unsafe { of(number, &raw mut text) } == 0 && !text.is_null();
             if !is_known {
                 return String::new();
             }
-            // SAFETY: a text that ends with 0, as said above
+            // SAFETY: it points to a text that ends with 0, by the test above
             unsafe { CStr::from_ptr(text) }.to_string_lossy().into_owned()
         };
         Err(GpuError::Call { call, number, name: text(self.error_name), meaning: text(self.error_text) })
     }
 
-    /// The primary context of a device, which PyTorch, CuPy and JAX use, too, and the device's name.
+    /// Returns the primary context of a device, which PyTorch, CuPy and JAX use, too, and the name of the device.
     pub(crate) fn context(&self, ordinal: usize) -> Result<(Context, String), GpuError> {
-        // SAFETY: takes a number
+        // SAFETY: its argument is a number
         self.checked("cuInit", unsafe { (self.init)(0) })?;
         let mut count = 0;
-        // SAFETY: writes a number to a place for it
+        // SAFETY: writes a number to a valid place
         self.checked("cuDeviceGetCount", unsafe { (self.device_count)(&raw mut count) })?;
         let asked = c_int::try_from(ordinal).ok().filter(|asked| *asked < count);
         let asked = asked.ok_or(GpuError::NoDevice { ordinal, count: usize::try_from(count).unwrap_or(0) })?;
         let mut device = 0;
-        // SAFETY: writes a number to a place for it
+        // SAFETY: writes a number to a valid place
         self.checked("cuDeviceGet", unsafe { (self.device_get)(&raw mut device, asked) })?;
         let mut name = [0 as c_char; 256];
-        // SAFETY: writes at most 256 bytes with an end to a place of 256
+        // SAFETY: writes at most 256 bytes, with a final 0, to a buffer of 256 bytes
         self.checked("cuDeviceGetName", unsafe { (self.device_name)(name.as_mut_ptr(), 256, device) })?;
-        // SAFETY: the text ends within its place
+        // SAFETY: the text ends within the buffer
         let name = unsafe { CStr::from_ptr(name.as_ptr()) }.to_string_lossy().into_owned();
         let mut context = 0;
-        // SAFETY: writes a handle to a place for it
+        // SAFETY: writes a handle to a valid place
         self.checked("cuDevicePrimaryCtxRetain", unsafe { (self.retain)(&raw mut context, device) })?;
         Ok((Context(context), name))
     }
 
-    /// Gives the primary context back.
+    /// Releases the primary context of a device.
     pub(crate) fn release(&self, ordinal: usize) {
-        // SAFETY: takes a number; each release follows one `context`
+        // SAFETY: its argument is a number; each release follows one call of `context`
         let _ = unsafe { (self.release)(c_int::try_from(ordinal).unwrap_or(0)) };
     }
 
-    /// Does something with this context, and leaves the thread the context that it had.
+    /// Runs `work` with this context current, then restores the context that the thread had.
     fn within<R>(&self, context: Context, work: impl FnOnce() -> Result<R, GpuError>) -> Result<R, GpuError> {
-        // SAFETY: the handle is that of a context that this crate holds
+        // SAFETY: the handle is that of a context that this crate has retained
         self.checked("cuCtxPushCurrent", unsafe { (self.push)(context.0) })?;
         let _current = Current(self);
         work()
     }
 
-    /// Translates a text in PTX.
+    /// Translates a text in PTX to a module.
     pub(crate) fn module(&self, context: Context, text: &str) -> Result<Module, GpuError> {
         const ERROR_LOG: c_int = 5;
         const ERROR_LOG_BYTES: c_int = 6;
         let text = CString::new(text).map_err(|_| GpuError::Translation { log: "a zero byte in the text".into() })?;
         let mut log = vec![0_u8; 8192];
         let options = [ERROR_LOG, ERROR_LOG_BYTES];
-        // the driver takes the number of bytes in the place of a pointer
+        // of this option the driver takes the value itself, the number of bytes, in the place of a pointer
         let values = [log.as_mut_ptr().cast::<c_void>(), std::ptr::without_provenance_mut(log.len())];
         let mut module = 0;
         self.within(context, || {
@@ -206,7 +206,7 @@ impl Driver {
         let _ = self.within(context, || self.checked("cuModuleUnload", unsafe { (self.unload)(module.0) }));
     }
 
-    /// A kernel by its name.
+    /// Returns the kernel of a module with this name, which has `parameters` parameters.
     pub(crate) fn kernel(
         &self,
         context: Context,
@@ -217,7 +217,7 @@ impl Driver {
         let name = CString::new(name).unwrap_or_default();
         let mut handle = 0;
         self.within(context, || {
-            // SAFETY: the module is one that `module` made; the name ends with 0; the handle has its place
+            // SAFETY: `module` returned this module; the name ends with 0; the handle is written to a valid place
             let number = unsafe { (self.function)(&raw mut handle, module.0, name.as_ptr()) };
             self.checked("cuModuleGetFunction", number)
         })?;
@@ -239,12 +239,13 @@ impl Driver {
         parameters: &[u64],
     ) -> Result<(), GpuError> {
         assert_eq!(parameters.len(), kernel.parameters, "parameters of a kernel");
-        // the lower bytes come first on all processors for which there is a driver, so a word begins with 32 bits
+        // all processors for which there is a driver are little-endian, so a parameter of 32 bits is at the start of
+        // its word
         let places: Vec<*const c_void> = parameters.iter().map(|word| (&raw const *word).cast()).collect();
         let stream = usize::try_from(stream).unwrap_or(0);
         self.within(context, || {
             // SAFETY: there are as many parameters as the kernel has, each with the 4 or 8 bytes that the driver copies
-            // before the call returns; the rest is the caller's
+            // before the call returns; the caller promises the rest
             let number = unsafe {
                 (self.launch)(kernel.handle, blocks, 1, 1, width, 1, 1, 0, stream, places.as_ptr(), std::ptr::null())
             };
@@ -252,44 +253,44 @@ impl Driver {
         })
     }
 
-    /// Waits for a stream.
+    /// Waits until the work of a stream is done.
     pub(crate) fn wait(&self, context: Context, stream: u64) -> Result<(), GpuError> {
         let stream = usize::try_from(stream).unwrap_or(0);
         self.within(context, || {
-            // SAFETY: the driver checks the handle of a stream of this context; 0 is the default stream
+            // SAFETY: the driver checks the handle of a stream; 0 is the default stream
             self.checked("cuStreamSynchronize", unsafe { (self.synchronize)(stream) })
         })
     }
 
-    /// Memory on the card for some bytes, at least one.
+    /// Allocates memory on the card, at least one byte, and returns its address.
     pub(crate) fn allocate(&self, context: Context, bytes: usize) -> Result<u64, GpuError> {
         let mut address = 0;
         self.within(context, || {
-            // SAFETY: writes an address to a place for it
+            // SAFETY: writes an address to a valid place
             self.checked("cuMemAlloc", unsafe { (self.allocate)(&raw mut address, bytes.max(1)) })
         })?;
         Ok(address)
     }
 
-    /// Frees memory of `allocate`, after what still runs.
+    /// Frees memory from `allocate`, after the work that still runs.
     pub(crate) fn free(&self, context: Context, address: u64) {
-        // SAFETY: the address is one of `allocate`, and is freed once, when its owner is dropped
+        // SAFETY: the address comes from `allocate`, and it is freed once, when its owner is dropped
         let _ = self.within(context, || self.checked("cuMemFree", unsafe { (self.free)(address) }));
     }
 
-    /// Copies numbers to memory of `allocate` that has room for them.
+    /// Copies numbers to memory from `allocate`, which must have room for them.
     pub(crate) fn upload<T: Real>(&self, context: Context, to: u64, numbers: &[T]) -> Result<(), GpuError> {
         self.within(context, || {
-            // SAFETY: reads the bytes of the slice; the memory at `to` has as many, which the caller in this crate says
+            // SAFETY: reads the bytes of the slice; the caller, in this crate, has allocated as many at `to`
             self.checked("cuMemcpyHtoD", unsafe { (self.upload)(to, numbers.as_ptr().cast(), size_of_val(numbers)) })
         })
     }
 
-    /// Copies numbers from memory of `allocate` that has as many.
+    /// Copies numbers from memory from `allocate`, which must contain as many.
     pub(crate) fn download<T: Real>(&self, context: Context, from: u64, numbers: &mut [T]) -> Result<(), GpuError> {
         self.within(context, || {
             let bytes = size_of_val(numbers);
-            // SAFETY: writes the bytes of the slice, of which all patterns are numbers; `from` has as many
+            // SAFETY: writes the bytes of the slice, for which every pattern of bits is a number; `from` has as many
             self.checked("cuMemcpyDtoH", unsafe { (self.download)(numbers.as_mut_ptr().cast(), from, bytes) })
         })
     }

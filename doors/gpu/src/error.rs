@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use rne_machine::EvaluationError;
 
-/// Why nothing was computed.
+/// Why nothing was computed on the card.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum GpuError {
@@ -17,7 +17,7 @@ pub enum GpuError {
         /// The words of the system.
         reason: String,
     },
-    /// The driver does not have a call.
+    /// The driver is too old: it does not have a call.
     OldDriver {
         /// The name of its library.
         library: PathBuf,
@@ -26,7 +26,7 @@ pub enum GpuError {
     },
     /// There is no such card.
     NoDevice {
-        /// The number that was asked for, from 0.
+        /// The number of the card that was asked for; the first is 0.
         ordinal: usize,
         /// How many cards there are.
         count: usize,
@@ -44,7 +44,7 @@ pub enum GpuError {
         number: i32,
         /// The name of the error, as `cuda.h` has it.
         name: String,
-        /// The driver's words for it.
+        /// The meaning of the error, in the driver's words.
         meaning: String,
     },
     /// The arm does not have the function.
@@ -60,13 +60,13 @@ pub enum GpuError {
         /// Whether it is missing.
         is_missing: bool,
     },
-    /// An array has another number of numbers.
+    /// An array has a wrong number of elements.
     Size {
         /// Its name.
         array: String,
-        /// The numbers that it must have.
+        /// The number of elements that it must have.
         expected: usize,
-        /// The numbers that it has.
+        /// The number of elements that it has.
         found: usize,
     },
     /// An array is on another card than the arm.
@@ -76,9 +76,9 @@ pub enum GpuError {
     },
     /// A batch is too large, or a rollout has no step.
     Range {
-        /// The name of the number: states, steps, every.
+        /// The name of the value: states, steps, every.
         what: &'static str,
-        /// The number.
+        /// The value.
         found: u64,
         /// The least and the largest number that are allowed.
         allowed: [u64; 2],
@@ -152,7 +152,7 @@ impl Error for GpuError {
     }
 }
 
-/// The advice about an error of a call of the driver.
+/// Returns advice for an error of a call of the driver; empty for most errors.
 fn advice(name: &str) -> &'static str {
     match name {
         "CUDA_ERROR_ILLEGAL_ADDRESS" => {

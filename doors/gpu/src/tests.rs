@@ -1,5 +1,5 @@
-//! The whole way from an arm to numbers, with a driver that runs kernels on the processor: what is not tested here is
-//! the hardware.
+//! Tests the whole way from an arm to numbers, with a fake driver that runs kernels on the processor. Only the hardware
+//! itself is not tested here.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use rne_runtime::machine::Kernel;
 
 use crate::{Device, GpuArm, GpuError, GpuRollout, Order, Precision, Real};
 
-/// The library of the crate `fake-driver`, which cargo builds beside the tests.
+/// Returns the path of the library of the crate `fake-driver`, which cargo builds beside the tests.
 fn fake() -> PathBuf {
     use fake_driver as _;
     let folder = std::env::current_exe().expect("a program");
@@ -25,7 +25,7 @@ fn arm(name: &str) -> CompiledArm {
     CompiledArm::with_plan(file.yaml, file.plan.expect("a plan")).expect("an arm")
 }
 
-/// Rows of each argument.
+/// Returns random values for each argument of a function, state by state.
 fn rows<T>(
     arm: &CompiledArm,
     function: Function,
@@ -37,7 +37,8 @@ fn rows<T>(
     let arguments = arm.function(function).expect("a function").arguments().to_vec();
     let array = |(name, elements): (&'static str, usize)| {
         let count = elements * states * if name == "tau" { steps } else { 1 };
-        // the moments of inertia of a payload are larger than its products, so none is below zero about any axis
+        // moments of inertia exceed the products of inertia, so that the inertia of the payload is positive about every
+        // axis
         let least = |at: usize| if name == "payload" && matches!(at % elements, 4..7) { 3.0 } else { 0.0 };
         (name, (0..count).map(|at| of(least(at) + random.f32())).collect())
     };
@@ -55,7 +56,7 @@ fn given<'a, T: Number>(rows: &'a [(&'static str, Vec<T>)]) -> Arguments<'a, T> 
     })
 }
 
-/// Close where the processor has no fused multiply-add, and equal where it has.
+/// Asserts that results are close, and that they are equal if the processor has fused multiply-add.
 fn agree<T: Number>(found: &[T], expected: &[T], what: &str) {
     assert_eq!(found.len(), expected.len(), "{what}");
     if Kernel::of::<f64>(VectorUnit::widest()).is_fused {
@@ -134,7 +135,7 @@ fn a_machine_without_a_driver_is_told_so() {
     assert!(missing.contains("No such file") || !cfg!(target_os = "linux"), "{missing}");
     assert!(missing.contains("a card of NVIDIA and its driver"), "{missing}");
     assert_eq!(words(&fake(), 1), "there is no graphics card 1: this machine has 1, counted from 0");
-    // a library that is there and is not the driver
+    // a file that exists but is not the driver
     let other = words(&std::env::current_exe().expect("a program"), 0);
     assert!(other.contains("cannot be opened (") || other.contains("no call cu"), "{other}");
 }
@@ -169,7 +170,7 @@ fn wrong_arguments_are_refused_before_a_launch() {
     assert_eq!(rolled(&GpuRollout::new(0, 0.1)), "`steps` is 0, but it must be from 1 to 2147483647");
     assert_eq!(rolled(&GpuRollout { every: 0, ..GpuRollout::new(3, 0.1) }), "`every` is 0, but it must be from 1 to 3");
     assert_eq!(rolled(&GpuRollout { every: 4, ..GpuRollout::new(3, 0.1) }), "`every` is 4, but it must be from 1 to 3");
-    // the last two are 0 and infinite in `f32`
+    // in `f32` the last two are 0 and infinite
     for step in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-60, 1e60] {
         let said = rolled(&GpuRollout::new(3, step));
         assert!(said.starts_with(&format!("`step` is {step} s, but it must be a finite number above zero")), "{said}");

@@ -1,6 +1,6 @@
-//! The compiler for a page that has it inside: the text of a robot file in, JSON out.
+//! The compiler of robot files for a web page that contains it: takes the text of a robot file, returns JSON.
 //!
-//! [`answer`] is all of it. [`border`] is how a page calls it where the module is WebAssembly.
+//! [`answer`] does all of it. [`border`] lets a page call it when it is compiled to WebAssembly.
 
 pub mod border;
 
@@ -9,15 +9,16 @@ use std::ops::Range;
 use rne_model::{Checked, Diagnostic, Reader, Report, Severity};
 use serde_json::{Value, json};
 
-/// What messages call the text.
+/// The name of the text in messages.
 const NAME: &str = "robot.yaml";
 
-/// What the compiler says of the text of a robot file, as JSON: `diagnostics`, and `page` when there is no error in it.
+/// Returns what the compiler finds in the text of a robot file, as JSON: `diagnostics`, and `page` if there is no
+/// error.
 ///
 /// A diagnostic has `severity` (`error`, `warning` or `note`), `message`, `label` and `help` (texts or null), and its
-/// place: `line` and `column` of the first character that is underlined, `end_line` and `end_column` of the first that
-/// is not, all from 1, columns in characters. What has no place in the text, for numbers of several lines make it up,
-/// has null for all four. `page` is that of `rne report`, with the plan that the compiler makes by itself.
+/// place: `line` and `column` of the first character that is underlined, `end_line` and `end_column` of the first
+/// character after it, all from 1, columns in characters. If numbers on several lines cause it together, it has no
+/// place, and all four are null. `page` is that of `rne report`, with the plan that the compiler makes by itself.
 #[must_use]
 pub fn answer(text: &str) -> Value {
     let Checked { robot, lints, .. } = match Reader::new(NAME).trees().couplings().read(text) {
@@ -56,7 +57,7 @@ fn diagnostic(text: &str, found: &Diagnostic) -> Value {
     })
 }
 
-/// An error of the whole text.
+/// Returns a diagnostic about the whole text.
 fn without_place(message: &str) -> Value {
     json!({
         "severity": "error",
@@ -70,7 +71,7 @@ fn without_place(message: &str) -> Value {
     })
 }
 
-/// Line and column behind a span that starts at `start`.
+/// Returns the line and the column after a span of the text that starts at `start`.
 fn end(text: &str, span: &Range<usize>, start: (usize, usize)) -> (usize, usize) {
     let spanned = text.get(span.clone()).unwrap_or_default();
     spanned.chars().fold(start, |(line, column), c| if c == '\n' { (line + 1, 1) } else { (line, column + 1) })
@@ -80,7 +81,7 @@ fn end(text: &str, span: &Range<usize>, start: (usize, usize)) -> (usize, usize)
 mod tests {
     use super::*;
 
-    /// No short text is known whose torques cannot be compiled, so the answer is looked at by itself.
+    /// No short text is known whose torques cannot be compiled, so the JSON of such an error is tested on its own.
     #[test]
     fn what_has_no_place_is_told_as_what_has_one() {
         let keys = |told: &Value| told.as_object().expect("an object").keys().cloned().collect::<Vec<_>>();

@@ -4,7 +4,7 @@
 use super::{Energy, InverseDynamics, MassMatrix, Regressor, TipWrenches};
 use crate::{BaseMotion, Scalar};
 #[cfg(feature = "arm")]
-use crate::{seven_steps::at_tip::AtTip, values::wrench::AllStill as _};
+use crate::{definition::still_wrenches::AllStill as _, seven_steps::at_tip::AtTip};
 
 /// The regressor of a robot with a floating base. The wrench on the base and the torques are linear in the inertial
 /// parameters, and the regressor is the matrix of this relation. Identification from the motion of the robot needs it.

@@ -3,9 +3,9 @@
 #[cfg(feature = "arm")]
 use crate::{
     definition::floating_euler_step::next_of_base,
+    definition::still_wrenches::AllStill as _,
     integrators::{POSITION, RATE, moved, moved_by},
     seven_steps::at_tip::AtTip,
-    values::wrench::AllStill as _,
 };
 
 capability! {

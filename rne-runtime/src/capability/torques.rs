@@ -5,7 +5,9 @@ use crate::number::ldlt::inverse_of;
 use crate::number::smooth_sign::SmoothSign;
 use crate::{AccelerationDerivatives, Dual, TorqueDerivatives, Wrench};
 #[cfg(feature = "arm")]
-use crate::{definition::coordinates::Coordinates as _, seven_steps::at_tip::AtTip, values::wrench::AllStill as _};
+use crate::{
+    definition::coordinates::Coordinates as _, definition::still_wrenches::AllStill as _, seven_steps::at_tip::AtTip,
+};
 
 capability! {
 /// Torques from motion: recursive Newton-Euler inverse dynamics, τ(q, q̇, q̈).

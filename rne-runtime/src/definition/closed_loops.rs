@@ -14,9 +14,12 @@ use nalgebra::{Matrix3, Vector3};
 use rne_model::{ClosedLoops, Cut, FixedFrame, JointKind, Pivot, Robot};
 
 use crate::definition::coordinates::Coordinates as _;
+use crate::definition::couplings::Counted;
 use crate::definition::floating_base::{BASE, of_base, solve_from_the_ends, turning};
+use crate::definition::kinematics::Placement;
 use crate::number::ldlt::{factor, solve};
 use crate::seven_steps::at_tip::AtTip;
+use crate::seven_steps::mechanism::Mechanism;
 use crate::{
     BaseMotion, Constant, DynArm, DynClosureStep, DynFloatingAccelerations, DynFloatingTorques, Scalar, Wrench,
     WrongLength,
@@ -310,6 +313,24 @@ struct Place<T> {
     omega: Vector3<T>,
     omega_dot: Vector3<T>,
     acceleration: Vector3<T>,
+}
+
+impl<S: Constant> Mechanism<'_, Counted, S> {
+    /// Axes and origin of a place on a link, in frame 0, and its Jacobian there.
+    #[allow(clippy::type_complexity)] // axes, origin, rows
+    fn placed<T: Scalar>(self, place: &FixedFrame<S>, q: &[T]) -> (Matrix3<T>, Vector3<T>, [Vec<T>; 6]) {
+        let start = Placement::identity();
+        let links = self.placements(start, q);
+        let at_place = Mechanism { at: Some(place), ..self };
+        let (rows, origin) = at_place.jacobian_from(start, links.as_ref());
+        (at_place.tip(start, links.as_ref()).rotation, origin, rows)
+    }
+
+    /// The axes of a joint in frame 0, turned with its link where the table is modified.
+    fn axes_of_joint<T: Scalar>(self, joint: usize, q: &[T]) -> Matrix3<T> {
+        let start = Placement::identity();
+        self.joint_frame(joint, start, self.placements(start, q).as_ref()).rotation
+    }
 }
 
 impl<S: Constant> DynArm<S> {

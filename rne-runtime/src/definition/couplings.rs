@@ -8,8 +8,21 @@ use std::borrow::Cow;
 use rne_model::Robot;
 
 use crate::definition::coordinates::Coordinates;
-use crate::definition::per_joint::Counted;
+use crate::definition::per_joint::PerJoint;
 use crate::{Constant, Scalar};
+
+/// Vectors of this length.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Counted(pub(crate) usize);
+
+impl PerJoint for Counted {
+    type Of<U: Clone> = Vec<U>;
+    type Coordinates<'a, S: Constant> = &'a Couplings<S>;
+
+    fn of<U: Clone>(self, value: impl FnMut(usize) -> U) -> Vec<U> {
+        (0..self.0).map(value).collect()
+    }
+}
 
 /// The joints that are coordinates, and those that follow them.
 #[derive(Clone, Debug, PartialEq)]

@@ -127,7 +127,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 
     /// Returns the observed frame, after one of `links`, when frame 0 is at `start`.
-    fn tip<T: Scalar>(self, start: Placement<T>, links: &[Placement<T>]) -> Placement<T> {
+    pub(crate) fn tip<T: Scalar>(self, start: Placement<T>, links: &[Placement<T>]) -> Placement<T> {
         let FixedFrame { on, placement } = self.observed();
         let link = on.map_or(start, |link| links[link]);
         link.then(&Placement::constant(&placement))
@@ -158,24 +158,6 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn jacobian<T: Scalar>(self, q: &[T]) -> [J::Of<T>; 6] {
         let base = Placement::constant(self.base);
         self.jacobian_from(base, self.placements(base, q).as_ref()).0
-    }
-
-    /// Axes and origin of a place on a link, in frame 0, and its Jacobian there.
-    #[cfg(feature = "std")]
-    #[allow(clippy::type_complexity)] // axes, origin, rows
-    pub(crate) fn placed<T: Scalar>(self, place: &FixedFrame<S>, q: &[T]) -> (Matrix3<T>, Vector3<T>, [J::Of<T>; 6]) {
-        let start = Placement::identity();
-        let links = self.placements(start, q);
-        let at_place = Mechanism { at: Some(place), ..self };
-        let (rows, origin) = at_place.jacobian_from(start, links.as_ref());
-        (at_place.tip(start, links.as_ref()).rotation, origin, rows)
-    }
-
-    /// The axes of a joint in frame 0, turned with its link where the table is modified.
-    #[cfg(feature = "std")]
-    pub(crate) fn axes_of_joint<T: Scalar>(self, joint: usize, q: &[T]) -> Matrix3<T> {
-        let start = Placement::identity();
-        self.joint_frame(joint, start, self.placements(start, q).as_ref()).rotation
     }
 
     /// The Jacobian when frame 0 is at `base`, and the origin of the frame.
@@ -287,17 +269,5 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
     pub fn at_frame(mut self, frame: FixedFrame<S>) -> Option<Self> {
         self.at = Some(frame);
         frame.on.is_none_or(|link| link < DOF).then_some(self)
-    }
-}
-
-#[cfg(feature = "std")]
-impl<S: Constant> crate::DynArm<S> {
-    /// This arm with the frame `frame` in the place of the tip; see [`Arm::at_frame`].
-    ///
-    /// `None` when `frame` is on a link that the arm does not have.
-    #[must_use]
-    pub fn at_frame(mut self, frame: FixedFrame<S>) -> Option<Self> {
-        self.at = Some(frame);
-        frame.on.is_none_or(|link| link < self.rows().len()).then_some(self)
     }
 }

@@ -2,8 +2,6 @@
 
 use crate::Constant;
 use crate::definition::coordinates::{Coordinates, Joints};
-#[cfg(feature = "std")]
-use crate::definition::couplings::Couplings;
 
 /// Makes collections with one element per joint. The functions of a robot are written once, for both kinds.
 pub(crate) trait PerJoint: Copy {
@@ -35,20 +33,5 @@ impl<const DOF: usize> PerJoint for Known<DOF> {
 
     fn of<U: Clone>(self, value: impl FnMut(usize) -> U) -> [U; DOF] {
         core::array::from_fn(value)
-    }
-}
-
-/// Vectors of this length.
-#[cfg(feature = "std")]
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Counted(pub(crate) usize);
-
-#[cfg(feature = "std")]
-impl PerJoint for Counted {
-    type Of<U: Clone> = Vec<U>;
-    type Coordinates<'a, S: Constant> = &'a Couplings<S>;
-
-    fn of<U: Clone>(self, value: impl FnMut(usize) -> U) -> Vec<U> {
-        (0..self.0).map(value).collect()
     }
 }

@@ -33,7 +33,7 @@ use crate::{ArmWithTips, BaseMotion, Constant, FloatingRegressor, Scalar};
 const TENSOR: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
 /// The numbers of a link in one row of Y.
-type Elements<T> = [T; PER_LINK];
+pub(crate) type Elements<T> = [T; PER_LINK];
 
 /// The rows of a floating base, force above moment: of the base's own parameters, and of the links.
 pub(crate) struct OfBase<J: PerJoint, T: Scalar> {
@@ -174,28 +174,8 @@ impl<const DOF: usize, const NV: usize, const BODIES: usize, const TIPS: usize, 
     }
 }
 
-#[cfg(feature = "std")]
-impl<S: Constant> crate::DynArm<S> {
-    /// As [`FloatingRegressor::floating_regressor`]: 6 + n rows, the base and the links, parameter.
-    ///
-    /// # Errors
-    /// When an argument does not have one element per joint.
-    pub fn floating_regressor<T: Scalar>(
-        &self,
-        q: &[T],
-        qd: &[T],
-        qdd: &[T],
-        base: &BaseMotion<T>,
-    ) -> Result<Vec<Vec<Elements<T>>>, crate::WrongLength> {
-        self.have_lengths(&[("q", q), ("qd", qd), ("qdd", qdd)])?;
-        let (of_base, of_joints) = self.definition().regressor([q, qd, qdd], base);
-        let row = |row| (0..=self.rows().len()).map(|body| element(&of_base, &of_joints, row, body)).collect();
-        Ok((0..BASE + self.dof()).map(row).collect())
-    }
-}
-
 /// The elements of a row and of a body; the base is the first of both.
-fn element<J: PerJoint, T: Scalar>(
+pub(crate) fn element<J: PerJoint, T: Scalar>(
     of_base: &OfBase<J, T>,
     of_joints: &Square<J, Elements<T>>,
     row: usize,

@@ -12,10 +12,10 @@ use rne_model::{Contact, Convention, FixedFrame, Joint, Link, Model, Motor, Robo
 use crate::definition::Definition;
 use crate::definition::closed_loops::Loops;
 use crate::definition::coordinates::Coordinates as _;
-use crate::definition::couplings::Couplings;
+use crate::definition::couplings::{Counted, Couplings};
 use crate::definition::floating_base::BASE;
 use crate::definition::motors::Motors;
-use crate::definition::per_joint::Counted;
+use crate::definition::regressor::{Elements, element};
 use crate::seven_steps::at_tip::{AtTip, Tip};
 use crate::seven_steps::link_frame::{Chain, LinkFrame, Table};
 use crate::seven_steps::link_state::JointMotions;
@@ -280,6 +280,32 @@ impl<S: Constant> DynArm<S> {
             return Ok(());
         }
         Err(WrongLength { argument, expected: self.dof(), found: values.len() })
+    }
+
+    /// This arm with the frame `frame` in the place of the tip; see [`Arm::at_frame`](crate::Arm::at_frame).
+    ///
+    /// `None` when `frame` is on a link that the arm does not have.
+    #[must_use]
+    pub fn at_frame(mut self, frame: FixedFrame<S>) -> Option<Self> {
+        self.at = Some(frame);
+        frame.on.is_none_or(|link| link < self.rows().len()).then_some(self)
+    }
+
+    /// As [`FloatingRegressor::floating_regressor`](crate::FloatingRegressor::floating_regressor): 6 + n rows, the base and the links, parameter.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn floating_regressor<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+        base: &BaseMotion<T>,
+    ) -> Result<Vec<Vec<Elements<T>>>, crate::WrongLength> {
+        self.have_lengths(&[("q", q), ("qd", qd), ("qdd", qdd)])?;
+        let (of_base, of_joints) = self.definition().regressor([q, qd, qdd], base);
+        let row = |row| (0..=self.rows().len()).map(|body| element(&of_base, &of_joints, row, body)).collect();
+        Ok((0..BASE + self.dof()).map(row).collect())
     }
 
     pub(crate) fn mechanism(&self) -> Mechanism<'_, Counted, S> {

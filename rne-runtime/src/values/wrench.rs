@@ -33,34 +33,6 @@ impl<T: Scalar> Wrench<T> {
     }
 }
 
-/// Wrenches at tips, where nothing changes them.
-#[cfg(feature = "arm")]
-pub(crate) trait AllStill<T> {
-    /// As many, of dual numbers.
-    type Still: AsRef<[Wrench<Dual<T>>]>;
-
-    /// Each of them [`still`](Wrench::still).
-    fn all_still(self) -> Self::Still;
-}
-
-#[cfg(feature = "arm")]
-impl<const TIPS: usize, T: Scalar> AllStill<T> for &[Wrench<T>; TIPS] {
-    type Still = [Wrench<Dual<T>>; TIPS];
-
-    fn all_still(self) -> Self::Still {
-        self.map(Wrench::still)
-    }
-}
-
-#[cfg(all(feature = "arm", feature = "std"))]
-impl<T: Scalar> AllStill<T> for &[Wrench<T>] {
-    type Still = Vec<Wrench<Dual<T>>>;
-
-    fn all_still(self) -> Self::Still {
-        self.iter().copied().map(Wrench::still).collect()
-    }
-}
-
 /// From and to nalgebra.
 #[cfg(feature = "nalgebra")]
 impl<T: Scalar> Wrench<T> {

@@ -1,4 +1,6 @@
-//! Torques that motors with gears add: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇). Rotor gyroscopics are left out.
+//! Joint torques due to motors with gears: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇), with the gear ratio G, the rotor
+//! inertia Jm, the viscous friction B and the Coulomb friction Tc of the motor. The gyroscopic moments of rotors are
+//! left out.
 
 use rne_model::{Entry, Robot};
 
@@ -6,7 +8,8 @@ use crate::formulate::JointState;
 use crate::formulate::arm::number;
 use crate::ir::{Builder, Cause, Name, Quantity, Symbol};
 
-/// The torques of the motors, base to tip; zero where a joint has none. Rotors that belong to the arm are in its own.
+/// Returns the torque that each joint's motor adds, base to tip; zero where a joint has no motor. Where the rotors
+/// belong to the arm, their inertia is left out here, because the torques of the arm include it.
 pub(crate) fn torques<'s>(builder: &'s Builder, robot: &Robot, states: &[JointState<'s>]) -> Vec<Symbol<'s>> {
     let torque = |(index, state): (usize, &JointState<'s>)| {
         let joint = index + 1;

@@ -1,8 +1,8 @@
 //! Derivatives of the torques weighted by multipliers, λᵀτ, in reverse mode.
 //!
 //! λᵀτ is one number, so its gradient takes a few times the operations of the torques, whatever the number of joints.
-//! The adjoint of the forces on a link is the velocity that it would have if the joints had the velocities λ, so what
-//! is derived here is the virtual power of the forces that move the robot.
+//! The adjoint of the forces on a link is the velocity that the link would have if the joints had the velocities λ. So
+//! the derivatives here are those of the virtual power of the forces that move the robot.
 
 use crate::coordinates::Coordinates;
 use crate::formulate::equations::inverse_by;
@@ -11,7 +11,7 @@ use crate::formulate::{Outputs, integrator, square};
 use crate::function::Function;
 use crate::ir::{Builder, Name, Quantity, Symbol, WithRespectTo};
 
-/// λᵀτ of the torques of the coordinates.
+/// Returns λᵀτ, the sum of the torques of the coordinates, each times its multiplier λ.
 fn weighted<'s>(builder: &'s Builder, coordinates: &Coordinates, torques: &[Symbol<'s>]) -> Symbol<'s> {
     let terms = coordinates.joints().iter().zip(torques).map(|(joint, &torque)| {
         let multiplier = builder.argument(Name::scalar(Quantity::Multiplier, joint + 1));
@@ -20,7 +20,7 @@ fn weighted<'s>(builder: &'s Builder, coordinates: &Coordinates, torques: &[Symb
     terms.reduce(|sum, term| sum + term).unwrap_or_else(|| builder.zero())
 }
 
-/// The derivatives of λᵀτ by q, by q̇ and by q̈.
+/// Returns the derivatives of λᵀτ with respect to q, q̇ and q̈.
 pub(crate) fn gradient<'s>(builder: &'s Builder, coordinates: &Coordinates, torques: &[Symbol<'s>]) -> Outputs<'s> {
     let kinds = [WithRespectTo::Position, WithRespectTo::Rate, WithRespectTo::RateDot];
     let by: Vec<_> = kinds.iter().flat_map(|kind| coordinates.joints().iter().map(|joint| kind(joint + 1))).collect();
@@ -31,20 +31,20 @@ pub(crate) fn gradient<'s>(builder: &'s Builder, coordinates: &Coordinates, torq
     by.into_iter().zip(found).map(|(by, derivative)| (name(by), builder.name(name(by), derivative))).collect()
 }
 
-/// The second derivatives of λᵀτ, each by rows.
+/// The second derivatives of λᵀτ; each block is stored by rows.
 pub(crate) struct Hessian<M> {
-    /// By q and q: the upper half, from the diagonal on.
+    /// With respect to q and q: the upper half, from the diagonal on.
     pub(crate) dq_dq: M,
-    /// By q, for the rows, and q̇.
+    /// With respect to q (rows) and q̇ (columns).
     pub(crate) dq_dqd: M,
-    /// By q̇ and q̇: the upper half, from the diagonal on.
+    /// With respect to q̇ and q̇: the upper half, from the diagonal on.
     pub(crate) dqd_dqd: M,
-    /// By q, for the rows, and q̈.
+    /// With respect to q (rows) and q̈ (columns).
     pub(crate) dq_dqdd: M,
 }
 
 impl<'s> Hessian<Vec<Vec<Symbol<'s>>>> {
-    /// The blocks, by name; an element and its mirror are one number.
+    /// Returns the blocks as named results. The elements (i, j) and (j, i) of a symmetric block are one number.
     pub(crate) fn outputs(&self, coordinates: &Coordinates) -> Outputs<'s> {
         use WithRespectTo::{Position, Rate, RateDot};
         let joints = coordinates.joints();
@@ -67,7 +67,7 @@ impl<'s> Hessian<Vec<Vec<Symbol<'s>>>> {
     }
 }
 
-/// The second derivatives of λᵀτ: those of its gradient, forwards.
+/// Returns the second derivatives of λᵀτ: its gradient, differentiated in forward mode.
 pub(crate) fn hessian<'s>(builder: &'s Builder, coordinates: &Coordinates, torques: &[Symbol<'s>]) -> Outputs<'s> {
     let joints = coordinates.joints();
     let dof = joints.len();
@@ -76,7 +76,7 @@ pub(crate) fn hessian<'s>(builder: &'s Builder, coordinates: &Coordinates, torqu
     let all: Vec<_> = kinds.into_iter().flat_map(variables).map(WithRespectTo::variable).collect();
     builder.at(Quantity::WeightedTorque, 0);
     let gradient = builder.gradient(weighted(builder, coordinates, torques), &all);
-    // the elements by q̈ are M λ
+    // the derivatives with respect to q̈ are M λ, which does not depend on the velocities
     let by_position = builder.derivatives(&gradient, variables(WithRespectTo::Position));
     let by_rate = builder.derivatives(&gradient[dof..2 * dof], variables(WithRespectTo::Rate));
     let whole = |kind: usize| {
@@ -89,26 +89,26 @@ pub(crate) fn hessian<'s>(builder: &'s Builder, coordinates: &Coordinates, torqu
     Hessian { dq_dq: half(&by_position), dq_dqd, dqd_dqd: half(&by_rate), dq_dqdd }.outputs(coordinates)
 }
 
-/// The inverse of a mass matrix, on the way to the derivatives of the accelerations.
+/// The inverse of a mass matrix, from which the derivatives of the accelerations are computed.
 pub(crate) struct Inverse<'s, 'a> {
     builder: &'s Builder,
     system: &'a System<'a>,
     factors: Factors<'s>,
-    /// By rows.
+    /// Elements of the inverse by rows.
     elements: Outputs<'s>,
 }
 
 impl<'s, 'a> Inverse<'s, 'a> {
-    /// Whether the derivatives are those of a step, so that its duration h is a factor of all.
+    /// Whether the derivatives are those of an Euler step: then the duration h is a factor of all of them.
     fn is_of_step(builder: &Builder) -> bool {
         builder.function == Function::EulerStepDerivatives
     }
 
-    /// Row i of `upper` holds the elements (i, i) to (i, n) of the matrix.
+    /// Inverts the matrix; row i of `upper` has the elements (i, i) to (i, n) of it.
     pub(crate) fn of(builder: &'s Builder, system: &'a System<'a>, upper: &[Vec<Symbol<'s>>]) -> Self {
         let factors = Factors::of(builder, system, upper);
         let elements = if Self::is_of_step(builder) {
-            // the duration is a factor of D⁻¹, not of every element
+            // D⁻¹ is multiplied by the duration: that takes fewer products than to multiply every element
             inverse_by(builder, system, &factors.divided_by(integrator::duration(builder)), Quantity::NextRate)
         } else {
             inverse_by(builder, system, &factors, Quantity::RateDot)
@@ -116,7 +116,8 @@ impl<'s, 'a> Inverse<'s, 'a> {
         Self { builder, system, factors, elements }
     }
 
-    /// Solves for the accelerations, which formulas that follow have as those of the joints.
+    /// Solves for the accelerations and stores them in the builder, so that later formulas use them as those of the
+    /// joints.
     pub(crate) fn keep_accelerations(&self, bias: Vec<Symbol<'s>>) {
         let coordinates = self.system.coordinates;
         let joints = coordinates.joints();
@@ -127,7 +128,8 @@ impl<'s, 'a> Inverse<'s, 'a> {
         self.builder.keep_accelerations(of.zip(solved.into_iter().flatten()));
     }
 
-    /// -M⁻¹ ∂τ/∂q and -M⁻¹ ∂τ/∂q̇, given ∂τ/∂q and ∂τ/∂q̇ by rows, and M⁻¹; of a step, what follows from them.
+    /// Returns -M⁻¹ ∂τ/∂q, -M⁻¹ ∂τ/∂q̇ and M⁻¹, given ∂τ/∂q and ∂τ/∂q̇ by rows. For an Euler step, returns the
+    /// derivatives of the next state, computed from these.
     pub(crate) fn derivatives(self, by_state: &[Vec<Vec<Symbol<'s>>>; 2]) -> Outputs<'s> {
         let joints = self.system.coordinates.joints();
         let dof = joints.len();

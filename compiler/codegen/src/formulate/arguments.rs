@@ -1,4 +1,4 @@
-//! The arguments of a function as the states of the joints, the load at the tip and the motion of the base.
+//! Reads the arguments of a function: the states of the joints, the load at the tip and the motion of the base.
 
 use rne_model::Robot;
 
@@ -6,7 +6,8 @@ use crate::formulate::{Arm, AtTip, JointState, Motion, Payload, Wrench, arm, bas
 use crate::function::{Argument, Function, What};
 use crate::ir::{Axis, Builder, Cause, Name, Quantity, Symbol, Vector, all_names_of};
 
-/// The states of all joints. A rate or an acceleration that is no argument is zero, or was solved for.
+/// Returns the states of all joints. A rate or an acceleration that is not an argument is zero, or is the value that
+/// was solved for.
 pub(super) fn states<'s>(arm: &Arm<'s>) -> Vec<JointState<'s>> {
     (0..arm.links.len()).map(|joint| state(arm, joint)).collect()
 }
@@ -21,11 +22,11 @@ fn state<'s>(arm: &Arm<'s>, joint: usize) -> JointState<'s> {
     let turn_of = |quantity| builder.argument(Name::scalar(quantity, joint + 1));
     JointState {
         q: of_joint(Quantity::Position),
-        // the sine of a part of an angle is no function of that of the angle
+        // sin q cannot be computed from the sine of another joint's angle where q is a multiple of that angle
         turn: (function.takes(Argument::Sines) && coordinates.has(joint))
             .then(|| (turn_of(Quantity::Sine), turn_of(Quantity::Cosine))),
         qd: given(Argument::Rates, Quantity::Rate, Cause::AtRest),
-        // closed loops accelerate their dependent joints
+        // in a closed loop, the dependent joints accelerate even where the independent joints do not
         qdd: match coordinates.bias(builder, joint) {
             Some(bias) if !function.takes(Argument::Accelerations) => bias,
             _ if builder.has_accelerations() => of_joint(Quantity::RateDot),
@@ -34,7 +35,7 @@ fn state<'s>(arm: &Arm<'s>, joint: usize) -> JointState<'s> {
     }
 }
 
-/// The load at the tip: a payload, a wrench, a wrench at each tip, or nothing.
+/// Returns the load at the tip: a payload, a wrench, a wrench at each tip, or nothing.
 pub(super) fn tip<'s>(arm: &Arm<'s>) -> AtTip<'s> {
     let (builder, joints) = (arm.builder, arm.links.len());
     if let Some(payload) = Payload::argument(builder, joints) {
@@ -54,7 +55,7 @@ pub(super) fn tip<'s>(arm: &Arm<'s>) -> AtTip<'s> {
     }
 }
 
-/// The motion of the base, and gravity in frame 0.
+/// Returns the motion of the base, and gravity in frame 0.
 pub(super) fn base<'s>(arm: &Arm<'s>, robot: &Robot) -> Motion<'s> {
     let (builder, function) = (arm.builder, arm.builder.function);
     let of_base = |quantity| vector(builder, quantity, 0);
@@ -66,12 +67,12 @@ pub(super) fn base<'s>(arm: &Arm<'s>, robot: &Robot) -> Motion<'s> {
         return Motion::of_twist(arm, [Quantity::OriginVelocity, Quantity::Omega].map(of_base));
     }
     if function.takes(Argument::BaseVelocity) || function.takes(Argument::BaseTwist) {
-        // accelerations do not depend on the linear velocity
+        // the accelerations do not depend on the linear velocity of the base, so it is not read
         let nothing = builder.zeros(Cause::NoAcceleration);
         let [omega_dot, acceleration] = [Quantity::OmegaDot, Quantity::Acceleration]
             .map(|quantity| builder.solved_of_base(quantity).unwrap_or(nothing));
         let motion = || Motion::of_base(arm, [of_base(Quantity::Omega), omega_dot, acceleration], nothing);
-        // the same quantities come again, at the accelerations that are solved for
+        // this code runs a second time with the solved accelerations; only the second run names its quantities
         let is_first = function == Function::FloatingEulerStepDerivatives && !builder.has_accelerations();
         return if is_first { builder.unnamed(motion) } else { motion() };
     }
@@ -86,7 +87,7 @@ pub(super) fn base<'s>(arm: &Arm<'s>, robot: &Robot) -> Motion<'s> {
     }
 }
 
-/// An argument that is a vector.
+/// Returns an argument that is a vector.
 pub(super) fn vector(builder: &Builder, quantity: Quantity, joint: usize) -> Vector<'_> {
     Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, joint, axis))))
 }

@@ -1,4 +1,5 @@
-//! From the rows of the table to the constants of the seven steps, in form P: frame i at joint i, fixed to link i.
+//! Converts the rows of the table to the constants of the seven steps, in form P: frame i is at joint i, fixed to link
+//! i.
 //!
 //! ```text
 //! standard   d = (a_i, 0, b_i) + Rx(α_i) c̄   I = Rx(α_i) Ī Rx(α_i)ᵀ
@@ -9,10 +10,11 @@
 //! modified    Rx(α_i)    (a_i, 0, 0)    l_i - c̄_p            R_t                    p_t
 //! ```
 //!
-//! p is the parent link, n the link of the tip; row i of a modified table carries the twist and the length before joint
-//! i. On the base the rotation of a standard table is 1. R_t and p_t are the tool's.
+//! p is the parent link, n the link of the tip. Row i of a modified table has the twist and the length before joint i.
+//! On the base the rotation of a standard table is 1. R_t and p_t are the rotation and the translation of the tool.
 //!
-//! In a tree a row may begin at a placement R_b, p_b in the link frame of its parent. It then stands before the row:
+//! In a tree a row may begin at a placement R_b, p_b in the link frame of its parent. Then the placement comes before
+//! the row:
 //!
 //! ```text
 //! standard    Rx(α_p) R_b       Rx(α_p) p_b
@@ -32,17 +34,17 @@ use crate::ir::{Axis, Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
 /// Where a joint, or the tip frame, is mounted on its parent link: the constants between a link and what it carries.
 #[derive(Clone, Copy)]
 pub(crate) struct Mount<'s> {
-    /// Turns components in the axes of the joint at θ = 0, or of the tip frame, into components in those of the parent.
+    /// Rotation from the axes of the joint at θ = 0, or of the tip frame, to the axes of the parent.
     pub(crate) rotation: Matrix<'s>,
-    /// Vector from the parent's centre of mass to the joint or the tip; for the base, from the origin of frame 0.
+    /// Vector from the parent's centre of mass (for the base: from the origin of frame 0) to the joint or the tip.
     pub(crate) r: Vector<'s>,
-    /// To the same point from the end of the parent's offset, where the link frame of the table stands.
+    /// Vector to the joint or the tip from the end of the parent's offset, where the link frame of the table is.
     pub(crate) lever: Vector<'s>,
-    /// Tells it from the other things that the parent carries; 0 for the first of them.
+    /// Number that distinguishes the joints and tips of one parent; 0 for the first of them.
     pub(crate) label: usize,
 }
 
-/// The constants of one link and of the joint that moves it.
+/// The constants of one link, and of the joint that moves it relative to its parent.
 pub(crate) struct Link<'s> {
     /// The link that carries the joint, counted from 0; `None` for the base.
     pub(crate) parent: Option<usize>,
@@ -52,24 +54,25 @@ pub(crate) struct Link<'s> {
     pub(crate) theta: Angle,
     /// The sine and cosine of the angle, if they are known at run time only.
     pub(crate) varying_turn: Option<[Symbol<'s>; 2]>,
-    /// (a_i, 0, b_i) of a standard, (0, 0, b_i) of a modified row; b_i without the joint variable.
+    /// (a_i, 0, b_i) of a standard row, (0, 0, b_i) of a modified row; b_i without the joint variable.
     pub(crate) offset: Vector<'s>,
-    /// Turns components in the link frame of the table into components in frame i.
+    /// Rotation from the axes of the link frame of the table to those of frame i.
     pub(crate) table_axes: Matrix<'s>,
-    /// From the end of the offset.
+    /// Mass, centre of mass and inertia of the link; the centre of mass is from the end of the offset.
     pub(crate) body: Body<'s>,
-    /// G² Jm of the joint's rotor, if that belongs to the arm.
+    /// G² Jm of the joint's rotor, if the rotor belongs to the arm.
     pub(crate) rotor: Option<Symbol<'s>>,
 }
 
-/// The matter of a link, or of the base, about a point of it.
+/// Mass, centre of mass and inertia of a link, or of the base, about a reference point fixed to it.
 pub(crate) struct Body<'s> {
     pub(crate) mass: Symbol<'s>,
-    /// Centre of mass from this point.
+    /// Vector from the reference point to the centre of mass.
     pub(crate) com: Vector<'s>,
-    /// About the centre of mass.
+    /// Inertia about the centre of mass.
     pub(crate) inertia: Matrix<'s>,
-    /// h, the first moment about the end of `com` that no mass accounts for; `None` of every body.
+    /// First moment h about the end of `com` that is given in addition to the mass; `None` for a body with physical
+    /// parameters. Only sets of base parameters have it.
     pub(crate) first_moment: Option<Vector<'s>>,
 }
 
@@ -78,14 +81,13 @@ pub(crate) struct Arm<'s> {
     pub(crate) builder: &'s Builder,
     pub(crate) coordinates: Coordinates,
     pub(crate) links: Vec<Link<'s>>,
-    /// The rotors that turn on links and on the base.
+    /// The rotors of the list `motors`, which turn on links and on the base.
     pub(crate) spins: Vec<Spin<'s>>,
-    /// Where the tip frame is mounted on its link; a frame may stand in its place.
+    /// Where the tip frame is mounted on its link; if the function is about another frame, where that frame is mounted.
     pub(crate) tip: Mount<'s>,
     /// The link that carries the tip frame, counted from 0; `None` for the base.
     pub(crate) tip_link: Option<usize>,
-    /// The tips at which the function that is being written takes a load, with their links: the tip frame, or those
-    /// of the list `tips`.
+    /// The tips at which the function takes a load, each with its link: the tip frame, or the tips of the list `tips`.
     pub(crate) tips: Vec<(Option<usize>, Mount<'s>)>,
     /// Gravity in frame 0.
     pub(crate) gravity: Vector<'s>,
@@ -106,7 +108,7 @@ impl<'s> Arm<'s> {
             rows.iter().enumerate().map(|(index, row)| turn_about_x(builder, robot, index, &row.dh.alpha)).collect();
         let floating_base = floating_base(builder, robot);
         let near = builder.origins.clone();
-        // where joints are near the arm: from there to the link frame of the table
+        // for joint frames that are placed near the arm: the vectors from these frames to the link frames of the table
         let mut ends: Vec<Vector<'s>> = Vec::new();
         let mut links: Vec<Link<'s>> = Vec::with_capacity(joints);
         for (index, row) in rows.iter().enumerate() {
@@ -135,7 +137,7 @@ impl<'s> Arm<'s> {
             let mount = Mount { rotation, r, lever, label };
             let com = Vector([0, 1, 2].map(|axis| number(Entry::Com(index, axis), row.link.com[axis])));
             let inertia = inertia(builder, robot, index);
-            // in a standard table, the twist after joint i is in row i
+            // row i of a standard table has the twist after joint i, so its link frame is turned by that twist
             let (length, table_axes) = match robot.convention {
                 Convention::Standard => (number(Entry::A(index), row.dh.a), Some(twists[index])),
                 Convention::Modified => (zero(), None),
@@ -192,17 +194,17 @@ impl<'s> Arm<'s> {
         }
     }
 
-    /// The mount of what a link carries on the way to the tip: the next joint, or the tip.
+    /// Returns the mount of the next joint on the way from a link to the tip, or that of the tip if there is none.
     pub(crate) fn carried_by(&self, index: usize) -> &Mount<'s> {
         self.carried_joints(index).find(|(joint, _)| self.moves_tip(*joint)).map_or(&self.tip, |(_, link)| &link.mount)
     }
 
-    /// The joints that a link carries, counted from 0.
+    /// Returns the joints that a link carries, counted from 0.
     pub(crate) fn carried_joints(&self, index: usize) -> impl Iterator<Item = (usize, &Link<'s>)> {
         self.links.iter().enumerate().filter(move |(_, link)| link.parent == Some(index))
     }
 
-    /// The element that belongs to the link of the tip.
+    /// Returns the element for the link that carries the tip; `None` if the base carries it.
     pub(crate) fn at_tip<'a, T>(&self, of_links: &'a [T]) -> Option<&'a T> {
         of_links.get(self.tip_link?)
     }
@@ -217,13 +219,15 @@ impl<'s> Arm<'s> {
         self.tips.iter().any(|(on, _)| self.moves(joint, *on))
     }
 
-    /// Whether a joint moves a link, `None` for the base: it is the joint of this link, or of one that carries it.
+    /// Whether a joint moves a link (`None`: the base): it is the joint of this link, or that of a link before it in
+    /// the chain.
     pub(crate) fn moves(&self, joint: usize, link: Option<usize>) -> bool {
         std::iter::successors(link, |&index| self.links[index].parent).any(|index| index == joint)
     }
 }
 
-/// The tips, or the frame in their place, in the link frames of the table.
+/// Returns the placements of the tips in the link frames of the table; if the function is about another frame, returns
+/// that frame only.
 fn placed_tips<'s>(builder: &'s Builder, robot: &Robot) -> Vec<(Option<usize>, Placement<'s>)> {
     let frame = builder.function.frame(robot);
     let tips = match frame {
@@ -235,7 +239,7 @@ fn placed_tips<'s>(builder: &'s Builder, robot: &Robot) -> Vec<(Option<usize>, P
         let entry = |axis| match frame {
             Some(FrameId::Named(frame)) => Entry::FrameXyz(frame, axis),
             None if builder.function.has_tips() => robot.tip_entry(tip, axis),
-            // the placement of a link frame is no entry, and zero
+            // the frame of a link has the placement zero, which is no entry of the robot
             _ => Entry::ToolXyz(axis),
         };
         (*on, Placement::new(builder, robot, placement, entry))
@@ -243,7 +247,7 @@ fn placed_tips<'s>(builder: &'s Builder, robot: &Robot) -> Vec<(Option<usize>, P
     tips.iter().enumerate().map(placed).collect()
 }
 
-/// Where tips are mounted on their links. Of a frame in the place of the tip there is one.
+/// Returns where tips are mounted on their links. If the function is about another frame, there is only that frame.
 fn mounted<'s>(
     (builder, robot): (&'s Builder, &Robot),
     (links, floating_base): (&[Link<'s>], Option<&Body<'s>>),
@@ -261,7 +265,8 @@ fn mounted<'s>(
         let tip = links.len() + 1 + index;
         let is_first = links.iter().all(|other| other.parent != link) && tips.iter().all(|(on, _)| *on != link);
         let label = if is_first { 0 } else { tip };
-        // a frame carries no load, and its link has a lever to the next joint already
+        // a frame carries no load, so its lever from the centre of mass is not used; the link's lever to the next joint
+        // exists
         let r = match frame {
             Some(_) => builder.zeros(Cause::FreeTip),
             None => from_com(builder, (links, floating_base), link, (label, lever)),
@@ -272,14 +277,16 @@ fn mounted<'s>(
     tips
 }
 
-/// Where a row of a tree begins in the link frame of its parent, if not there. Run-time parameters do not change it.
+/// Returns the placement at which a row of a tree begins in the link frame of its parent; `None` if it is the identity.
+/// It does not depend on run-time parameters.
 fn beginning<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Option<Placement<'s>> {
     let placement = robot.joints.get(index)?.branch?.placement;
     (!placement.is_identity()).then(|| Placement::constant(builder, &placement))
 }
 
-/// A lever from the parent's centre of mass. A base that stands still moves no point of itself, whatever the lever is.
-/// If the function has the motion of a base without `floating_base`, the lever begins at the origin of frame 0.
+/// Returns a lever from the parent's centre of mass. On a fixed base it is zero, because no point of the base moves. If
+/// the motion of the base is an argument but the robot has no `floating_base`, the lever begins at the origin of frame
+/// 0.
 fn from_com<'s>(
     builder: &'s Builder,
     (links, floating_base): (&[Link<'s>], Option<&Body<'s>>),
@@ -295,7 +302,7 @@ fn from_com<'s>(
     }
 }
 
-/// The floating base: without mass, where the file has no `floating_base` and the function returns the
+/// Returns the floating base. Its mass is zero where the robot has no `floating_base` and the function returns the
 /// wrench on the base.
 fn floating_base<'s>(builder: &'s Builder, robot: &Robot) -> Option<Body<'s>> {
     let (function, base) = (builder.function, robot.floating_base.as_ref().map(|base| base.link));
@@ -310,7 +317,7 @@ fn floating_base<'s>(builder: &'s Builder, robot: &Robot) -> Option<Body<'s>> {
     })
 }
 
-/// The mass of a link. A constant mass has its name as the cause.
+/// Returns the mass of a link as a named symbol. The trace gives that name as the cause of a constant mass.
 fn mass<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Symbol<'s> {
     let name = Name::scalar(Quantity::Mass, index + 1);
     match robot.run_time.formula(Entry::Mass(index)) {
@@ -319,7 +326,7 @@ fn mass<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Symbol<'s> {
     }
 }
 
-/// A constant placement: frame n → tip frame, or world → frame 0.
+/// A constant placement: of the tip frame in frame n, or of frame 0 in the world.
 #[derive(Clone, Copy)]
 pub(crate) struct Placement<'s> {
     pub(crate) rotation: Matrix<'s>,
@@ -327,13 +334,13 @@ pub(crate) struct Placement<'s> {
 }
 
 impl<'s> Placement<'s> {
-    /// R = (Rz(yaw) Ry(pitch)) Rx(roll); `xyz` are the entries of the translation.
+    /// Returns a placement with R = (Rz(yaw) Ry(pitch)) Rx(roll); `xyz` gives the entry of each translation component.
     fn new(builder: &'s Builder, robot: &Robot, transform: &Transform, xyz: impl Fn(usize) -> Entry) -> Self {
         let translation = [0, 1, 2].map(|axis| number(builder, robot, xyz(axis), transform.xyz[axis]));
         Self { translation: Vector(translation), ..Self::constant(builder, transform) }
     }
 
-    /// With a constant translation.
+    /// Returns a placement whose translation does not depend on run-time parameters.
     pub(crate) fn constant(builder: &'s Builder, transform: &Transform) -> Self {
         let translation = transform.xyz.map(|x| builder.constant(x, Cause::Arithmetic));
         let [roll, pitch, yaw] = transform.rpy.map(|angle| builder.constant_turn(&angle, Cause::Arithmetic));
@@ -343,7 +350,7 @@ impl<'s> Placement<'s> {
     }
 }
 
-/// G² Jm at a joint, of a robot that is taken with its rotors.
+/// Returns G² Jm of a joint, if the robot includes the inertia of its rotors.
 fn rotor<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Option<Symbol<'s>> {
     let motor = robot.joints.get(index)?.motor.filter(|_| robot.rotors)?;
     let ratio = number(builder, robot, Entry::GearRatio(index), motor.gear_ratio);
@@ -351,7 +358,7 @@ fn rotor<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Option<Symbol
     Some(builder.name(Name::scalar(Quantity::RotorInertia, index + 1), inertia))
 }
 
-/// A number of the table: a constant, or a formula over what is known at run time only.
+/// Returns a number of the table: a constant, or a formula over parameters that are known at run time only.
 pub(crate) fn number<'s>(builder: &'s Builder, robot: &Robot, entry: Entry, value: f64) -> Symbol<'s> {
     match robot.run_time.formula(entry) {
         Some(written) => formula(builder, written),
@@ -375,7 +382,7 @@ fn formula<'s>(builder: &'s Builder, written: &Formula) -> Symbol<'s> {
     }
 }
 
-/// The inertia of a link about its centre of mass.
+/// Returns the inertia of a link about its centre of mass.
 fn inertia<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Matrix<'s> {
     use InertiaElement::{Xx, Xy, Xz, Yy, Yz, Zz};
     let Matrix(fixed) = builder.inertia(&robot.joints[index]);
@@ -388,13 +395,13 @@ fn inertia<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Matrix<'s> 
     Matrix::from_rows([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 }
 
-/// Two numbers that are known at run time only.
+/// Returns two numbers if they are known at run time only, otherwise `None`.
 fn varying<'s>(builder: &'s Builder, robot: &Robot, entries: [Entry; 2]) -> Option<[Symbol<'s>; 2]> {
     let [a, b] = entries.map(|entry| robot.run_time.formula(entry));
     Some([formula(builder, a?), formula(builder, b?)])
 }
 
-/// Rx(α) of a row of the table.
+/// Returns Rx(α) of a row of the table.
 fn turn_about_x<'s>(builder: &'s Builder, robot: &Robot, index: usize, alpha: &Angle) -> Matrix<'s> {
     let [s, c] = varying(builder, robot, [Entry::AlphaSine(index), Entry::AlphaCosine(index)])
         .unwrap_or_else(|| builder.constant_turn(alpha, Cause::Arithmetic).into());
@@ -403,7 +410,8 @@ fn turn_about_x<'s>(builder: &'s Builder, robot: &Robot, index: usize, alpha: &A
     turned(builder, Axis::X, (s, c), Cause::TurnAboutX)
 }
 
-/// A rotation about an axis by sine and cosine; `cause` is the reason why it does not change the axis.
+/// Returns the rotation about an axis with the given sine and cosine. `cause` explains in the trace why some of its
+/// elements are 0 and 1.
 pub(crate) fn turned<'s>(
     builder: &'s Builder,
     axis: Axis,
@@ -418,13 +426,13 @@ pub(crate) fn turned<'s>(
     })
 }
 
-/// α_0 of a standard table is 0.
+/// Returns the rotation 1 of the base, because α_0 of a standard table is 0.
 pub(crate) fn identity(builder: &Builder) -> Matrix<'_> {
     let (zero, one) = (builder.constant(0.0, Cause::FirstFrame), builder.constant(1.0, Cause::FirstFrame));
     Matrix::from_rows([[one, zero, zero], [zero, one, zero], [zero, zero, one]])
 }
 
-/// Gravity in frame 0. The trace records that a zero component is due to the direction of gravity.
+/// Returns gravity in frame 0. The trace records that a zero component is due to the direction of gravity.
 pub(crate) fn gravity<'s>(builder: &'s Builder, robot: &Robot) -> Vector<'s> {
     let [x, y, z] = robot.gravity;
     let component = |axis: Axis, value| {

@@ -1,4 +1,4 @@
-//! The centre of mass of the whole arm and its Jacobian, from the parts μ_i = m_i / Σ m that the links have in it.
+//! The centre of mass of the whole arm and its Jacobian, from the mass fractions μ_i = m_i / Σ m of the links.
 //!
 //! ```text
 //! c = Σ μ_i c_i                                     c_i from the base, in world axes; then from the world's origin
@@ -9,14 +9,15 @@
 //!
 //! A floating base is a link, too: link 0, whose frame is frame 0.
 //!
-//! A link with a first moment h beside its mass adds h_i (1 / Σ m) to c and to s_j.
+//! If a link has a first moment h in addition to its mass, h_i (1 / Σ m) is added to c and to s_j.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::formulate::{Arm, Frames};
 use crate::ir::{Builder, Cause, Name, Quantity, Symbol, Vector};
 
-/// In the world. `frames` start at the base, in world axes; `centres` lead from the joints to the centres of mass.
+/// Returns the centre of mass in the world. The origins of `frames` are measured from the base, in world axes;
+/// `centres` are the vectors from the joints to the centres of mass of their links.
 pub(crate) fn position<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Vector<'s> {
     let builder = arm.builder;
     let line = builder.joint(arm.links.len());
@@ -38,7 +39,7 @@ pub(crate) fn position<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector
     builder.name_vector(Quantity::ComPosition, 0, centre)
 }
 
-/// Columns, base to tip; arguments as of [`position`].
+/// Returns the columns of the Jacobian, base to tip; the arguments are those of [`position`].
 pub(crate) fn jacobian<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Vec<Vector<'s>> {
     let builder = arm.builder;
     let (parts, inverse) = match parts(arm) {
@@ -46,7 +47,7 @@ pub(crate) fn jacobian<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector
         Err(infinite) => return vec![Vector([infinite; 3]); arm.links.len()],
     };
     let links = links(builder, frames, centres);
-    // of what each link carries
+    // for each link: Σ μ_k c_k and Σ μ_k of the links after it
     let nothing = (builder.zeros(Cause::Arithmetic), builder.constant(0.0, Cause::Arithmetic));
     let mut carried = vec![None; links.len()];
     let mut columns = Vec::with_capacity(links.len());
@@ -72,7 +73,7 @@ pub(crate) fn jacobian<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector
     columns
 }
 
-/// The centres of mass of the links, named.
+/// Returns the centres of mass of the links as named quantities.
 fn links<'s>(builder: &'s Builder, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Vec<Vector<'s>> {
     let centres = frames.joints.iter().zip(centres).enumerate();
     centres
@@ -82,7 +83,7 @@ fn links<'s>(builder: &'s Builder, frames: &Frames<'s>, centres: &[Vector<'s>]) 
         .collect()
 }
 
-/// The part of a link in the centre of mass, μ_i c_i, with that of a first moment beside its mass.
+/// Returns μ_i c_i of a link, plus the term of its first moment h if the link has one in addition to its mass.
 fn with_first_moment<'s>(
     arm: &Arm<'s>,
     frames: &Frames<'s>,
@@ -93,8 +94,8 @@ fn with_first_moment<'s>(
     arm.links[index].body.first_moment.map_or(moment, |h| moment + (frames.joints[index].rotation * h) * inverse)
 }
 
-/// The part of the mass that each link has, and one by the mass: constants, unless a mass is given at run time. Of an
-/// arm without mass, what is not finite: a product with its zeros would fold.
+/// Returns the mass fraction of each link, and 1 / Σ m: constants, unless a mass is given at run time. If the arm has
+/// no mass, returns the infinite 1 / 0 as the error, because products of it with zeros would be folded to zero.
 fn parts<'s>(arm: &Arm<'s>) -> Result<(Vec<Symbol<'s>>, Symbol<'s>), Symbol<'s>> {
     let builder = arm.builder;
     let line = builder.joint(arm.links.len());

@@ -1,8 +1,8 @@
 //! The equations of closed loops, and the motion of their dependent joints.
 //!
 //! A loop closes where two places of the tree meet. [`ClosedLoops`](rne_model::ClosedLoops) has its equations r = 0.
-//! Both ways to the places begin at the last link that they share, which may be held still. All vectors are in axes of
-//! the loop:
+//! The chains of joints to both places begin at the last link that they share; that link may be taken as fixed. All
+//! vectors are in the axes of the loop:
 //!
 //! ```text
 //! r                  p₂ - p₁;                 a·b
@@ -10,10 +10,10 @@
 //! K̇ (q̇, ṗ)           p̈₂ - p̈₁;                (b × a)·(ω̇₂ - ω̇₁) + (ω₂ - ω₁)·((ω₂ × b) × a + b × (ω₁ × a))
 //! ```
 //!
-//! a is an axis of the first place and b one of the second. With K = [K_q K_p] of the joints that move by themselves
-//! and of the dependent ones, G = -K_p⁻¹ K_q, Ġ q̇ = -K_p⁻¹ K̇ (q̇, ṗ), and a Newton step is p - K_p⁻¹ r. One equation is
-//! kept for each dependent joint; [`ClosedLoops::elimination`](rne_model::ClosedLoops) is their order. There are no
-//! pivots to search for: a singular position divides by zero, and the numbers are not finite then.
+//! a is an axis of the first place and b one of the second. K = [K_q K_p] has the columns of the independent joints and
+//! of the dependent ones. Then G = -K_p⁻¹ K_q, Ġ q̇ = -K_p⁻¹ K̇ (q̇, ṗ), and a Newton step gives p - K_p⁻¹ r. One
+//! equation is kept for each dependent joint; [`ClosedLoops::elimination`](rne_model::ClosedLoops) is their order. No
+//! pivots are searched for: at a singular position there is a division by zero, and the results are not finite.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 use rne_model::{ClosedLoop, FixedFrame, Pivot, Robot};
@@ -23,20 +23,20 @@ use crate::formulate::arm::{Placement, identity};
 use crate::formulate::{Arm, Frame, Joint, JointState, Outputs};
 use crate::ir::{Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
 
-/// A joint on a way: its axis, a point of it, and whether it is on the way to the first place.
+/// A joint on the way to a place: its axis and a point of that axis.
 struct Station<'s> {
     joint: usize,
     axis: Vector<'s>,
     point: Vector<'s>,
 }
 
-/// A way to a place.
+/// The chain of joints from the last shared link to a place of a loop.
 struct Way<'s> {
     stations: Vec<Station<'s>>,
     place: Frame<'s>,
 }
 
-/// Motion of a place where the joints that move by themselves do not accelerate.
+/// The motion of a place of a loop if the independent joints do not accelerate.
 struct Motion<'s> {
     omega: Vector<'s>,
     omega_dot: Vector<'s>,
@@ -49,18 +49,18 @@ pub(crate) struct Closure<'s> {
     loops: Vec<Ways<'s>>,
     /// The residual of each equation.
     residuals: Vec<Symbol<'s>>,
-    /// K by rows, a column for each joint of the tree that follows no other by a coupling.
+    /// K by rows; a column for each joint of the tree, except joints that follow another joint by a coupling.
     rows: Vec<Vec<Symbol<'s>>>,
 }
 
-/// Both ways of a loop, and the pairs of axes that are perpendicular.
+/// Both chains of a loop, and the pairs of axes that must be perpendicular.
 struct Ways<'s> {
     ways: [Way<'s>; 2],
     perpendicular: Vec<[Vector<'s>; 2]>,
 }
 
 impl<'s> Closure<'s> {
-    /// Writes the equations of an arm in these positions.
+    /// Writes the closure equations of an arm at the given joint positions.
     pub(crate) fn of(arm: &Arm<'s>, robot: &Robot, states: &[JointState<'s>]) -> Self {
         let (builder, coordinates) = (arm.builder, &arm.coordinates);
         let mut closure = Self { builder, loops: Vec::new(), residuals: Vec::new(), rows: Vec::new() };
@@ -90,7 +90,8 @@ impl<'s> Closure<'s> {
         closure
     }
 
-    /// Writes the map G and, where the joints have rates, Ġ q̇, so that every joint knows its rate and acceleration.
+    /// Writes the map G and, where the joints have rates, Ġ q̇. The builder keeps both, to compute the rate and
+    /// acceleration of each dependent joint.
     pub(crate) fn keep(builder: &'s Builder, robot: &Robot, has_rates: bool) {
         if robot.closed.is_empty() {
             return;
@@ -108,7 +109,7 @@ impl<'s> Closure<'s> {
         });
     }
 
-    /// The positions of the joints.
+    /// Returns the joints at their positions, with zero rates and accelerations.
     fn states(builder: &'s Builder, robot: &Robot) -> Vec<JointState<'s>> {
         let coordinates = Coordinates::of(robot);
         let still = || builder.constant(0.0, Cause::AtRest);
@@ -121,7 +122,7 @@ impl<'s> Closure<'s> {
         (0..robot.joints.len()).map(state).collect()
     }
 
-    /// K̇ (q̇, ṗ), by equation.
+    /// Returns K̇ (q̇, ṗ), one number for each equation.
     fn biases(&self, arm: &Arm<'s>, rates: &[Symbol<'s>]) -> Vec<Symbol<'s>> {
         let of_loop = |closed: &Ways<'s>| {
             let [one, other] = closed.ways.each_ref().map(|way| way.motion(arm, rates));
@@ -140,7 +141,7 @@ impl<'s> Closure<'s> {
 impl<'s> Ways<'s> {
     fn of(arm: &Arm<'s>, robot: &Robot, states: &[JointState<'s>], closed: &ClosedLoop) -> Self {
         let both = robot.ways_of_loop(closed);
-        // the axes of the loop are those of this joint where it is mounted
+        // the loop has the axes of this joint at θ = 0
         let axes = both.iter().flatten().next().map(|&joint| arm.links[joint].mount);
         let start = |rotation, lever| match axes {
             Some(axes) => {
@@ -166,7 +167,7 @@ impl<'s> Way<'s> {
     ) -> Self {
         let builder = arm.builder;
         let mut stations = Vec::new();
-        // axes of the last link of the way, and the end of its offset
+        // the axes of the last link so far, with the end of its offset as the origin
         let mut last: Option<Frame<'s>> = None;
         let next = |last: Option<Frame<'s>>, rotation, lever| match last {
             Some(Frame { rotation: axes, origin }) => {
@@ -187,14 +188,14 @@ impl<'s> Way<'s> {
         Self { stations, place: next(last, table * rotation, table * translation) }
     }
 
-    /// The motion of its place, by the rates of all joints.
+    /// Returns the motion of the place, given the rates of all joints.
     fn motion(&self, arm: &Arm<'s>, rates: &[Symbol<'s>]) -> Motion<'s> {
         let nothing = arm.builder.no_vector();
         let mut motion = Motion { omega: nothing, omega_dot: nothing, acceleration: nothing };
         for (at, Station { joint, axis, point }) in self.stations.iter().enumerate() {
             let rate = *axis * rates[*joint];
             let Motion { omega, omega_dot, acceleration } = motion;
-            // to the next joint or to the place
+            // vector to the next joint, or after the last joint to the place
             let span = self.stations.get(at + 1).map_or(self.place.origin, |next| next.point) - *point;
             motion = match arm.links[*joint].kind {
                 Revolute => {
@@ -213,13 +214,13 @@ impl<'s> Way<'s> {
     }
 }
 
-/// The equations that are kept, eliminated: K_p = L U in the order of elimination.
+/// The kept equations after elimination: K_p = L U in the order of elimination.
 struct Solved<'s> {
-    /// The equation and the dependent joint of each step.
+    /// The equation and the dependent joint of each elimination step.
     order: Vec<Pivot>,
-    /// Rows of L, below the diagonal, which is 1.
+    /// Rows of L to the left of the diagonal, whose elements are 1.
     lower: Vec<Vec<Symbol<'s>>>,
-    /// Rows of U, behind the diagonal.
+    /// Rows of U to the right of the diagonal.
     upper: Vec<Vec<Symbol<'s>>>,
     /// The reciprocals of the diagonal of U.
     inverses: Vec<Symbol<'s>>,
@@ -252,7 +253,7 @@ impl<'s> Solved<'s> {
         Self { order, lower, upper, inverses }
     }
 
-    /// -K_p⁻¹ b by dependent joint, from b by equation.
+    /// Returns -K_p⁻¹ b, one number for each dependent joint; `b` has one number for each equation.
     fn of_rows(&self, b: &[Symbol<'s>]) -> Vec<Symbol<'s>> {
         let mut y: Vec<Symbol<'s>> = Vec::with_capacity(self.order.len());
         for (pivot, row) in self.order.iter().zip(&self.lower) {
@@ -269,7 +270,7 @@ impl<'s> Solved<'s> {
         x
     }
 
-    /// G by rows.
+    /// Returns G by rows.
     fn map(&self, closure: &Closure<'s>, coordinates: &Coordinates) -> Vec<Vec<Symbol<'s>>> {
         let column = |place: usize| self.of_rows(&closure.rows.iter().map(|row| row[place]).collect::<Vec<_>>());
         let columns: Vec<_> = (0..coordinates.joints().len()).map(column).collect();
@@ -277,7 +278,8 @@ impl<'s> Solved<'s> {
     }
 }
 
-/// A Newton step: the positions of the dependent joints after it, and what is left of the equations before it.
+/// Returns one Newton step: the new positions of the dependent joints, then the residuals of the equations before the
+/// step.
 pub(crate) fn step<'s>(builder: &'s Builder, robot: &Robot) -> Outputs<'s> {
     let (closure, changes) = builder.unnamed(|| {
         let arm = Arm::new(builder, robot);
@@ -298,7 +300,7 @@ pub(crate) fn step<'s>(builder: &'s Builder, robot: &Robot) -> Outputs<'s> {
     positions.chain(residuals).collect()
 }
 
-/// The map of closed loops by rows.
+/// Returns the elements of G, the map from independent to dependent joint rates, by rows.
 pub(crate) fn map<'s>(builder: &'s Builder, coordinates: &Coordinates) -> Outputs<'s> {
     let places = coordinates.passive().iter().enumerate();
     let elements = places.flat_map(|(passive, joint)| {
@@ -310,7 +312,7 @@ pub(crate) fn map<'s>(builder: &'s Builder, coordinates: &Coordinates) -> Output
     elements.collect()
 }
 
-/// The accelerations of the dependent joints where no other joint accelerates.
+/// Returns the accelerations Ġ q̇ of the dependent joints, which they have if no independent joint accelerates.
 pub(crate) fn bias<'s>(builder: &'s Builder, coordinates: &Coordinates) -> Outputs<'s> {
     let places = coordinates.passive().iter().enumerate();
     let of_joint = |(passive, joint): (usize, &usize)| {

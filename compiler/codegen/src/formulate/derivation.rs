@@ -1,4 +1,4 @@
-//! A function of a robot as it is written: the arm, the arguments, and the results that follow from the recursions.
+//! The derivation of a function of a robot: the arm, the arguments, and the results, which the recursions give.
 
 use std::array::from_fn;
 
@@ -20,7 +20,7 @@ use crate::formulate::{
 use crate::function::{Argument, Function};
 use crate::ir::{Axis, Builder, Cause, Name, Quantity, Symbol, Vector, WithRespectTo};
 
-/// A function being written.
+/// The state of one derivation: the robot's constants, the arguments and the builder.
 pub(super) struct Derivation<'s, 'r> {
     pub(super) builder: &'s Builder,
     pub(super) robot: &'r Robot,
@@ -42,7 +42,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         mass_matrix(self.coordinates(), &self.upper_half())
     }
 
-    /// The derivatives of the torques.
+    /// Returns the derivatives of the torques.
     pub(super) fn derivatives(&self) -> Outputs<'s> {
         if self.is_floating() {
             return floating_derivatives(self.builder, self.coordinates(), self.forces());
@@ -50,7 +50,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         derivatives(self.builder, self.coordinates(), &self.tau())
     }
 
-    /// The state after a step of the integrator.
+    /// Returns the state after a step of the integrator.
     pub(super) fn step(&self) -> Outputs<'s> {
         let accelerations = self.accelerations();
         if self.is_floating() {
@@ -64,7 +64,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         contact::forward_dynamics(self.builder, &system, &half, self.forces(), &Contacts::of(self))
     }
 
-    /// The accelerations by the torques.
+    /// Returns the accelerations that follow from the torques.
     pub(super) fn accelerations(&self) -> Outputs<'s> {
         if self.is_floating() {
             return floating_forward_dynamics(self.builder, &self.system(), &self.floating_half(), self.forces());
@@ -72,11 +72,11 @@ impl<'s, 'r> Derivation<'s, 'r> {
         forward_dynamics(self.builder, &self.system(), &self.upper_half(), &self.tau())
     }
 
-    /// The derivatives of the accelerations, or of the step that has them.
+    /// Returns the derivatives of the accelerations, or those of the Euler step that uses these accelerations.
     pub(super) fn derivatives_of_accelerations(&self) -> Outputs<'s> {
         let (builder, system) = (self.builder, self.system());
         let inverse = adjoint::Inverse::of(builder, &system, &self.upper_half());
-        // the same quantities come again, at these accelerations
+        // the torques at zero acceleration are not named: they are written again below with the solved accelerations
         inverse.keep_accelerations(builder.unnamed(|| self.tau()));
         builder.hold_accelerations();
         let solved = Self::new(builder, self.robot);
@@ -88,7 +88,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         }))
     }
 
-    /// The derivatives of a step of the integrator.
+    /// Returns the derivatives of a step of the integrator.
     pub(super) fn derivatives_of_step(&self) -> Outputs<'s> {
         if !self.is_floating() {
             return self.derivatives_of_accelerations();
@@ -120,7 +120,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         seven_steps::forward(&self.arm, &self.states, &self.base)
     }
 
-    /// The torques of the seven steps.
+    /// Returns the joint torques of the seven steps, one for each coordinate.
     pub(super) fn tau(&self) -> Vec<Symbol<'s>> {
         let of_joints: Vec<_> = self.loads().into_iter().map(|load| load.torque).collect();
         self.coordinates().torques(&of_joints)
@@ -130,18 +130,18 @@ impl<'s, 'r> Derivation<'s, 'r> {
         &self.arm.coordinates
     }
 
-    /// One number for each coordinate, from one for each joint.
+    /// Returns one result for each coordinate, from one number for each joint.
     pub(super) fn gathered(&self, quantity: Quantity, of_joints: &[Symbol<'s>]) -> Outputs<'s> {
         by_joint(self.coordinates(), quantity, self.coordinates().torques(of_joints))
     }
 
-    /// Vectors of the joints, one for each coordinate.
+    /// Returns one vector for each coordinate, from one vector for each joint.
     pub(super) fn columns(&self, of_joints: &[Vector<'s>]) -> Vec<Vector<'s>> {
         let times = |column: Vector<'s>, ratio| column.map(|_, x| scaled(x, ratio));
         self.coordinates().gathered(of_joints, |a, b| a + b, times)
     }
 
-    /// The vector from each joint to the centre of mass of its link, in the axes of the link.
+    /// Returns the vector from each joint to the centre of mass of its link, in the axes of the link.
     pub(super) fn centres(&self) -> Vec<Vector<'s>> {
         self.motions().iter().map(|motion| motion.d).collect()
     }
@@ -150,13 +150,14 @@ impl<'s, 'r> Derivation<'s, 'r> {
         kinematics::frames(&self.arm, &self.states, kinematics::base(&self.arm))
     }
 
-    /// In world axes, with their origins from that of the base: where the base stands moves no difference of them.
+    /// Returns the frames in world axes, with origins measured from the base: results that depend only on differences
+    /// of origins do not depend on the position of the base.
     pub(super) fn frames_from_base(&self) -> Frames<'s> {
         let start = Frame { origin: self.builder.zeros(Cause::FirstFrame), ..kinematics::base(&self.arm) };
         kinematics::frames(&self.arm, &self.states, start)
     }
 
-    /// The torques, behind the wrench on a floating base.
+    /// Returns the torques; for a floating base, the wrench on the base before them.
     pub(super) fn forces(&self) -> Outputs<'s> {
         if self.builder.function.is_of_floating_base() {
             return self.floating_torques();
@@ -164,30 +165,30 @@ impl<'s, 'r> Derivation<'s, 'r> {
         by_joint(self.coordinates(), Quantity::Torque, self.tau())
     }
 
-    /// The coordinates and links of a mass matrix that is solved by.
+    /// Returns the coordinates and parent links of the mass matrix, as the L D Lᵀ solver needs them.
     pub(super) fn system(&self) -> System<'_> {
         System::new(self.builder.function, self.coordinates(), self.arm.links.iter().map(|link| link.parent))
     }
 
-    /// The upper half of M with the rows of a floating base.
+    /// Returns the upper half of M, including the rows of the floating base.
     pub(super) fn floating_half(&self) -> Vec<Vec<Symbol<'s>>> {
         let (of_base, joints) = self.of_base();
         of_base.above(self.builder, self.coordinates().upper_half(self.builder, joints))
     }
 
-    /// The rows of the base in M, and the upper half of that of the joints.
+    /// Returns the rows of the base in M, and the upper half of the joint block.
     pub(super) fn of_base(&self) -> (OfBase<'s>, Vec<Vec<Symbol<'s>>>) {
         let (of_base, joints) = mass_matrix::with_base(&self.arm, &self.states, &self.system(), self.matter_at_tip());
         (of_base.gathered(self.coordinates()), joints)
     }
 
-    /// The upper half of M.
+    /// Returns the upper half of M.
     pub(super) fn upper_half(&self) -> Vec<Vec<Symbol<'s>>> {
         let of_joints = mass_matrix::upper_half(&self.arm, &self.states, self.matter_at_tip());
         self.coordinates().upper_half(self.builder, of_joints)
     }
 
-    /// The load that changes the mass matrix: no force does.
+    /// Returns the load at the tip if it is a payload, which changes the mass matrix; a force does not.
     const fn matter_at_tip(&self) -> &AtTip<'s> {
         if let AtTip::Payload(_) = self.tip { &self.tip } else { &AtTip::Nothing }
     }
@@ -221,7 +222,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         self.spatial_rows([Quantity::JacobianLinearRate, Quantity::JacobianAngularRate], &columns)
     }
 
-    /// Three linear rows, then three angular ones, of columns of the joints.
+    /// Returns three linear rows, then three angular rows, from the columns of the joints.
     pub(super) fn spatial_rows(&self, quantities: [Quantity; 2], columns: &[[Vector<'s>; 2]]) -> Outputs<'s> {
         let rows = |half: usize| {
             let of_joints: Vec<_> = columns.iter().map(|column| column[half]).collect();
@@ -321,7 +322,8 @@ impl<'s, 'r> Derivation<'s, 'r> {
         outputs
     }
 
-    /// The regressor of a robot without couplings: it has numbers of every link, so it is compiled for no other robot.
+    /// Returns the regressor of a robot without couplings. It is written for the inertial parameters of each link, so
+    /// code for it is compiled for this robot only.
     fn floating_regressor(&self) -> Outputs<'s> {
         let acceleration = vector(self.builder, Quantity::Acceleration, 0) - vector(self.builder, Quantity::Gravity, 0);
         let acceleration = self.builder.name_vector(Quantity::OriginAcceleration, 0, acceleration);
@@ -371,7 +373,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         centroid::about_centre(self.builder, (of_base.mass, of_base.h), Quantity::BaseForce, wrench)
     }
 
-    /// The frames and tips in world axes, with their origins from that of the base.
+    /// Returns the frames and tips in world axes, with their origins measured from that of the base.
     pub(super) fn tips_in_world(&self) -> Tips<'s> {
         Tips::of(&self.arm, &self.states, base_rotation(self.builder))
     }

@@ -1,16 +1,16 @@
-//! Kinetic energy from steps 1 and 3, potential energy from where the centres of mass are.
+//! Kinetic energy from steps 1 and 3, potential energy from the positions of the centres of mass.
 //!
-//! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i), with rotors + ½ Σ G² Jm q̇², with those of the list `motors` + ½ Σ Jm s (s +
-//! 2 a · ω); V = -Σ m_i g · c_i, with c_i from the origin of frame 0. Of a first moment h beside the mass
-//! ċ_i · (ω_i × h_i) is added to T, and - g · R_i h_i to V.
+//! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i), with rotors + ½ Σ G² Jm q̇², with those of the list `motors` + ½ Σ Jm s (s
+//! + 2 a · ω); V = -Σ m_i g · c_i, with c_i from the origin of frame 0. If a link has a first moment h in addition to
+//! its mass, ċ_i · (ω_i × h_i) is added to T, and - g · R_i h_i to V.
 //!
-//! A floating base is link 0. Where it stands in the world at p, turned by R:
+//! A floating base is link 0. If its frame 0 has the origin p and the rotation R in the world:
 //! V = - Σ m_i (Rᵀ g · c_i + g · p).
 
 use crate::formulate::{Arm, Frame, Frames, JointState, Motion};
 use crate::ir::{Cause, Name, Quantity, Symbol, Vector};
 
-/// The kinetic energy of the links, and that of a floating `base`, if there is one.
+/// Returns the kinetic energy of the links, plus that of a floating `base`, if there is one.
 pub(crate) fn kinetic<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],
@@ -53,13 +53,14 @@ pub(crate) fn kinetic<'s>(
     builder.name(Name::scalar(Quantity::Kinetic, 0), energy)
 }
 
-/// `frames` in frame 0, where gravity is given.
+/// Returns the potential energy of a robot on a fixed base; `frames` and gravity are in frame 0.
 pub(crate) fn potential<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Symbol<'s> {
     let lost = lost(arm, arm.gravity, frames, centres);
     arm.builder.name(Name::scalar(Quantity::Potential, 0), -lost)
 }
 
-/// The potential energy where the base stands in the world at `pose`; gravity in world axes, `frames` in frame 0.
+/// Returns the potential energy for a floating base with the given `pose` in the world; gravity is in world axes,
+/// `frames` are in frame 0.
 pub(crate) fn floating_potential<'s>(
     arm: &Arm<'s>,
     pose: &Frame<'s>,
@@ -78,7 +79,7 @@ pub(crate) fn floating_potential<'s>(
     arm.builder.name(Name::scalar(Quantity::Potential, 0), energy)
 }
 
-/// Σ m g · c, in frame 0.
+/// Returns Σ m g · c, the negative of the potential energy, in frame 0.
 fn lost<'s>(arm: &Arm<'s>, gravity: Vector<'s>, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Symbol<'s> {
     let builder = arm.builder;
     let of_base = arm.floating_base.as_ref().map(|base| gravity.dot(base.com) * base.mass);

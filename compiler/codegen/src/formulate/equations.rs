@@ -7,7 +7,7 @@ use crate::formulate::layout::{by_joint, square};
 use crate::formulate::ldlt::{self, System};
 use crate::ir::{Builder, Cause, Name, Quantity, Symbol, WithRespectTo};
 
-/// M by its upper half: row i of `upper` holds the elements (i, i) to (i, n).
+/// Returns all elements of M, given its upper half: row i of `upper` has the elements (i, i) to (i, n).
 pub(crate) fn mass_matrix<'s>(coordinates: &Coordinates, upper: &[Vec<Symbol<'s>>]) -> Outputs<'s> {
     let joints = coordinates.joints();
     square(upper.len(), |row, column| {
@@ -16,7 +16,7 @@ pub(crate) fn mass_matrix<'s>(coordinates: &Coordinates, upper: &[Vec<Symbol<'s>
     })
 }
 
-/// ½ ∂(bias torques)/∂q̇
+/// Returns the Coriolis matrix ½ ∂(bias torques)/∂q̇.
 pub(crate) fn coriolis_matrix<'s>(
     builder: &'s Builder,
     coordinates: &Coordinates,
@@ -32,7 +32,7 @@ pub(crate) fn coriolis_matrix<'s>(
     })
 }
 
-/// M⁻¹ (τ - bias)
+/// Returns the accelerations M⁻¹ (τ - bias).
 pub(crate) fn forward_dynamics<'s>(
     builder: &'s Builder,
     system: &System<'_>,
@@ -42,7 +42,7 @@ pub(crate) fn forward_dynamics<'s>(
     accelerations(builder, system, upper, |applied, place| applied - bias[place])
 }
 
-/// M⁻¹ times what is left of the torques at each place.
+/// Returns M⁻¹ r. `left` gives r: it subtracts the bias from the applied torque of each coordinate.
 pub(crate) fn accelerations<'s>(
     builder: &'s Builder,
     system: &System<'_>,
@@ -57,7 +57,7 @@ pub(crate) fn accelerations<'s>(
     by_joint(system.coordinates, Quantity::RateDot, ldlt::solved(builder, system, upper, &rest))
 }
 
-/// ∂τ/∂q, then ∂τ/∂q̇
+/// Returns ∂τ/∂q, then ∂τ/∂q̇.
 pub(crate) fn derivatives<'s>(builder: &'s Builder, coordinates: &Coordinates, torques: &[Symbol<'s>]) -> Outputs<'s> {
     let joints = coordinates.joints();
     let by = |kind: fn(usize) -> WithRespectTo| {
@@ -69,13 +69,13 @@ pub(crate) fn derivatives<'s>(builder: &'s Builder, coordinates: &Coordinates, t
     [by(WithRespectTo::Position), by(WithRespectTo::Rate)].concat()
 }
 
-/// The name of the derivative of a torque, whose joint is counted from 0.
+/// Returns the name of the derivative of a torque; its joint is counted from 0.
 pub(crate) fn torque_by(row: usize, by: WithRespectTo) -> Name {
     Name { by: Some(by), ..Name::scalar(Quantity::Torque, row + 1) }
 }
 
-/// M⁻¹ = L⁻ᵀ D⁻¹ L⁻¹: column j is solved from joint j on in the order of elimination, and the rest is its mirror. Row i
-/// of `upper` holds the elements (i, i) to (i, n) of M.
+/// Returns M⁻¹ = L⁻ᵀ D⁻¹ L⁻¹. Column j is solved only from joint j on in the order of elimination; the other elements
+/// follow by symmetry. Row i of `upper` has the elements (i, i) to (i, n) of M.
 pub(crate) fn inverse_mass_matrix<'s>(
     builder: &'s Builder,
     system: &System<'_>,
@@ -84,7 +84,7 @@ pub(crate) fn inverse_mass_matrix<'s>(
     inverse_by(builder, system, &ldlt::Factors::of(builder, system, upper), Quantity::RateDot)
 }
 
-/// The inverse by the factors of the matrix; its elements are of the quantity `element`.
+/// Returns the inverse of a matrix, given its factors; its elements get names of the quantity `element`.
 pub(super) fn inverse_by<'s>(
     builder: &'s Builder,
     system: &System<'_>,

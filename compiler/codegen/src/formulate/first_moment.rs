@@ -1,6 +1,7 @@
-//! The first moment h of a link without mass, which the lecture does not have.
+//! The terms of a link's first moment h that is given without mass. The lecture's equations do not have them.
 //!
-//! Only a set of base parameters has such links. A body has none, and then each function here returns its argument.
+//! Only links with base parameters have such an h. For a link with physical parameters each function here returns its
+//! argument.
 //!
 //! ```text
 //! f_i  + ω̇_i × h_i + ω_i × (ω_i × h_i)
@@ -12,7 +13,7 @@ use crate::formulate::carried::plus_sum;
 use crate::formulate::{Body, Motion};
 use crate::ir::{JointLines, Quantity, Vector};
 
-/// The first moment of a link, if it has one, with the motion of the link.
+/// The first moment h of a link, if it has one in addition to its mass, with the motion of the link.
 pub(crate) struct FirstMoment<'a, 's> {
     h: Option<Vector<'s>>,
     /// ω̇ × h + ω × (ω × h)
@@ -30,17 +31,17 @@ impl<'a, 's> FirstMoment<'a, 's> {
         Self { h: body.first_moment, force, motion }
     }
 
-    /// f_i
+    /// Returns the force f_i with the inertia force of h.
     pub(crate) fn with_force(&self, force: Vector<'s>) -> Vector<'s> {
         plus_sum(force, self.force)
     }
 
-    /// n_i
+    /// Returns the moment n_i with h_i × c̈_i.
     pub(crate) fn with_moment(&self, moment: Vector<'s>) -> Vector<'s> {
         plus_sum(moment, self.h.map(|h| h.cross(self.motion.c_ddot)))
     }
 
-    /// n_{p,i}
+    /// Returns the joint moment n_{p,i} with the weight term - h_i × g_i.
     pub(crate) fn without_weight(&self, moment: Vector<'s>) -> Vector<'s> {
         self.h.map_or(moment, |h| moment - h.cross(self.motion.gravity))
     }

@@ -9,8 +9,8 @@
 //! B = R E;  R' = B (3 - Bᵀ B) / 2;  v' = R'ᵀ w
 //! ```
 //!
-//! All of it is rational. R' is a step of Newton's method towards the rotation next to B, so that rounding does not
-//! gather over many steps.
+//! All of it is rational. R' is a step of Newton's method towards the rotation nearest to B, so that rounding errors do
+//! not accumulate over many steps.
 
 use std::array::from_fn;
 
@@ -20,12 +20,12 @@ use crate::formulate::layout::components;
 use crate::formulate::{Frame, Outputs, pose_of_base, square};
 use crate::ir::{Axis, Builder, Cause, Matrix, Name, Quantity, Symbol, Vector, WithRespectTo};
 
-/// The duration h.
+/// Returns the duration h of the step, which is an argument.
 pub(crate) fn duration(builder: &Builder) -> Symbol<'_> {
     builder.argument(Name::scalar(Quantity::Duration, 0))
 }
 
-/// The next positions, then the next velocities, by the accelerations of the coordinates.
+/// Returns the next positions, then the next velocities, given the accelerations of the coordinates.
 pub(crate) fn step<'s>(
     builder: &'s Builder,
     coordinates: &Coordinates,
@@ -44,8 +44,8 @@ pub(crate) fn step<'s>(
     [positions, rates].concat()
 }
 
-/// The pose, the velocity and the angular velocity of a floating base after a step, then the positions and
-/// the velocities of the joints; by the accelerations of the base, less gravity, and of the coordinates.
+/// Returns the pose, the velocity and the angular velocity of a floating base after a step, then the positions and the
+/// velocities of the joints. `accelerations` are those of the base, less gravity, then those of the coordinates.
 pub(crate) fn floating_step<'s>(
     builder: &'s Builder,
     coordinates: &Coordinates,
@@ -76,7 +76,7 @@ pub(crate) fn floating_step<'s>(
     outputs
 }
 
-/// The turn of a frame in a step, as a unit quaternion.
+/// The rotation of a frame in a step, as a unit quaternion.
 pub(crate) struct Turn<'s> {
     /// h ω / 4
     u: Vector<'s>,
@@ -87,7 +87,7 @@ pub(crate) struct Turn<'s> {
 }
 
 impl<'s> Turn<'s> {
-    /// `angle` is h ω.
+    /// Returns the rotation of a step; `angle` is h ω.
     pub(crate) fn of(builder: &'s Builder, angle: Vector<'s>) -> Self {
         let one = builder.entry(Name::scalar(Quantity::One, 0), 1.0);
         let u = angle * builder.constant(0.25, Cause::Arithmetic);
@@ -96,7 +96,7 @@ impl<'s> Turn<'s> {
         Self { u, inverse, w: factor - one, vector: u * factor }
     }
 
-    /// E
+    /// Returns the rotation matrix E.
     pub(crate) fn matrix(&self, builder: &'s Builder) -> Matrix<'s> {
         let one = builder.entry(Name::scalar(Quantity::One, 0), 1.0);
         let (w, [x, y, z], [x2, y2, z2]) = (self.w, self.vector.0, (self.vector + self.vector).0);
@@ -109,7 +109,8 @@ impl<'s> Turn<'s> {
         ])
     }
 
-    /// The change of the turn by ω, in the turned axes: h / (1 + s) times the turn by half of E, backwards.
+    /// Returns the derivative of the rotation with respect to ω, in the axes after the step: h / (1 + s) times the
+    /// rotation by half the angle of E in the opposite direction.
     pub(crate) fn by_rate(&self, step: Symbol<'s>) -> Matrix<'s> {
         let (scale, [u, v]) = (self.inverse * step, [self.u, self.vector]);
         let (w, [x, y, z]) = (self.w * scale, (v * scale).0);
@@ -118,7 +119,7 @@ impl<'s> Turn<'s> {
     }
 }
 
-/// The rotation next to a matrix that is one but for rounding.
+/// Returns the rotation nearest to a matrix that is a rotation but for rounding errors.
 fn next_to<'s>(builder: &'s Builder, near: Matrix<'s>) -> Matrix<'s> {
     let half = builder.entry(Name::scalar(Quantity::Half, 0), 0.5);
     let on_diagonal = builder.constant(1.5, Cause::Arithmetic);
@@ -130,8 +131,9 @@ fn next_to<'s>(builder: &'s Builder, near: Matrix<'s>) -> Matrix<'s> {
     near * Matrix::from_rows(from_fn(|row| from_fn(|column| element(row, column))))
 }
 
-/// The derivatives of the next positions by q, by q̇ and by τ, then those of the next velocities. `by_state` are those
-/// of h q̈ by q and by q̇; `by_torques`, those by τ, are named and symmetric. All are by rows.
+/// Returns the derivatives of the next positions with respect to q, q̇ and τ, then those of the next velocities.
+/// `by_state` are the derivatives of h q̈ with respect to q and q̇; `by_torques` are those with respect to τ, which are
+/// named and symmetric. All are by rows.
 pub(crate) fn derivatives<'s>(
     builder: &'s Builder,
     coordinates: &Coordinates,
@@ -142,7 +144,7 @@ pub(crate) fn derivatives<'s>(
     let dof = joints.len();
     let one = builder.entry(Name::scalar(Quantity::One, 0), 1.0);
     let kinds: [fn(usize) -> WithRespectTo; 2] = [WithRespectTo::Position, WithRespectTo::Rate];
-    // x + what changes it, where x is the argument `own`
+    // the derivative of x + change, where x is the argument `own`: on the diagonal, 1 is added
     let moved = |quantity, own: usize, kind: usize, change: &dyn Fn(usize) -> Symbol<'s>| {
         square(dof, |row, column| {
             let name = Name { by: Some(kinds[kind](joints[column] + 1)), ..Name::scalar(quantity, joints[row] + 1) };

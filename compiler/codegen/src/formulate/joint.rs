@@ -1,9 +1,9 @@
-//! Terms that each kind of joint adds to the seven steps.
+//! Terms by which revolute and prismatic joints differ in the seven steps.
 //!
-//! A joint lets its link move along or about its axis, e = (0, 0, 1) in form P. Every law takes what the link would
-//! have if the joint were rigid and returns what it has. A revolute joint turns its link about e by q, so the points of
-//! the link take part in its turning and in nothing else. The link of a prismatic joint slides along e by q and turns
-//! as its parent does.
+//! A joint lets its link move along or about its axis, e = (0, 0, 1) in form P. Each function takes the value that a
+//! quantity of the link would have if the joint were rigid, and returns its actual value. A revolute joint turns its
+//! link about e by q, which changes the motion of the link's points only through ω and ω̇. The link of a prismatic
+//! joint slides along e by q and turns as its parent does.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 use rne_model::QuarterTurns;
@@ -37,12 +37,12 @@ pub(crate) struct Joint<'a, 's> {
     pub(crate) link: &'a Link<'s>,
     pub(crate) state: JointState<'s>,
     pub(crate) lines: JointLines<'s>,
-    /// e_i
+    /// Joint axis e_i = (0, 0, 1) in frame i.
     pub(crate) e: Vector<'s>,
 }
 
 impl<'s> Arm<'s> {
-    /// The joints in these states, parents first.
+    /// Returns the joints with the given states, parents first.
     pub(crate) fn joints<'a>(
         &'a self,
         states: &'a [JointState<'s>],
@@ -54,23 +54,23 @@ impl<'s> Arm<'s> {
 }
 
 impl<'s> Joint<'_, 's> {
-    /// The lines at this joint, for quantities that bear the number of its parent.
+    /// Returns the lines at this joint for quantities that have the number of the parent in their names.
     pub(crate) fn lines_of_parent(&self) -> JointLines<'s> {
         self.lines.named(self.link.parent.map_or(0, |parent| parent + 1))
     }
 
-    /// R_i: how the joint is mounted, then Rz(θ_i).
+    /// Returns R_i: the rotation of the joint's mount, then Rz(θ_i).
     pub(crate) fn rotation(&self) -> Matrix<'s> {
         let about_z = self.turn();
         self.lines.define(Quantity::Rotation).by(self.link.mount.rotation * about_z)
     }
 
-    /// Rz(θ_i)
+    /// Returns Rz(θ_i).
     pub(crate) fn turn(&self) -> Matrix<'s> {
         turned(self.lines.builder, Axis::Z, self.sine_and_cosine(), Cause::TurnAboutZ)
     }
 
-    /// Sine and cosine of the constant θ.
+    /// Returns the sine and cosine of the constant part of θ.
     fn constant_turn(&self) -> (Symbol<'s>, Symbol<'s>) {
         let fixed = || self.lines.builder.constant_turn(&self.link.theta, Cause::Arithmetic).into();
         let [s, c] = self.link.varying_turn.unwrap_or_else(fixed);
@@ -78,16 +78,16 @@ impl<'s> Joint<'_, 's> {
     }
 }
 
-/// The laws, by the kind of the joint.
+/// Terms of the seven steps that depend on the kind of the joint.
 impl<'s> Joint<'_, 's> {
-    /// Sine and cosine of θ_i: θ + q, or the constant θ of a prismatic joint. A right angle θ permutes and negates
-    /// those of q exactly; any other is added to q.
+    /// Returns the sine and cosine of θ_i: of θ + q, or of the constant θ of a prismatic joint. If θ is a multiple of a
+    /// right angle, they are ± sin q and ± cos q, without rounding; otherwise they are those of the sum.
     fn sine_and_cosine(&self) -> (Symbol<'s>, Symbol<'s>) {
         let (line, theta) = (self.lines, self.link.theta);
         match (self.link.kind, self.state.turn, theta.right) {
             (Prismatic, ..) => self.constant_turn(),
             (Revolute, Some(turn), Some(turns)) => by_quarters(turn, turns),
-            // the addition theorem
+            // by the addition theorem, because sin q and cos q are arguments
             (Revolute, Some((s, c)), None) => {
                 let (sin, cos) = self.constant_turn();
                 (
@@ -106,7 +106,7 @@ impl<'s> Joint<'_, 's> {
         }
     }
 
-    /// Where the offset (a, 0, b) of the link leads: (a, 0, b + q) of a prismatic joint.
+    /// Returns the offset of the link with its joint variable: (a, 0, b), or (a, 0, b + q) for a prismatic joint.
     pub(crate) fn offset(&self, offset: Vector<'s>) -> Vector<'s> {
         match self.link.kind {
             Revolute => offset,
@@ -114,7 +114,7 @@ impl<'s> Joint<'_, 's> {
         }
     }
 
-    /// d_i: J_i → C_i, a constant of the table unless the joint moves it along its axis.
+    /// Returns d_i, the vector from J_i to C_i: a constant, unless the joint is prismatic.
     pub(crate) fn centre(&self) -> Vector<'s> {
         let d = || self.offset(self.link.offset) + self.link.body.com;
         match self.link.kind {
@@ -123,7 +123,7 @@ impl<'s> Joint<'_, 's> {
         }
     }
 
-    /// Step 1: ω of the link, from that of its parent.
+    /// Step 1: returns ω of the link, given that of its parent.
     pub(crate) fn angular_velocity(&self, rigid: Vector<'s>) -> Vector<'s> {
         match self.link.kind {
             Revolute => rigid + self.e * self.state.qd,
@@ -131,7 +131,7 @@ impl<'s> Joint<'_, 's> {
         }
     }
 
-    /// Step 2: ω̇ of the link, from that of its parent and the link's ω.
+    /// Step 2: returns ω̇ of the link, given that of its parent and the link's ω.
     pub(crate) fn angular_acceleration(&self, rigid: Vector<'s>, omega: Vector<'s>) -> Vector<'s> {
         match self.link.kind {
             Revolute => rigid + self.e * self.state.qdd + omega.cross(self.e) * self.state.qd,
@@ -139,7 +139,7 @@ impl<'s> Joint<'_, 's> {
         }
     }
 
-    /// Step 3: velocity of a point of the link.
+    /// Step 3: returns the velocity of a point of the link.
     pub(crate) fn velocity(&self, rigid: Vector<'s>) -> Vector<'s> {
         match self.link.kind {
             Revolute => rigid,
@@ -147,7 +147,7 @@ impl<'s> Joint<'_, 's> {
         }
     }
 
-    /// Step 4: acceleration of a point of the link.
+    /// Step 4: returns the acceleration of a point of the link.
     pub(crate) fn acceleration(&self, rigid: Vector<'s>, omega: Vector<'s>) -> Vector<'s> {
         match self.link.kind {
             Revolute => rigid,
@@ -155,7 +155,7 @@ impl<'s> Joint<'_, 's> {
         }
     }
 
-    /// Step 4 where the joint does not accelerate.
+    /// Step 4 for a joint that does not accelerate (q̈ = 0).
     pub(crate) fn unaccelerated(&self, rigid: Vector<'s>, omega: Vector<'s>) -> Vector<'s> {
         match self.link.kind {
             Revolute => rigid,
@@ -167,7 +167,7 @@ impl<'s> Joint<'_, 's> {
         }
     }
 
-    /// Step 7: the part of the joint's wrench that the actuator delivers.
+    /// Step 7: returns the component of the joint's wrench that the actuator delivers.
     pub(crate) fn actuator(&self, wrench: &Wrench<'s>) -> Symbol<'s> {
         match self.link.kind {
             Revolute => wrench.moment.z(),
@@ -176,7 +176,7 @@ impl<'s> Joint<'_, 's> {
     }
 }
 
-/// e, the joint's axis in its frame.
+/// Returns e, the joint's axis in its frame.
 fn axis(builder: &Builder) -> Vector<'_> {
     Vector([0.0, 0.0, 1.0].map(|value| builder.constant(value, Cause::JointAxis)))
 }

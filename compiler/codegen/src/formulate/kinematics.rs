@@ -1,4 +1,4 @@
-//! Where the links and the tip are in the world, and how fast they get there.
+//! Positions of the links and of the tip in the world, and their velocities and accelerations.
 //!
 //! ```text
 //! W_i = W_p R_i            axes of frame i (at joint i, fixed to link i) in the world;  z_i = W_i e
@@ -6,14 +6,15 @@
 //! column i of J            z_i × (p_tip - p_i), z_i (revolute);   z_i, 0 (prismatic)
 //! ```
 //!
-//! p is the parent of i. o_i is the offset along row i of the table, l_i leads from the end of the parent's to joint i.
+//! p is the parent of i. o_i is the offset along row i of the table, l_i is the vector from the end of the parent's
+//! offset to joint i.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::formulate::{Arm, JointState, Link, Motion, Mount, Turning, Wrench, seven_steps};
 use crate::ir::{Axis, Cause, Matrix, Name, Quantity, Symbol, Vector};
 
-/// A frame in the world.
+/// The pose of a frame in the world: rotation and origin.
 #[derive(Clone, Copy)]
 pub(crate) struct Frame<'s> {
     pub(crate) rotation: Matrix<'s>,
@@ -30,13 +31,13 @@ pub(crate) struct Frames<'s> {
 }
 
 impl<'s> Frame<'s> {
-    /// z_i
+    /// Returns z_i, the joint axis in world axes.
     pub(crate) fn axis(&self) -> Vector<'s> {
         Vector(self.rotation.0.map(Vector::z))
     }
 }
 
-/// The frames from the world, or from frame 0 if `base` is that.
+/// Returns the frames in the world, or in frame 0 if `base` is the identity.
 pub(crate) fn frames<'s>(arm: &Arm<'s>, states: &[JointState<'s>], base: Frame<'s>) -> Frames<'s> {
     let (builder, dof) = (arm.builder, states.len());
     let (mut joints, mut links): (Vec<Frame<'s>>, Vec<Frame<'s>>) = (Vec::with_capacity(dof), Vec::with_capacity(dof));
@@ -59,20 +60,20 @@ pub(crate) fn frames<'s>(arm: &Arm<'s>, states: &[JointState<'s>], base: Frame<'
     Frames { joints, links, tip: Frame { rotation, origin: before.origin } }
 }
 
-/// Where something is mounted on a parent, in its axes: the number of the parent's joint, its frame there, and that at
-/// the end of its offset.
+/// Returns where something is mounted on a parent, in the parent's axes. The tuple is the number of the parent's joint,
+/// the frame at that joint, and the frame at the end of its offset.
 fn mounted<'s>(arm: &Arm<'s>, mount: &Mount<'s>, (number, joint, link): (usize, Frame<'s>, Frame<'s>)) -> Frame<'s> {
     let line = arm.builder.joint(number);
     let origin = line.within(Quantity::FrameOrigin, || joint.rotation * mount.lever + link.origin);
     Frame { rotation: joint.rotation, origin }
 }
 
-/// The frame that carries the arm in the world.
+/// Returns the pose of frame 0 in the world.
 pub(crate) fn base<'s>(arm: &Arm<'s>) -> Frame<'s> {
     Frame { rotation: arm.base.rotation, origin: arm.base.translation }
 }
 
-/// The columns of the Jacobian: linear and angular part.
+/// Returns the columns of the Jacobian of the tip: linear and angular part.
 pub(crate) fn jacobian<'s>(arm: &Arm<'s>, frames: &Frames<'s>) -> Vec<[Vector<'s>; 2]> {
     let columns = arm.links.iter().zip(&frames.joints).enumerate().map(|(index, (link, frame))| {
         let line = arm.builder.joint(index + 1);
@@ -92,8 +93,8 @@ pub(crate) fn jacobian<'s>(arm: &Arm<'s>, frames: &Frames<'s>) -> Vec<[Vector<'s
     columns.collect()
 }
 
-/// The columns of J̇. The link before joint i has the angular velocity ω; joint i and those behind it move the tip with
-/// the velocity u:
+/// Returns the columns of J̇. ω is the angular velocity of the link before joint i, and u is the velocity of the tip
+/// due to joint i and the joints after it:
 ///
 /// ω × J_v + z_i × u, ω × z_i (revolute);   ω × z_i, 0 (prismatic)
 pub(crate) fn jacobian_rate<'s>(arm: &Arm<'s>, states: &[JointState<'s>], frames: &Frames<'s>) -> Vec<[Vector<'s>; 2]> {
@@ -133,8 +134,8 @@ pub(crate) fn jacobian_rate<'s>(arm: &Arm<'s>, states: &[JointState<'s>], frames
     arm.links.iter().enumerate().map(column).collect()
 }
 
-/// The derivatives of each column of J by the position of each joint. Joint i turns what is behind it, with the tip and
-/// the axes there, so that for i ≤ k
+/// Returns the derivatives of each column of J with respect to the position of each joint. Joint i turns all that is
+/// after it in the chain, with the tip and the joint axes, so that for i ≤ k
 ///
 /// ∂J_v,k/∂q_i = ∂J_v,i/∂q_k = z_i × J_v,k (revolute i; otherwise 0);   ∂z_k/∂q_i = z_i × z_k, i < k, both revolute
 pub(crate) fn jacobian_derivatives<'s>(arm: &Arm<'s>, frames: &Frames<'s>) -> Vec<Vec<[Vector<'s>; 2]>> {
@@ -158,12 +159,13 @@ pub(crate) fn jacobian_derivatives<'s>(arm: &Arm<'s>, frames: &Frames<'s>) -> Ve
     found
 }
 
-/// Linear and angular acceleration of the tip in world axes, for a base at rest and joints that do not accelerate: step
-/// 4 from joint to joint, without centres of mass. s_i = J_i → J_{i+1}, the last to the tip:
+/// Returns the linear and angular acceleration of the tip in world axes, for a base at rest and joints that do not
+/// accelerate: step 4 from joint to joint, without centres of mass. s_i is the vector from J_i to J_{i+1}, the last one
+/// to the tip:
 ///
 /// p̈_{i+1} = R_iᵀ p̈_i + ω̇_i × s_i + ω_i × (ω_i × s_i) (+ 2 q̇_i ω_i × e: prismatic)
 ///
-/// then p̈ and ω̇_n turned by R_n … R_1 and by the base.
+/// then p̈ and ω̇_n are turned into world axes by R_n to R_1 and by the base.
 pub(crate) fn tip_acceleration<'s>(arm: &Arm<'s>, states: &[JointState<'s>], base: &Motion<'s>) -> [Vector<'s>; 2] {
     let (builder, dof) = (arm.builder, states.len());
     let mut point = builder.zeros(Cause::FixedBase);
@@ -198,7 +200,7 @@ pub(crate) fn tip_acceleration<'s>(arm: &Arm<'s>, states: &[JointState<'s>], bas
     [linear, angular.map(name)]
 }
 
-/// Jᵀ w of a wrench at the tip, in its axes, joint by joint: with F = R_tip f and N = R_tip n,
+/// Returns the joint torques Jᵀ w for a wrench w = (f, n) at the tip, in tip axes: with F = R_tip f and N = R_tip n,
 ///
 /// z_i · ((p_tip - p_i) × F + N) (revolute);   z_i · F (prismatic)
 pub(crate) fn wrench_torques<'s>(arm: &Arm<'s>, frames: &Frames<'s>, wrench: &Wrench<'s>) -> Vec<Symbol<'s>> {

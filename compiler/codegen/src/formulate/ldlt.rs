@@ -1,29 +1,30 @@
-//! M x = b for a symmetric M by M = L D Lᵀ, unrolled, without pivots.
+//! Solves M x = b for a symmetric M by M = L D Lᵀ, unrolled, without pivots.
 //!
 //! For each column j: D_j = M_jj - Σ L_jk c_jk, c_ij = M_ij - Σ L_ik c_jk, L_ij = c_ij / D_j, with sums over k < j.
-//! Then L y = b, z = y / D and Lᵀ x = z. A singular M divides by zero: the numbers are not finite then, nothing worse.
+//! Then L y = b, z = y / D and Lᵀ x = z. For a singular M there is a division by zero, and the results are not finite.
 //!
-//! Joints on different branches of a tree have zeros in M. Eliminated from the base on, these fill; eliminated from the
-//! ends on, none of them does (R. Featherstone, "Efficient factorization of the joint-space inertia matrix for branched
-//! kinematic trees", 2005). So the order of elimination is that of the joints, or the reverse where this fills less.
-//! Six rows of a floating base stand before those of the joints and are the last to be eliminated.
+//! Joints on different branches of a tree have zeros in M. Elimination from the base outwards makes these zeros nonzero
+//! in L; elimination from the ends inwards keeps them all (R. Featherstone, "Efficient factorization of the joint-space
+//! inertia matrix for branched kinematic trees", 2005). So the order of elimination is that of the joints, or the
+//! reverse order if L then has fewer elements. The six rows of a floating base come before those of the joints and are
+//! eliminated last.
 
 use crate::coordinates::Coordinates;
 use crate::function::{Function, Length};
 use crate::ir::{Axis, Builder, Component, Cost, Embedding, Name, Policy, Quantity, Symbol, WithRespectTo};
 
-/// Whose mass matrix is solved by.
+/// The structure of a mass matrix: its rows, and which links carry the joints.
 pub(crate) struct System<'a> {
-    /// The rows and columns of the joints.
+    /// The coordinates, which give the rows and columns of the joints.
     pub(crate) coordinates: &'a Coordinates,
-    /// The links that carry the joints.
+    /// The link that carries each joint; `None` for the base.
     parents: Vec<Option<usize>>,
-    /// The number of rows of a floating base. They stand first: x, y, z, about x, y, z.
+    /// Number of rows of a floating base, 0 or 6. They come first: forces along x, y, z, then moments about x, y, z.
     of_base: usize,
 }
 
 impl<'a> System<'a> {
-    /// The mass matrix of a function: with the rows of the base, if that floats.
+    /// Returns the structure of the mass matrix of a function: with the rows of the base, if the base is floating.
     pub(crate) fn new(
         function: Function,
         coordinates: &'a Coordinates,
@@ -33,39 +34,40 @@ impl<'a> System<'a> {
         Self { coordinates, parents: parents.collect(), of_base }
     }
 
-    /// How many rows there are.
+    /// Returns the number of rows.
     pub(crate) fn size(&self) -> usize {
         self.of_base + self.coordinates.joints().len()
     }
 
-    /// Whether the matrix has an element there, whatever the numbers of the robot are.
+    /// Whether the element of M can differ from zero for a robot with this structure.
     pub(crate) fn has_element(&self, row: usize, column: usize) -> bool {
         match (self.of_joint(row), self.of_joint(column)) {
             (Some(row), Some(column)) => self.coordinates.meet(&self.parents, [row, column]),
             (None, None) => match [row / 3, column / 3] {
-                // m 1, and J
+                // m 1 in the linear block, and J in the angular block
                 [0, 0] => row == column,
                 [1, 1] => true,
-                // [h]×
+                // [h]× in the block between linear and angular rows
                 _ => row % 3 != column % 3,
             },
             _ => true,
         }
     }
 
-    /// The place of a row among the coordinates.
+    /// Returns the coordinate of a row; `None` for a row of the base.
     pub(crate) fn of_joint(&self, row: usize) -> Option<usize> {
         row.checked_sub(self.of_base)
     }
 
-    /// The acceleration whose force or torque a row is.
+    /// Returns the acceleration that belongs to the force or torque of a row.
     pub(crate) fn acceleration(&self, row: usize) -> WithRespectTo {
         self.of_joint(row).map_or(WithRespectTo::BaseRateDot(row + 1), |place| {
             WithRespectTo::RateDot(self.coordinates.joints()[place] + 1)
         })
     }
 
-    /// The name of an element of the matrix: a force or torque by an acceleration.
+    /// Returns the name of an element of the matrix: the derivative of a force or torque with respect to an
+    /// acceleration.
     pub(crate) fn name_of_element(&self, row: usize, column: usize) -> Name {
         let force = match self.acceleration(row) {
             WithRespectTo::RateDot(joint) => Name::scalar(Quantity::Torque, joint),
@@ -74,7 +76,7 @@ impl<'a> System<'a> {
         Name { by: Some(self.acceleration(column)), ..force }
     }
 
-    /// The name of an acceleration that is solved for, and of what is written on the way to it.
+    /// Returns the name of an acceleration that is solved for, or of an intermediate quantity of its solution.
     pub(crate) fn name(&self, quantity: Quantity, row: usize) -> Name {
         match self.acceleration(row) {
             WithRespectTo::RateDot(joint) => Name::scalar(quantity, joint),
@@ -83,8 +85,8 @@ impl<'a> System<'a> {
         }
     }
 
-    /// The name of what is written for an element of a factor. Those of the base have its axes, and whether these are
-    /// linear or angular.
+    /// Returns the name of an intermediate quantity for an element of a factor. In the rows of the base it has the axes
+    /// of the element, and whether each of them is linear or angular.
     fn name_in_factor(&self, quantity: Quantity, row: usize, column: usize) -> Name {
         let name = self.name(quantity, row);
         match self.acceleration(column) {
@@ -97,17 +99,17 @@ impl<'a> System<'a> {
         }
     }
 
-    /// Places of the matrix on and above its diagonal that have an element.
+    /// Returns the number of elements of the matrix on and above its diagonal that can differ from zero.
     pub(crate) fn elements(&self) -> usize {
         let row = |row: usize| (row..self.size()).filter(|&column| self.has_element(row, column)).count();
         (0..self.size()).map(row).sum()
     }
 
-    /// Products and sums of L and D where every element of M that is not zero is an argument.
+    /// Returns the number of products and sums for L and D if every nonzero element of M is an argument.
     pub(crate) fn cost_of_factors(&self) -> Cost {
         let mut builder = Builder::untraced(Policy::Value, Embedding::default(), Function::ForwardDynamics);
         let element = |row: usize, column: usize| {
-            // any argument that no other element has
+            // a different argument for each element
             let name = Name::scalar(Quantity::Position, row * self.size() + column + 1);
             if self.has_element(row, column) { builder.argument(name) } else { builder.zero() }
         };
@@ -122,7 +124,7 @@ impl<'a> System<'a> {
     }
 }
 
-/// The solution of M x = b; row i of `upper` holds the elements (i, i) to (i, n) of M.
+/// Returns the solution of M x = b; row i of `upper` has the elements (i, i) to (i, n) of M.
 pub(crate) fn solved<'s>(
     builder: &'s Builder,
     system: &System<'_>,
@@ -133,19 +135,19 @@ pub(crate) fn solved<'s>(
     x.into_iter().flatten().collect()
 }
 
-/// L and D of a matrix. Rows and columns are counted in the order of elimination.
+/// The factors L and D of a matrix. Rows and columns are counted in the order of elimination.
 pub(crate) struct Factors<'s> {
     builder: &'s Builder,
-    /// The joints, counted from 0, in the order in which they are eliminated.
+    /// The rows of the matrix, counted from 0, in the order in which they are eliminated.
     order: Vec<usize>,
-    /// Rows of L and of L D, below the diagonal.
+    /// Rows of L and of L D, left of the diagonal.
     rows: Vec<Vec<(Symbol<'s>, Symbol<'s>)>>,
     /// The reciprocals of D.
     inverses: Vec<Symbol<'s>>,
 }
 
 impl<'s> Factors<'s> {
-    /// Row i of `upper` holds the elements (i, i) to (i, n) of the matrix.
+    /// Factorizes a matrix; row i of `upper` has its elements (i, i) to (i, n).
     pub(crate) fn of(builder: &'s Builder, system: &System<'_>, upper: &[Vec<Symbol<'s>>]) -> Self {
         let dof = upper.len();
         let order = match system.of_base {
@@ -178,18 +180,18 @@ impl<'s> Factors<'s> {
         Self { builder, order, rows, inverses }
     }
 
-    /// The factors of the matrix divided by a number.
+    /// Returns the factors of the matrix divided by a number.
     pub(crate) fn divided_by(&self, divisor: Symbol<'s>) -> Self {
         let inverses = self.inverses.iter().map(|&inverse| inverse * divisor).collect();
         Self { builder: self.builder, order: self.order.clone(), rows: self.rows.clone(), inverses }
     }
 
-    /// The place of a joint in the order of elimination.
+    /// Returns the place of a row of the matrix in the order of elimination.
     pub(crate) fn place(&self, joint: usize) -> usize {
         self.order.iter().position(|other| *other == joint).unwrap_or_default()
     }
 
-    /// L⁻¹ b in the order of elimination, from b by joint.
+    /// Returns L⁻¹ b in the order of elimination; `b` is in the order of the matrix.
     pub(crate) fn forward(&self, b: &[Symbol<'s>]) -> Vec<Symbol<'s>> {
         let mut y: Vec<Symbol<'s>> = Vec::with_capacity(b.len());
         for (row, &joint) in self.rows.iter().zip(&self.order) {
@@ -198,12 +200,12 @@ impl<'s> Factors<'s> {
         y
     }
 
-    /// D⁻¹ y in the order of elimination.
+    /// Returns D⁻¹ y in the order of elimination.
     pub(crate) fn scaled(&self, y: &[Symbol<'s>]) -> Vec<Symbol<'s>> {
         y.iter().zip(&self.inverses).map(|(&y, &inverse)| y * inverse).collect()
     }
 
-    /// L⁻ᵀ z by joint, from z in the order of elimination.
+    /// Returns L⁻ᵀ z in the order of the matrix; `z` is in the order of elimination.
     pub(crate) fn backward(&self, z: &[Symbol<'s>]) -> Vec<Symbol<'s>> {
         let mut x = z.to_vec();
         for i in (0..x.len()).rev() {
@@ -212,8 +214,8 @@ impl<'s> Factors<'s> {
         (0..x.len()).map(|joint| x[self.place(joint)]).collect()
     }
 
-    /// The solution by joint, where `b`, by joint, is zero for all joints that are eliminated before `first`: these
-    /// have no element then. `name` names what is written for a joint.
+    /// Returns the solution in the order of the matrix. `b` is zero for all rows that are eliminated before `first`;
+    /// for these rows the solution is not computed and is `None`. `name` names the intermediate quantities of a row.
     pub(crate) fn solved(
         &self,
         first: usize,
@@ -245,13 +247,13 @@ impl<'s> Factors<'s> {
     }
 }
 
-/// The element of the symmetric matrix whose upper half this is.
+/// Returns an element of the symmetric matrix whose upper half is `upper`.
 fn element_of<'s>(upper: &[Vec<Symbol<'s>>], row: usize, column: usize) -> Symbol<'s> {
     upper[row.min(column)][row.max(column) - row.min(column)]
 }
 
-/// The order of the coordinates, or the reverse where fewer elements of L are not zero. `has_element` tells whether the
-/// matrix has an element there.
+/// Returns the order of the coordinates, or the reverse order if L then has fewer nonzero elements. `has_element` tells
+/// whether an element of the matrix can differ from zero.
 fn elimination_order(dof: usize, has_element: impl Fn(usize, usize) -> bool) -> Vec<usize> {
     let outward: Vec<usize> = (0..dof).collect();
     let inward: Vec<usize> = outward.iter().rev().copied().collect();
@@ -259,7 +261,7 @@ fn elimination_order(dof: usize, has_element: impl Fn(usize, usize) -> bool) -> 
     if elements(&inward) < elements(&outward) { inward } else { outward }
 }
 
-/// How many elements of L below the diagonal are not zero when coordinates are eliminated in this order.
+/// Returns how many elements of L below the diagonal differ from zero if the coordinates are eliminated in this order.
 fn elements_of_factor(order: &[usize], has_element: impl Fn(usize, usize) -> bool) -> usize {
     let row = |&row: &usize| order.iter().map(|&column| has_element(row, column)).collect();
     let mut is_there: Vec<Vec<bool>> = order.iter().map(row).collect();
@@ -285,7 +287,7 @@ fn within<'s>(builder: &'s Builder, name: Name, value: &dyn Fn() -> Symbol<'s>) 
 mod tests {
     use super::*;
 
-    /// The elements of a mass matrix whose joints these links carry.
+    /// Returns which elements of a mass matrix can differ from zero; `parents` are the links that carry the joints.
     fn elements(parents: &[Option<usize>]) -> impl Fn(usize, usize) -> bool {
         let coordinates = Coordinates::of_free_joints(parents.len());
         let parents = parents.to_vec();
@@ -294,17 +296,17 @@ mod tests {
 
     #[test]
     fn joints_of_a_tree_are_eliminated_from_its_ends_on() {
-        // a torso with two arms of two joints: each joint keeps its elements with those that move it
+        // a torso with two arms of two joints: L has an element only for a joint and a joint that moves it
         let torso = elements(&[None, Some(0), Some(1), Some(0), Some(3)]);
         assert_eq!(elements_of_factor(&[4, 3, 2, 1, 0], &torso), 6);
         assert_eq!(elements_of_factor(&[0, 1, 2, 3, 4], &torso), 10, "the torso couples both arms");
         assert_eq!(elimination_order(5, &torso), [4, 3, 2, 1, 0]);
-        // nothing fills in a chain, nor where branches meet at the base alone
+        // L gets no further nonzero elements in a chain, nor if branches meet at the base only
         assert_eq!(elimination_order(3, elements(&[None, Some(0), Some(1)])), [0, 1, 2]);
         assert_eq!(elimination_order(4, elements(&[None, Some(0), None, Some(2)])), [0, 1, 2, 3]);
     }
 
-    /// Branches with their numbers of joints, on one link or on the base.
+    /// Adds branches with these numbers of joints, on one link or on the base.
     fn branches(parents: &mut Vec<Option<usize>>, on: Option<usize>, lengths: &[usize]) {
         for length in lengths {
             let first = parents.len();
@@ -312,8 +314,8 @@ mod tests {
         }
     }
 
-    /// The counts of Featherstone's LᵀDL: for a joint that d joints carry, d products for L, and d (d + 1) / 2 products
-    /// and as many sums for the elements that are left.
+    /// Featherstone's counts for LᵀDL: a joint with d joints before it takes d products for L, and d (d + 1) / 2
+    /// products and sums for the elements that remain.
     #[test]
     fn factors_of_a_tree_take_no_more_operations_than_its_elements_ask() {
         let operations = |function, parents: &[Option<usize>]| {

@@ -1,28 +1,28 @@
-//! M(q) by columns: the torques of the seven steps for q̈ = e_j, of an arm at rest and without gravity. Where nothing
-//! holds the base, the wrenches that must act on it, too, and six columns of the base.
+//! M(q) by columns: the torques of the seven steps for q̈ = e_j, of an arm at rest and without gravity. For a floating
+//! base, M also has the wrenches on the base as rows, and six columns for the base's accelerations.
 
 use crate::coordinates::{Coordinates, scaled};
 use crate::formulate::ldlt::System;
 use crate::formulate::{Arm, AtTip, JointState, Motion, Wrench, seven_steps};
 use crate::ir::{Axis, Builder, Cause, Quantity, Symbol, Vector, WithRespectTo};
 
-/// The upper half of M, of an arm with `tip` at its tip: row i holds its elements (i, i) to (i, n). Element (i, j) is
-/// torque i for q̈ = e_j, `taui_qddj`.
+/// Returns the upper half of M, of an arm with the load `tip` at its tip: row i has the elements (i, i) to (i, n).
+/// Element (i, j) is the torque of joint i for q̈ = e_j, named `taui_qddj`.
 ///
-/// The lower half is the same, so that M is symmetric to the last bit.
+/// The lower half is a copy of it, so that M is exactly symmetric.
 pub(crate) fn upper_half<'s>(arm: &Arm<'s>, states: &[JointState<'s>], tip: &AtTip<'s>) -> Vec<Vec<Symbol<'s>>> {
     let builder = arm.builder;
     let base = Motion::of_fixed_base(builder, builder.zeros(Cause::NoGravity));
     of_joints(arm, &at_rest(arm, states), &base, tip).0
 }
 
-/// The joints where they are, without motion.
+/// Returns the joints at their positions, with zero rates and accelerations.
 fn at_rest<'s>(arm: &Arm<'s>, states: &[JointState<'s>]) -> Vec<JointState<'s>> {
     let (rest, zero) = (arm.builder.constant(0.0, Cause::AtRest), arm.builder.constant(0.0, Cause::UnitAcceleration));
     states.iter().map(|state| JointState { qd: rest, qdd: zero, ..*state }).collect()
 }
 
-/// The upper half of M of the joints, and for each column the wrench on a floating base, if there is one.
+/// Returns the upper half of M of the joints, and for each column the wrench on a floating base, if there is one.
 #[allow(clippy::type_complexity)] // rows and wrenches
 fn of_joints<'s>(
     arm: &Arm<'s>,
@@ -32,7 +32,7 @@ fn of_joints<'s>(
 ) -> (Vec<Vec<Symbol<'s>>>, Vec<Option<Wrench<'s>>>) {
     let (builder, dof) = (arm.builder, still.len());
     let one = builder.constant(1.0, Cause::UnitAcceleration);
-    // where the links are does not depend on how they move
+    // the rotations are the same for each column, so they are written once, here
     seven_steps::forward(arm, still, base);
     let mut rows: Vec<Vec<_>> = vec![Vec::new(); dof];
     let column = |column: usize| {
@@ -50,33 +50,35 @@ fn of_joints<'s>(
     (rows, on_base)
 }
 
-/// The rows of a floating base, in axes of frame 0 and about its origin.
+/// The rows of a floating base in M, in axes of frame 0 and about its origin.
 pub(crate) struct OfBase<'s> {
     pub(crate) mass: Symbol<'s>,
     /// The first moment of the whole robot.
     pub(crate) h: Vector<'s>,
-    /// Its inertia: xx, yy, zz, xy, xz, yz.
+    /// The inertia of the whole robot: xx, yy, zz, xy, xz, yz.
     pub(crate) inertia: [Symbol<'s>; 6],
-    /// Force and moment on the base, for each coordinate.
+    /// Force and moment on the base for a unit acceleration of each coordinate.
     pub(crate) columns: Vec<[Vector<'s>; 2]>,
 }
 
 impl<'s> OfBase<'s> {
-    /// With a column for each coordinate, from one for each joint.
+    /// Converts `columns` from one column for each joint to one for each coordinate.
     pub(crate) fn gathered(self, coordinates: &Coordinates) -> Self {
         let plus = |a: [Vector<'s>; 2], b: [Vector<'s>; 2]| [a[0] + b[0], a[1] + b[1]];
         let times = |column: [Vector<'s>; 2], ratio| column.map(|part| part.map(|_, x| scaled(x, ratio)));
         Self { columns: coordinates.gathered(&self.columns, plus, times), ..self }
     }
 
-    /// The upper half of M with `joints`, that of the joints: row i holds its elements (i, i) to (i, 6 + n).
+    /// Returns the upper half of M of the whole robot: row i has its elements (i, i) to (i, 6 + n). `joints` is the
+    /// upper half of the joint block.
     pub(crate) fn above(&self, builder: &'s Builder, joints: Vec<Vec<Symbol<'s>>>) -> Vec<Vec<Symbol<'s>>> {
         let columns: Vec<_> = (0..6 + self.columns.len()).map(|column| self.column(builder, column)).collect();
         let row = |row: usize| columns[row..].iter().map(|parts| parts[row / 3].0[row % 3]).collect();
         (0..6).map(row).chain(joints).collect()
     }
 
-    /// Force and moment on the base for a unit of one acceleration, which is its place in M.
+    /// Returns the force and moment on the base for a unit of one acceleration; `column` is the column of this
+    /// acceleration in M.
     pub(crate) fn column(&self, builder: &'s Builder, column: usize) -> [Vector<'s>; 2] {
         let ([x, y, z], [xx, yy, zz, xy, xz, yz]) = (self.h.0, self.inertia);
         let (mass, zero) = (self.mass, builder.zero());
@@ -93,9 +95,10 @@ impl<'s> OfBase<'s> {
     }
 }
 
-/// The rows of a floating base, by joint, and the upper half of M of the joints, of a robot with `tip` at its tip.
+/// Returns the rows of a floating base, by joint, and the upper half of M of the joints, of a robot with the load
+/// `tip`.
 ///
-/// For ω̇ = e_k the force is e_k × h and the moment J e_k.
+/// For the base's angular acceleration ω̇ = e_k the force is e_k × h and the moment J e_k.
 pub(crate) fn with_base<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],

@@ -52,8 +52,8 @@ use crate::ir::{Builder, Name, Ref, Symbol};
 /// The results of a function, by name, in the order of its layout.
 pub(crate) type Outputs<'s> = Vec<(Name, Symbol<'s>)>;
 
-/// The results of the builder's function of a robot. Arguments that are zero for the function are put in before
-/// anything is folded.
+/// Returns the results of the builder's function for a robot. Arguments that are zero for this function are replaced by
+/// zero first, so that the builder leaves out the terms that vanish.
 pub(crate) fn outputs(builder: &Builder, robot: &Robot) -> Vec<(Name, Ref)> {
     let derivation = Derivation::new(builder, robot);
     let coordinates = derivation.coordinates();

@@ -1,11 +1,12 @@
-//! The momentum of the joints, and its rate: what an observer of external torques asks for.
+//! The generalized momentum of the joints, and its rate, which an observer of external torques needs.
 //!
 //! ```text
 //! p = M(q) q̇                ṗ = τ + τ_ext + ∂T/∂q - ∂V/∂q           no acceleration in it; τ_ext is not known
 //! ```
 //!
-//! Of link i and all that it carries, as one body, in the axes of form P: mass M, first moment s and angular momentum L
-//! about J_i, linear momentum P. p is the parent of i, k runs over the joints that link i carries.
+//! The quantities of link i and all that it carries, taken as one body, in the axes of form P: mass M, first moment s
+//! and angular momentum L about J_i, linear momentum P. p is the parent of i, k runs over the joints that link i
+//! carries.
 //!
 //! ```text
 //! M_i = m_i + Σ M_k
@@ -21,10 +22,10 @@
 //! A floating base is link 0, about the origin of frame 0: P_0 is the momentum of the robot, and the angular
 //! momentum about the centre of mass c = s_0 / M_0 is L_0 - c × P_0.
 //!
-//! ∂T/∂q_i is (V_i × S_i) · h_i: of all that T depends on, q_i turns the velocity that comes from the parent, and
-//! nothing else. j̇_i = R_iᵀ (ċ_p + ω_p × r_i) is the velocity of the joint's point. A first moment h beside the mass
-//! adds h_i to s_i, ω_i × h_i to P_i and h_i × ċ_i to L_i. A rotor of the list `motors` adds Jm s a to L of its carrier
-//! c, and n (Jm s + Jm a · ω_c) to p of each joint with which it turns.
+//! ∂T/∂q_i is (V_i × S_i) · h_i: q_i changes T only because it turns the velocity that comes from the parent. j̇_i =
+//! R_iᵀ (ċ_p + ω_p × r_i) is the velocity of the joint's point. A first moment h in addition to the mass adds h_i to
+//! s_i, ω_i × h_i to P_i and h_i × ċ_i to L_i. A rotor of the list `motors` adds Jm s a to L of its carrier c, and n
+//! (Jm s + Jm a · ω_c) to p of each joint with which it turns.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
@@ -33,19 +34,19 @@ use crate::formulate::floating::centroid;
 use crate::formulate::{Arm, AtTip, Body, Joint, JointState, Motion, Outputs, Payload};
 use crate::ir::{Cause, JointLines, Quantity, Symbol, Vector};
 
-/// A link and everything that it carries as one body, about its joint, in its axes or in the axes of its parent.
+/// A link and all links after it as one body, about the link's joint, in the axes of the link or of its parent.
 #[derive(Clone, Copy)]
 struct Carried<'s> {
     mass: Symbol<'s>,
     first_moment: Vector<'s>,
     linear: Vector<'s>,
     angular: Vector<'s>,
-    /// The vector from the parent's centre of mass to the joint, in the axes of the parent.
+    /// Vector from the parent's centre of mass to the joint, in the axes of the parent.
     r: Vector<'s>,
 }
 
-/// p and τ + ∂T/∂q - ∂V/∂q of every joint; a payload is one more body that the last link carries. `motions` are those
-/// of a base that stands still.
+/// Returns p and τ + ∂T/∂q - ∂V/∂q of every joint. A payload is one more body, which the last link carries. `motions`
+/// are those of an arm on a fixed base.
 pub(crate) fn momentum_and_rate<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],
@@ -94,7 +95,7 @@ pub(crate) fn momentum_and_rate<'s>(
     [momenta, rates]
 }
 
-/// The momentum of a robot with a floating base, and its angular momentum about the centre of mass.
+/// Returns the linear momentum of a robot with a floating base, and its angular momentum about the centre of mass.
 pub(crate) fn centroidal_momentum<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],
@@ -126,7 +127,7 @@ pub(crate) fn centroidal_momentum<'s>(
 }
 
 impl<'s> Carried<'s> {
-    /// In the axes of the parent, whose line this is.
+    /// Turns the vectors into the axes of the parent; `line` is that of the parent.
     fn turned(self, line: JointLines<'s>, motion: &Motion<'s>) -> Self {
         let turned = |quantity, vector| line.define(quantity).by(motion.turning.rotation * vector);
         Self {
@@ -138,7 +139,7 @@ impl<'s> Carried<'s> {
     }
 }
 
-/// The payload as a body that the link of the tip carries.
+/// Returns the payload as a body that the link of the tip carries.
 fn of_payload<'s>(arm: &Arm<'s>, payload: &Payload<'s>, link: usize, motion: &Motion<'s>) -> Carried<'s> {
     let (dof, rotation) = (arm.links.len(), arm.tip.rotation);
     let [linear, angular] = payload.momenta(arm, motion);
@@ -154,7 +155,7 @@ fn of_payload<'s>(arm: &Arm<'s>, payload: &Payload<'s>, link: usize, motion: &Mo
     }
 }
 
-/// Link i with everything that it carries, as one body, which the parent carries at the end of `r`.
+/// Returns link i and all that it carries as one body. `r` is the vector from the parent's centre of mass to the joint.
 fn body<'s>(
     line: JointLines<'s>,
     (link, r): (&Body<'s>, Vector<'s>),
@@ -187,7 +188,7 @@ fn body<'s>(
     Carried { mass, first_moment, linear, angular, r }
 }
 
-/// ∂T/∂q_i
+/// Returns ∂T/∂q_i.
 fn of_motion<'s>(joint: &Joint<'_, 's>, body: &Carried<'s>, motion: &Motion<'s>, parent: &Motion<'s>) -> Symbol<'s> {
     let turning = motion.turning.omega.cross(joint.e);
     match joint.link.kind {
@@ -200,7 +201,7 @@ fn of_motion<'s>(joint: &Joint<'_, 's>, body: &Carried<'s>, motion: &Motion<'s>,
     }
 }
 
-/// -∂V/∂q_i
+/// Returns -∂V/∂q_i.
 fn of_gravity<'s>(joint: &Joint<'_, 's>, body: &Carried<'s>, motion: &Motion<'s>) -> Symbol<'s> {
     match joint.link.kind {
         Revolute => body.first_moment.cross(motion.gravity).z(),

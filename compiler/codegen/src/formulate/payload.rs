@@ -1,4 +1,4 @@
-//! A payload that is fixed to the tip: one link more, whose joint does not move.
+//! A payload that is fixed to the tip: it is computed as one more link, whose joint does not move.
 //!
 //! ```text
 //! R, r    of the tip, from the axes and the centre of mass of the last link n   c, m, I   of the payload, in tip axes
@@ -12,18 +12,18 @@ use crate::formulate::{Arm, Motion, Wrench};
 use crate::function::Argument;
 use crate::ir::{Builder, Cause, Matrix, Quantity, Symbol, Vector, all_names_of};
 
-/// A payload, in tip axes.
+/// A payload: its mass, centre of mass and inertia in tip axes.
 #[derive(Clone, Copy)]
 pub(crate) struct Payload<'s> {
     pub(crate) mass: Symbol<'s>,
-    /// The centre of mass from the origin of the tip frame.
+    /// Vector from the origin of the tip frame to the centre of mass.
     pub(crate) com: Vector<'s>,
-    /// About the centre of mass.
+    /// Inertia about the centre of mass.
     pub(crate) inertia: Matrix<'s>,
 }
 
 impl<'s> Payload<'s> {
-    /// The payload among the arguments of the function that is being written, if the function has one.
+    /// Returns the payload among the arguments of the function, if the function takes one.
     pub(crate) fn argument(builder: &'s Builder, dof: usize) -> Option<Self> {
         if !builder.function.takes(Argument::Payload) {
             return None;
@@ -37,7 +37,7 @@ impl<'s> Payload<'s> {
         })
     }
 
-    /// The wrench that the last link exerts on it, at the tip, in tip axes.
+    /// Returns the wrench that the last link exerts on the payload, at the tip, in tip axes.
     fn wrench(&self, arm: &Arm<'s>, last: &Motion<'s>) -> Wrench<'s> {
         let Self { mass, com, inertia } = *self;
         let dof = arm.links.len();
@@ -71,9 +71,8 @@ impl<'s> Payload<'s> {
         Wrench { force, moment }
     }
 
-    /// Its momenta, in tip axes and about the origin of the tip frame: v = Rᵀ (ċ_n + ω_n × r) + ω × c, P = m v and L =
-    /// I ω
-    /// + c × P. `last` is the motion of the last link.
+    /// Returns the linear and angular momentum P and L of the payload, in tip axes and about the origin of the tip
+    /// frame: v = Rᵀ (ċ_n + ω_n × r) + ω × c, P = m v and L = I ω + c × P. `last` is the motion of the last link.
     pub(crate) fn momenta(&self, arm: &Arm<'s>, last: &Motion<'s>) -> [Vector<'s>; 2] {
         let Self { mass, com, inertia } = *self;
         let dof = arm.links.len();
@@ -103,7 +102,7 @@ pub(crate) enum AtTip<'s> {
 }
 
 impl<'s> AtTip<'s> {
-    /// The wrench that the link of each tip exerts there, in tip axes.
+    /// Returns the wrench that the link of each tip exerts there, in tip axes.
     pub(crate) fn wrenches(&self, arm: &Arm<'s>, motions: &[Motion<'s>]) -> Vec<Wrench<'s>> {
         match (self, arm.at_tip(motions)) {
             (Self::Wrench(wrench), _) => vec![*wrench],

@@ -1,5 +1,5 @@
-//! Torques per inertial parameter: τ = Y π, π = (m, m c̄, J) of each link about the origin O of its link frame, in its
-//! axes.
+//! The regressor Y of the inertial parameters: τ = Y π, with π = (m, m c̄, J) of each link about the origin O of its
+//! link frame, in the axes of that frame.
 //!
 //! ```text
 //! U = [ω̇]× + [ω]×[ω]×, a acceleration of O less gravity:   F = m a + U h,   N = h × a + J ω̇ + ω × J ω
@@ -7,8 +7,8 @@
 //!   m:  v · a          h:  Uᵀ v + a × u          J:  u · J ω̇ + (u × ω) · J ω
 //! ```
 //!
-//! A floating base is a link, too: its link frame is frame 0, and u or v is an axis of it in each of its six
-//! rows.
+//! A floating base is a link, too: its link frame is frame 0. For each of its six rows, u or v is an axis of that
+//! frame.
 
 use std::array::from_fn;
 
@@ -19,28 +19,28 @@ use crate::formulate::{Arm, JointState, Link, Motion, Turning};
 use crate::function::Length;
 use crate::ir::{Cause, Matrix, Name, Quantity, Symbol, Vector};
 
-/// Rows of the base.
+/// Number of rows of the base.
 const OF_BASE: usize = Length::OF_BASE;
 
 /// The ten elements of each link in each row.
 type Rows<'s> = Vec<Vec<[Symbol<'s>; PER_LINK]>>;
 
-/// The values that a joint takes over from the link that carries it, at the joint's point and in the axes of that link:
-/// the acceleration less gravity, and (u, v) of the rows that move the link.
+/// The values that a joint gets from the link that carries it, at the joint's point and in the axes of that link: the
+/// acceleration less gravity, and (u, v) of the rows of the joints that move the link.
 #[derive(Clone)]
 struct Carrier<'s> {
     acceleration: Vector<'s>,
     twists: Vec<(usize, [Vector<'s>; 2])>,
 }
 
-/// Y by torque, link and parameter; zero where the joint does not move the link.
+/// Returns Y by torque, link and parameter; an element is zero if the joint does not move the link.
 pub(crate) fn regressor<'s>(arm: &Arm<'s>, states: &[JointState<'s>], motions: &[Motion<'s>]) -> Rows<'s> {
     let still = Carrier { acceleration: -arm.gravity, twists: Vec::new() };
     of_links(arm, states, motions, vec![still; states.len()])
 }
 
-/// Y of a floating base: force, moment and torques; the base first, then the links. `acceleration` of the
-/// origin of frame 0, less gravity.
+/// Returns Y for a floating base: rows of force, moment and torques; the base comes first, then the links.
+/// `acceleration` is that of the origin of frame 0, less gravity.
 pub(crate) fn floating_regressor<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],
@@ -70,7 +70,7 @@ pub(crate) fn floating_regressor<'s>(
             Some((_, twist)) => {
                 line.within(Quantity::Partial, || columns([omega, omega_dot, acceleration], gradient, *twist))
             }
-            // no joint moves the base
+            // a torque does not depend on the parameters of the base: no joint moves the base
             None => [zero; PER_LINK],
         };
         let named = |parameter: usize| builder.name(name_of_floating(row, 0, parameter), own[parameter]);
@@ -79,8 +79,8 @@ pub(crate) fn floating_regressor<'s>(
     rows
 }
 
-/// The elements of the links; where the base has rows, they stand before those of the joints. `carriers` of every
-/// joint: those of joints on the base are told.
+/// Returns the elements of the links; with a floating base, the rows of the base come before those of the joints.
+/// `carriers` has an element for each joint; on entry those of joints on the base must be set, the others are computed.
 fn of_links<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],
@@ -92,7 +92,7 @@ fn of_links<'s>(
     let of_base = if floats { OF_BASE } else { 0 };
     let mut rows = vec![vec![[builder.constant(0.0, Cause::Arithmetic); PER_LINK]; dof]; of_base + dof];
     let zeros = builder.zeros(Cause::JointAxis);
-    // behind them that of what stands at an end, which nothing takes
+    // one element more for links at the end of the chain: it is written, but no joint reads it
     carriers.push(Carrier { acceleration: zeros, twists: Vec::new() });
     for (joint, motion) in arm.joints(states).zip(motions) {
         let (line, link) = (joint.lines, joint.link);
@@ -120,7 +120,7 @@ fn of_links<'s>(
             Revolute => (of_base + joint.index, [joint.e, zeros]),
             Prismatic => (of_base + joint.index, [zeros, joint.e]),
         });
-        // in the axes of the link frame
+        // from here on in the axes of the link frame
         let into = link.table_axes.transpose();
         let in_frame = line.within(Quantity::Partial, || [omega, omega_dot, origin].map(|v| into * v));
         let gradient_in_frame = line.within(Quantity::Gradient, || self::gradient(in_frame[0], in_frame[1]));
@@ -145,18 +145,18 @@ fn of_links<'s>(
     rows
 }
 
-/// The name of an element of Y; joint, link and parameter are counted from 0.
+/// Returns the name of an element of Y; joint, link and parameter are counted from 0.
 pub(crate) fn element_name(joint: usize, link: usize, parameter: usize) -> Name {
     Name { indices: [link + 1, parameter + 1], ..Name::scalar(Quantity::RegressorElement, joint + 1) }
 }
 
-/// The name of an element of Y with a floating base, which is body 0 and has the first six rows.
+/// Returns the name of an element of Y with a floating base; the base is body 0 and has the first six rows.
 pub(crate) fn name_of_floating(row: usize, body: usize, parameter: usize) -> Name {
     let name = match row.checked_sub(OF_BASE) {
         Some(joint) => Name::scalar(Quantity::RegressorElement, joint + 1),
         None => Name::of_base(Quantity::BaseForce, Quantity::BaseMoment, row),
     };
-    // that of the base has no number
+    // the names of the elements of the base have no body number
     let indices = if body == 0 { [parameter + 1, 0] } else { [body, parameter + 1] };
     Name { indices, ..name }
 }
@@ -168,7 +168,7 @@ fn gradient<'s>(omega: Vector<'s>, omega_dot: Vector<'s>) -> Matrix<'s> {
     Matrix::from_rows([[-(yy + zz), xy - dz, xz + dy], [xy + dz, -(xx + zz), yz - dx], [xz - dy, yz + dx, -(xx + yy)]])
 }
 
-/// The ten elements of one joint and one link.
+/// Returns the ten elements of Y for one joint and one link.
 fn columns<'s>(
     [omega, omega_dot, a]: [Vector<'s>; 3],
     gradient: Matrix<'s>,

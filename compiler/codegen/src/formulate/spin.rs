@@ -7,7 +7,7 @@
 //! T    + ½ Jm s (s + 2 a · ω_c)    kinetic energy
 //! ```
 //!
-//! The mass and inertia of the carrier include the rotor held still.
+//! The mass and inertia of the carrier include the rotor, as if it did not turn.
 
 use rne_model::{Convention, Robot};
 
@@ -15,21 +15,21 @@ use crate::coordinates::{Ratio, scaled};
 use crate::formulate::{Arm, Joint, JointState, Motion};
 use crate::ir::{Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
 
-/// A rotor that turns on a link.
+/// A rotor of the list `motors`, which turns on a link.
 pub(crate) struct Spin<'s> {
-    /// The link that carries it, counted from 0; `None` for the base.
+    /// The link that carries the rotor, counted from 0; `None` for the base.
     pub(crate) on: Option<usize>,
-    /// a, in the axes of form P of the carrier.
+    /// Rotor axis a in the carrier's axes of form P.
     axis: Vector<'s>,
     inertia: Symbol<'s>,
-    /// The joints with which it turns, counted from 0, and n.
+    /// The joints with which the rotor turns, counted from 0, each with its ratio n.
     turns: Vec<(usize, f64)>,
-    /// Tells it from other rotors.
+    /// Number of the rotor, from 1.
     number: usize,
 }
 
 impl<'s> Spin<'s> {
-    /// The rotors of a robot. `twists` are the turns Rx(α) of its rows.
+    /// Returns the rotors of a robot. `twists` are the rotations Rx(α) of the rows of the table.
     pub(crate) fn all(builder: &'s Builder, robot: &Robot, twists: &[Matrix<'s>]) -> Vec<Self> {
         let mut spins = Vec::new();
         for (rotor, turns) in robot.spinning_rotors() {
@@ -46,7 +46,7 @@ impl<'s> Spin<'s> {
         spins
     }
 
-    /// Σ n x, of rates or accelerations x of the joints, under the name of `quantity`.
+    /// Returns Σ n x, where x is the rate or the acceleration of each joint, as a named `quantity`.
     pub(crate) fn of_joints(
         &self,
         quantity: Quantity,
@@ -62,19 +62,19 @@ impl<'s> Spin<'s> {
         })
     }
 
-    /// Jm x a, of a spin or its acceleration x.
+    /// Returns Jm x a, where x is the spin or its acceleration.
     pub(crate) fn momentum(&self, spin: Symbol<'s>) -> Vector<'s> {
         self.axis * (self.inertia * spin)
     }
 
-    /// n (Jm x + Jm a · y) where the rotor turns with a joint, of its spin x and the angular velocity y of its carrier,
-    /// or the accelerations of both.
+    /// Returns n (Jm x + Jm a · y) if the rotor turns with the joint. x is its spin and y the angular velocity of its
+    /// carrier, or both are the accelerations.
     pub(crate) fn resistance(&self, joint: usize, spin: Symbol<'s>, carrier: Vector<'s>) -> Option<Symbol<'s>> {
         let (_, n) = *self.turns.iter().find(|(other, _)| *other == joint)?;
         Some(scaled(self.inertia * spin + self.inertia * self.axis.dot(carrier), Ratio::constant(n)))
     }
 
-    /// Jm s (s + 2 a · ω)
+    /// Returns Jm s (s + 2 a · ω), twice the kinetic energy of the rotor.
     pub(crate) fn twice_energy(&self, spin: Symbol<'s>, carrier: Option<Vector<'s>>) -> Symbol<'s> {
         let whole = carrier.map_or(spin, |omega| {
             let along = self.axis.dot(omega);
@@ -84,9 +84,9 @@ impl<'s> Spin<'s> {
     }
 }
 
-/// The rotors of a robot with their spins, for steps 6 and 7.
+/// The rotors of a robot with their spins, as steps 6 and 7 need them.
 pub(crate) struct Rotors<'a, 's> {
-    /// Each with s and ṡ.
+    /// Each rotor with its spin s and the spin's acceleration ṡ.
     spins: Vec<(&'a Spin<'s>, [Symbol<'s>; 2])>,
 }
 
@@ -99,7 +99,8 @@ impl<'a, 's> Rotors<'a, 's> {
         Self { spins: arm.spins.iter().map(|spin| (spin, spinning(spin))).collect() }
     }
 
-    /// n_c of a link that turns with ω_c, or of the base (`None`), with that of the rotors on it.
+    /// Returns the moment n_c of a link with the angular velocity ω_c, or of the base (`None`), plus the moment of the
+    /// rotors on it.
     pub(crate) fn with_moment(&self, carrier: Option<usize>, omega: Vector<'s>, moment: Vector<'s>) -> Vector<'s> {
         let on_carrier = self.spins.iter().filter(|(spin, _)| spin.on == carrier);
         on_carrier.fold(moment, |moment, (spin, [rate, rate_dot])| {
@@ -107,8 +108,8 @@ impl<'a, 's> Rotors<'a, 's> {
         })
     }
 
-    /// The torque of a joint with that of the rotors: G² Jm q̈ of its own motor, if that belongs to the arm, and those
-    /// of the list `motors`.
+    /// Returns the torque of a joint plus that of the rotors: G² Jm q̈ of its own motor, if its rotor belongs to the
+    /// arm, and the torques of the rotors of the list `motors`.
     pub(crate) fn with_torque(
         &self,
         joint: &Joint<'_, 's>,
@@ -124,7 +125,8 @@ impl<'a, 's> Rotors<'a, 's> {
     }
 }
 
-/// The name of a quantity of a rotor: the first joint with which it turns, and the number of the rotor.
+/// Returns the name of a quantity of a rotor: it has the first joint with which the rotor turns, and the number of the
+/// rotor.
 fn name(quantity: Quantity, turns: &[(usize, f64)], number: usize) -> Name {
     Name::indexed(quantity, turns.first().map_or(0, |(joint, _)| joint + 1), number)
 }

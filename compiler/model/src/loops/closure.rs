@@ -126,8 +126,9 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// Numbers that are zero where the loops are closed, and their derivatives: the distances of the places, and the
-    /// differences of axes that must be the same, all free of units. Products of axes are zero at opposite axes, too.
+    /// Returns residuals that are zero where the loops are closed, and their derivatives, all free of units: the
+    /// distances of the places, and the differences of axes that must be equal. Differences are used because products
+    /// of axes are also zero for opposite axes.
     fn open(&self, positions: &[f64]) -> (Vec<f64>, Matrix) {
         let equations: usize = self.ways.iter().map(|ways| 3 + ways.cut.differences()).sum();
         let mut derivatives = Matrix::zero(equations, self.variables.len());

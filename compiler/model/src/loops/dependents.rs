@@ -1,45 +1,46 @@
-//! A choice of dependent joints, for closed loops of a description that does not name them.
+//! Chooses dependent joints for the closed loops of a robot description that does not name them.
 
 use crate::loops::closure::{Equations, moving, sorted};
 use crate::loops::matrix::{Matrix, elimination};
 use crate::loops::mobility::{CLOSURES, Jacobians, SPARE};
 use crate::{ClosedLoop, Convention, Joint};
 
-/// Whether a description gives a joint a motor. A joint that comes earlier here is rather dependent.
+/// Whether a description gives a joint a motor. Joints with an earlier value of this list are preferred as dependent
+/// joints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Actuation {
-    /// It has none.
+    /// The joint has no motor.
     None,
-    /// The description does not say.
+    /// The description does not say it.
     Unknown,
-    /// It has one.
+    /// The joint has a motor.
     Motor,
 }
 
-/// The reason why no joints of closed loops can be dependent.
+/// The reason why no joints can be chosen as the dependent joints of closed loops.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum NoDependents {
-    /// No configuration closes this loop: at these positions of all joints, where the loops come nearest to it, its
-    /// places are so far apart, m and rad.
+    /// No configuration closes this loop; the fields say how far open it is where the loops come nearest to closing.
     Open {
         /// The loop, counted from 0.
         index: usize,
-        /// The distance of its places, m, and the angle between their axes, rad.
+        /// The distance between the two places of the loop, m, and the angle between their axes, rad.
         apart: [f64; 2],
-        /// Positions of all joints, rad or m.
+        /// The positions of all joints, rad or m, at which the loops come nearest to closing.
         positions: Vec<f64>,
     },
     /// The equations of this loop, counted from 0, follow from those of the loops before it.
     Repeats(usize),
     /// The joints that move this loop, counted from 0, cannot move at all.
     Rigid(usize),
-    /// The loops are singular at all configurations that close them: this is the first of them, counted from 0.
+    /// The loops are singular at all configurations that close them: this is the first of these loops, counted from 0.
     Singular(usize),
 }
 
-/// Gives each loop a list `dependent`, for joints of which `actuation` says whether they have motors: as many as the
-/// equations determine, joints without motors first. Returns the joints that move the loops and are not dependent.
+/// Writes the list `dependent` of each loop: as many joints as the equations determine, those without motors first.
+/// `actuation` says for each joint whether it has a motor. Returns the joints that move the loops and are not
+/// dependent.
 ///
 /// # Errors
 /// When no choice makes a mechanism that moves.
@@ -62,7 +63,7 @@ pub fn choose_dependents(
     for group in found.groups() {
         let movers = sorted(group.iter().flat_map(|&index| moving(joints, &unnamed[index])).collect());
         let rank = found.rank_of(&group).0;
-        // the equations that each loop adds to those before it
+        // how many independent equations each loop adds to those of the loops before it
         let ranks: Vec<usize> = (0..=group.len()).map(|place| found.rank_of(&group[..place]).0).collect();
         let adds: Vec<usize> = ranks.windows(2).map(|pair| pair[1].saturating_sub(pair[0])).collect();
         if let Some(place) = adds.iter().position(|added| *added == 0) {
@@ -85,8 +86,8 @@ pub fn choose_dependents(
 }
 
 impl Jacobians<'_> {
-    /// A choice of `rank` dependent joints of some loops among others, where they determine these; `preferred` come
-    /// first.
+    /// Chooses `rank` dependent joints for some loops out of the joints `among`, `preferred` ones first; `None` if the
+    /// equations do not determine so many of them.
     fn chosen(
         &self,
         loops: &[usize],
@@ -104,11 +105,11 @@ impl Jacobians<'_> {
     }
 }
 
-/// Names each chosen joint in one loop that it moves: each loop gets as many as it adds equations, as far as that is
-/// possible, and one at least. The loops are solved together, so that the numbers of each do not matter.
+/// Writes each chosen joint into the list `dependent` of one loop that it moves. Each loop gets at least one joint, and
+/// if possible as many as it adds equations; more is not needed, because all loops are solved together.
 fn share(joints: &[Joint], loops: &mut [ClosedLoop], (group, adds): (&[usize], &[usize]), chosen: &[usize]) {
     let moves: Vec<Vec<usize>> = group.iter().map(|&index| moving(joints, &loops[index])).collect();
-    // places of the loops, by the places in `chosen`
+    // for each place in `chosen`, the loop that gets the joint, as its place in `group`
     let mut of_joint: Vec<Option<usize>> = vec![None; chosen.len()];
     for place in 0..group.len() {
         claim(place, &moves, chosen, &mut of_joint, &mut vec![false; chosen.len()]);
@@ -124,7 +125,7 @@ fn share(joints: &[Joint], loops: &mut [ClosedLoop], (group, adds): (&[usize], &
     }
 }
 
-/// Finds a joint of its own for a loop, and other ones for the loops that had it.
+/// Finds a joint of its own for a loop, and if needed moves other loops to other joints. Returns whether it succeeded.
 fn claim(
     place: usize,
     moves: &[Vec<usize>],

@@ -1,6 +1,6 @@
 //! Small dense matrices: singular values, damped least squares, and the order in which equations are eliminated.
 
-/// A matrix by rows.
+/// A dense matrix, stored row by row.
 #[derive(Clone, Debug)]
 pub(crate) struct Matrix {
     rows: usize,
@@ -21,7 +21,7 @@ impl Matrix {
         self.elements[row * self.columns + column] += value;
     }
 
-    /// These rows and columns of it, each row and each column times a factor.
+    /// Returns the matrix of some rows and columns, each with its index and a factor by which it is multiplied.
     pub(crate) fn part(&self, rows: &[(usize, f64)], columns: &[(usize, f64)]) -> Self {
         let row = |&(row, by): &(usize, f64)| {
             columns.iter().map(move |&(column, factor)| by * factor * self.get(row, column))
@@ -29,11 +29,11 @@ impl Matrix {
         Self { rows: rows.len(), columns: columns.len(), elements: rows.iter().flat_map(row).collect() }
     }
 
-    /// Singular values, the largest first, each with its right singular vector: as many as there are columns. One-sided
-    /// rotations of Jacobi (G. Golub, C. Van Loan, "Matrix Computations", 4th ed., 2013, section 8.6.3).
+    /// Returns as many singular values as the matrix has columns, the largest first, each with its right singular
+    /// vector. One-sided Jacobi rotations (G. Golub, C. Van Loan, "Matrix Computations", 4th ed., 2013, section 8.6.3).
     pub(crate) fn singular(&self) -> Vec<(f64, Vec<f64>)> {
         const SWEEPS: usize = 40;
-        // columns with the columns of the identity below them, which turn with them
+        // each column is extended by a column of the identity, which is rotated with it and becomes a singular vector
         let mut columns: Vec<Vec<f64>> = (0..self.columns)
             .map(|column| {
                 let unit = (0..self.columns).map(|row| if row == column { 1.0 } else { 0.0 });
@@ -71,7 +71,8 @@ impl Matrix {
         found
     }
 
-    /// The step x for which |A x + r|² + damping |x|² is least; `None` where rounding or overflow leave none.
+    /// Returns the step x that minimises |A x + r|² + damping |x|²; `None` where rounding or overflow leaves no
+    /// solution.
     pub(crate) fn damped_step(&self, residual: &[f64], damping: f64) -> Option<Vec<f64>> {
         let n = self.columns;
         let mut normal = Self::zero(n, n);
@@ -82,7 +83,7 @@ impl Matrix {
                 row[..=i].iter().enumerate().for_each(|(j, b)| normal.add(i, j, a * b));
             }
         }
-        // L Lᵀ in place
+        // Cholesky factorisation L Lᵀ, in place
         for i in 0..n {
             normal.add(i, i, damping);
             for j in 0..=i {
@@ -107,15 +108,15 @@ impl Matrix {
     }
 }
 
-/// A smaller pivot, at one of the matrices or more, is zero but for rounding.
+/// A pivot below this, in at least one of the matrices, counts as zero up to rounding.
 const LEAST_PIVOT: f64 = 1e-9;
 
-/// A step of the elimination: row, column, and the smallest pivot of all matrices.
+/// A step of the elimination: the row and the column of the pivot, and its smallest magnitude over all matrices.
 pub(crate) type Step = (usize, usize, f64);
 
-/// The order in which Gauss's elimination takes rows and columns of several matrices alike, as many steps as there are
-/// pivots. Each step takes the pivot whose least magnitude over all matrices is largest; of equal ones the first by row
-/// and column, among columns that are `preferred` if these have one.
+/// Returns the order in which Gaussian elimination takes rows and columns, the same for several matrices, with as many
+/// steps as there are pivots. Each step takes the pivot whose smallest magnitude over all matrices is largest; among
+/// equal ones the first by row, then by column. Columns that are `preferred` come first as long as they have a pivot.
 pub(crate) fn elimination(matrices: &[Matrix], preferred: impl Fn(usize) -> bool) -> Vec<Step> {
     let mut rest = matrices.to_vec();
     let mut steps: Vec<Step> = Vec::new();
@@ -127,7 +128,7 @@ pub(crate) fn elimination(matrices: &[Matrix], preferred: impl Fn(usize) -> bool
             for row in (0..rows).filter(|row| steps.iter().all(|step| step.0 != *row)) {
                 for column in (0..columns).filter(|&column| of(column) && steps.iter().all(|step| step.1 != column)) {
                     let least = rest.iter().map(|it| it.get(row, column).abs()).fold(f64::INFINITY, f64::min);
-                    // what rounding tells apart is equal
+                    // pivots that differ only by rounding count as equal
                     if least >= LEAST_PIVOT && best.is_none_or(|(.., known)| least > known * (1.0 + 1e-9)) {
                         best = Some((row, column, least));
                     }
@@ -144,7 +145,7 @@ pub(crate) fn elimination(matrices: &[Matrix], preferred: impl Fn(usize) -> bool
     steps
 }
 
-/// The pivots of a matrix that is eliminated in a known order, in this order.
+/// Returns the pivots of a matrix that is eliminated in the given order.
 pub(crate) fn pivots(matrix: &Matrix, steps: &[Step]) -> Vec<f64> {
     let mut rest = matrix.clone();
     let pivot = |&step: &Step| {
@@ -155,7 +156,7 @@ pub(crate) fn pivots(matrix: &Matrix, steps: &[Step]) -> Vec<f64> {
     steps.iter().map(pivot).collect()
 }
 
-/// Takes a column out of all rows but that of the pivot.
+/// Eliminates the column of a pivot from all other rows.
 fn eliminate(matrix: &mut Matrix, (pivot_row, pivot_column, _): Step) {
     let pivot = matrix.get(pivot_row, pivot_column);
     for row in (0..matrix.rows).filter(|row| *row != pivot_row) {
@@ -185,7 +186,7 @@ mod tests {
         let found = matrix(&[[3.0, 0.0], [4.0, 5.0], [0.0, 0.0]]).singular();
         let values: Vec<f64> = found.iter().map(|(value, _)| *value).collect();
         assert!((values[0] - 45.0_f64.sqrt()).abs() < 1e-14 && (values[1] - 5.0_f64.sqrt()).abs() < 1e-14);
-        // (1, -1) is what the columns (1, 2) and (1, 2) do not see
+        // (1, -1) is in the null space: both columns are (1, 2)
         let found = matrix(&[[1.0, 1.0], [2.0, 2.0]]).singular();
         assert!(found[1].0 < 1e-15 && (found[1].1[0] + found[1].1[1]).abs() < 1e-15, "{found:?}");
         assert!(matrix(&[[f64::NAN, 1.0], [f64::INFINITY, 2.0]]).singular().len() == 2);
@@ -200,7 +201,7 @@ mod tests {
         assert!(matrix(&[[0.0, 0.0]]).damped_step(&[1.0], 0.0).is_none());
     }
 
-    /// The pivot that is largest where it is least; 3 vanishes in the second matrix.
+    /// The first pivot is 2, not 3, because the element with 3 is zero in the second matrix.
     #[test]
     fn the_order_of_elimination_holds_for_all_matrices() {
         let both = [matrix(&[[3.0, 1.0], [1.0, 2.0]]), matrix(&[[0.0, 1.0], [1.0, 2.0]])];

@@ -1,68 +1,71 @@
-//! The joints of closed loops that follow from the others, and the order in which they are solved for, by the rank of
-//! the equations' Jacobian at configurations that close the loops. No formula that counts links and joints gives it:
-//! equations may repeat others, as those across the plane of a planar loop do.
+//! Checks which joints of closed loops follow from the others, and finds the order in which they are solved for, by the
+//! rank of the Jacobian of the equations at configurations that close the loops. No formula that counts links and
+//! joints gives this rank: equations may repeat others, such as those perpendicular to the plane of a planar loop.
 
 use crate::loops::closure::{Equations, moving, sorted};
 use crate::loops::matrix::{Matrix, elimination, pivots};
 use crate::{ClosedLoop, ClosedLoops, Convention, Joint, Pivot};
 
-/// Configurations at which the equations are looked at, and more in place of those where they are singular.
+/// Number of configurations at which the equations are examined, and number of spare ones that replace those where the
+/// equations are singular.
 pub(crate) const CLOSURES: usize = 20;
 pub(crate) const SPARE: usize = 4;
-/// A singular value below this part of the largest is zero.
+/// A singular value below this part of the largest one counts as zero.
 const RANK: f64 = 1e-7;
-/// A singular value, and a pivot, below this part of the largest is worth a note.
+/// A singular value or a pivot below this part of the largest singular value causes a note.
 pub(crate) const NEARLY_SINGULAR: f64 = 1e-3;
 
 /// Why the closed loops of a file cannot be solved.
 pub(crate) enum Fault {
-    /// No configuration closes this loop: where it comes nearest, its places are so far apart, m and rad.
+    /// No configuration closes this loop: where the loops come nearest to closing, its two places are `apart`, m and
+    /// rad.
     Open { index: usize, apart: [f64; 2] },
     /// Loops that share joints do not have as many dependent joints as their equations determine.
     Count(Box<Count>),
-    /// These dependent joints, of this loop first, can move while all other joints are at rest.
+    /// The dependent joints `joints`, of the loop `index` first, can move while all other joints are at rest.
     Undetermined { index: usize, joints: Vec<usize>, singular_values: Vec<f64>, choice: Vec<usize> },
-    /// There is no pivot for each dependent joint that is one at all closures.
+    /// No order of elimination has a usable pivot for each dependent joint at all closures.
     NoOrder,
 }
 
-/// A wrong number of dependent joints.
+/// Details of a wrong number of dependent joints.
 pub(crate) struct Count {
-    /// The loops that share joints, the one to be mended first.
+    /// The loops that share joints; the first is the one whose list must be corrected.
     pub(crate) loops: Vec<usize>,
-    /// Whether the equations of that one follow from those of the loops before it.
+    /// Whether the equations of the first of these loops follow from those of the other loops before it.
     pub(crate) repeats: bool,
-    /// Their dependent joints, and the rank of their equations.
+    /// The number of dependent joints that the file names for these loops, and the rank of their equations.
     pub(crate) named: usize,
     pub(crate) rank: usize,
-    /// The singular values at the first closure, with lengths as parts of `size`, m; how many closures there are.
+    /// The singular values at the first closure, with lengths divided by `size`, m; and the number of closures.
     pub(crate) singular_values: Vec<f64>,
     pub(crate) size: f64,
     pub(crate) closures: usize,
-    /// All joints of these loops that follow no other, and a choice of dependent ones.
+    /// All joints that move these loops and follow no other joint, and a valid choice of dependent ones.
     pub(crate) joints: Vec<usize>,
     pub(crate) choice: Vec<usize>,
 }
 
 /// Remarks about loops that can be solved.
 pub(crate) struct Remarks {
-    /// How many closures were found, if they are fewer than looked for.
+    /// How many closures were found and how many were wanted, if they are fewer.
     pub(crate) few: Option<(usize, usize)>,
-    /// The smallest singular value and pivot found within the limits, each as a part of the largest, and where; only
-    /// where it is small.
+    /// The smallest singular value and the smallest pivot within the limits, relative to the largest singular value,
+    /// with the positions of the joints there; only where they are small.
     pub(crate) singular: Option<(f64, Vec<f64>)>,
     pub(crate) pivot: Option<(f64, Vec<f64>)>,
-    /// The dependent joints that the least singular value moves there.
+    /// The dependent joints that are hardly determined at this smallest singular value.
     pub(crate) undetermined: Vec<usize>,
-    /// Whether all configurations that were found are beyond the position limits.
+    /// Whether all closures that were found are outside the position limits.
     pub(crate) beyond: bool,
-    /// Loops that cannot move: all joints that move them are dependent.
+    /// Loops that cannot move, because all joints that move them are dependent.
     pub(crate) rigid: Vec<usize>,
     /// The joints that move the loops.
     pub(crate) joints: Vec<usize>,
 }
 
-/// Solves the loops of joints that have their couplings.
+/// Finds how the closed loops are solved: the order of elimination, closures and remarks. The joints must have their
+/// couplings already.
 pub(crate) fn solved(
     joints: &[Joint],
     convention: Convention,
@@ -88,7 +91,7 @@ pub(crate) fn solved(
     if regular.is_empty() {
         return Err(found.undetermined(&passive, &singular(&found.all[0])));
     }
-    // as they are, in m and rad
+    // without the factors that make rows and columns free of units: elements in m and rad
     let plain = |of: &[(usize, f64)]| of.iter().map(|(index, _)| (*index, 1.0)).collect::<Vec<_>>();
     let (rows, columns) = (plain(&rows), plain(&columns));
     let of_passive = |jacobian: &Matrix| jacobian.part(&rows, &columns);
@@ -114,21 +117,23 @@ pub(crate) fn solved(
     Ok((ClosedLoops { loops, passive, elimination, closures, singular_values, smallest_pivot }, remarks))
 }
 
-/// How near the equations that determine the dependent joints come to singular ones.
+/// How near to singular the equations of the dependent joints come.
 struct Nearness {
-    /// The least and the largest singular value.
+    /// The smallest and the largest singular value.
     singular_values: [f64; 2],
     smallest_pivot: f64,
-    /// The least ratio of singular values, where it is small, and the positions there.
+    /// The smallest ratio of the least to the largest singular value, and the positions there; only where it is small.
     singular: Option<(f64, Vec<f64>)>,
-    /// The least pivot, as a part of the largest singular value, where it is small and no such ratio is.
+    /// The smallest pivot relative to the largest singular value, and the positions there; only where it is small and
+    /// `singular` is `None`.
     pivot: Option<(f64, Vec<f64>)>,
-    /// The joints that are hardly determined there.
+    /// The dependent joints that are hardly determined at the positions of `singular`.
     undetermined: Vec<usize>,
 }
 
-/// Looks for the positions where the equations of the joints `passive` come nearest to singular ones, from closures
-/// and the equations there. `at` gives the equations at positions, and `steps` are those of their elimination.
+/// Searches the positions where the equations of the joints `passive` are nearest to singular, beginning at the
+/// closures and their Jacobians `matrices`. `at` gives the Jacobian at any positions; `steps` are the steps of its
+/// elimination.
 fn nearness(
     equations: &Equations,
     (closures, matrices): (&[Vec<f64>], &[Matrix]),
@@ -170,20 +175,20 @@ fn nearness(
     Nearness { singular_values, smallest_pivot, singular, pivot, undetermined }
 }
 
-/// How many singular values, the largest first, are not zero.
+/// Returns how many of the singular values, which are sorted from the largest on, are not zero.
 pub(crate) fn rank(singular: &[(f64, Vec<f64>)]) -> usize {
     let largest = singular.first().map_or(0.0, |(value, _)| *value);
     singular.iter().filter(|(value, _)| *value > RANK * largest).count()
 }
 
-/// The joints that a direction moves by more than a part of the largest motion.
+/// Returns the joints whose component in a direction of motion is larger than a `part` of the largest component.
 fn moved(joints: &[usize], direction: &[f64], part: f64) -> Vec<usize> {
     let largest = direction.iter().map(|it| it.abs()).fold(0.0, f64::max);
     let moves = joints.iter().zip(direction).filter(|(_, it)| it.abs() > part * largest);
     moves.map(|(joint, _)| *joint).collect()
 }
 
-/// The Jacobians at all closures.
+/// The Jacobians of the loop equations at all closures.
 pub(crate) struct Jacobians<'a> {
     pub(crate) equations: Equations<'a>,
     pub(crate) all: Vec<Matrix>,
@@ -192,7 +197,7 @@ pub(crate) struct Jacobians<'a> {
 }
 
 impl Jacobians<'_> {
-    /// The columns of some joints, with their units.
+    /// Returns the columns of some joints, each with the factor that makes it free of units.
     pub(crate) fn columns_of(&self, joints: &[usize]) -> Vec<(usize, f64)> {
         let columns = self.equations.columns();
         joints.iter().filter_map(|joint| Some(columns[self.equations.variables.binary_search(joint).ok()?])).collect()
@@ -203,8 +208,8 @@ impl Jacobians<'_> {
         loops.iter().flat_map(|&index| rows[self.equations.rows_of(index)].to_vec()).collect()
     }
 
-    /// The rank of the equations of some loops at most closures, of equally many the larger one, and the singular
-    /// values where it is that.
+    /// Returns the rank that the equations of some loops have at most of the closures, and the singular values at one
+    /// of them. If two ranks are equally frequent, the larger one counts.
     pub(crate) fn rank_of(&self, loops: &[usize]) -> (usize, Vec<f64>) {
         let (rows, columns) = (self.rows_of(loops), self.equations.columns());
         let found: Vec<_> =
@@ -216,7 +221,7 @@ impl Jacobians<'_> {
         (most, values.map_or_else(Vec::new, |(values, _)| values.iter().map(|(value, _)| *value).collect()))
     }
 
-    /// The loops in groups that share joints.
+    /// Returns groups of loops: loops that share a joint are in one group.
     pub(crate) fn groups(&self) -> Vec<Vec<usize>> {
         let mut groups: Vec<(Vec<usize>, Vec<usize>)> = Vec::new();
         for index in 0..self.loops.len() {
@@ -234,14 +239,14 @@ impl Jacobians<'_> {
         groups.into_iter().map(|(loops, _)| loops).collect()
     }
 
-    /// Refuses a group of loops with a wrong number of dependent joints.
+    /// Refuses a group of loops whose number of dependent joints is not the rank of their equations.
     fn counted(&self, group: &[usize]) -> Result<(), Fault> {
         let named = |loops: &[usize]| loops.iter().map(|&index| self.loops[index].dependent.len()).sum::<usize>();
         let (rank, singular_values) = self.rank_of(group);
         if named(group) == rank {
             return Ok(());
         }
-        // the first loop whose equations add more or less to those before it than it names
+        // the first loop that names more or fewer dependent joints than it adds independent equations
         let adds = |place: usize| self.rank_of(&group[..=place]).0 - self.rank_of(&group[..place]).0;
         let wrong = (0..group.len()).find(|&place| adds(place) != named(&group[place..=place])).unwrap_or(0);
         let joints = sorted(group.iter().flat_map(|&index| moving(self.joints, &self.loops[index])).collect());
@@ -273,7 +278,7 @@ impl Jacobians<'_> {
         if choice.len() == rank { choice } else { Vec::new() }
     }
 
-    /// The dependent joints that the least singular value moves.
+    /// Makes the fault that names the dependent joints that the smallest singular value leaves undetermined.
     fn undetermined(&self, passive: &[usize], singular: &[(f64, Vec<f64>)]) -> Fault {
         let direction = singular.last().map_or(&[][..], |(_, direction)| direction);
         let joints = moved(passive, direction, 1e-3);

@@ -1,21 +1,22 @@
-//! Parallelograms: closed loops of four parallel axes whose opposite sides have equal lengths. Opposite sides stay
-//! parallel, so the dependent joints follow the others linearly, and the loop becomes couplings.
+//! Parallelograms: closed loops with four parallel axes whose opposite sides have equal lengths. Opposite sides stay
+//! parallel, so the dependent joints are linear functions of the others, and the loop becomes couplings.
 //!
-//! The loop is a quadrangle of axes: V0 at the link from which both ways to the cut joint begin, V1 at the second joint
-//! of the first way, V2 at the cut joint, V3 at the second joint of the other way. Where that way has one joint, V3 is
-//! its axis and the side V3 V0 belongs to the link that carries it. Where both ways have two joints, their first axes
-//! are one line, as in palletisers: the loop has two freedoms then. The angle of a side in the plane is the sum of the
-//! positions of the joints that turn it, counted about one direction, and its angle where all positions are 0.
+//! The loop is a quadrangle of axes. From one link, two ways of joints lead to the cut joint. V0 is at this link, V1 at
+//! the second joint of the first way, V2 at the cut joint, V3 at the last joint of the other way. If the other way has
+//! one joint, V3 is the axis of this joint, and the side V3 V0 belongs to the link that carries it. If both ways have
+//! two joints, their first axes must be one line, as in palletisers: the loop then has two degrees of freedom. The
+//! angle of a side in the plane is the sum of the positions of the joints that turn it, counted about one direction,
+//! plus its angle where all positions are 0.
 
 use crate::parts::pose::{Pose, axis_at_zero, cross, difference, dot, link_at_zero, own_joints};
 use crate::text::source::{quoted, six_digits};
 use crate::{Convention, Coupling, FixedFrame, Joint, JointKind};
 
-/// Lengths that differ by less than this part of the longer one, and directions by less than this, are equal: tables
-/// have six digits.
+/// Relative difference below which lengths are equal, and difference below which directions are equal: tables have six
+/// digits.
 const TOLERANCE: f64 = 1e-6;
 
-/// The couplings of the dependent joints, or why the loop is no parallelogram.
+/// Returns the couplings of the two dependent joints, or the reason why the loop is no parallelogram.
 pub(crate) fn couplings(
     between: &[FixedFrame; 2],
     dependent: [usize; 2],
@@ -27,7 +28,8 @@ pub(crate) fn couplings(
     let sides = quadrangle.sides()?;
     let ([a, b], (c, d)) = (quadrangle.first, quadrangle.other);
     let sign = |joint: usize| signs.iter().find(|(other, _)| *other == joint).map_or(0.0, |(_, sign)| *sign);
-    // the angle of V1 V2 less that of V0 V3, and of V3 V2 less that of V0 V1: factors of the joints, and a constant
+    // two differences of angles that stay constant, as factors of the joints and a constant: V1 V2 against V0 V3, and
+    // V3 V2 against V0 V1
     let angle = |side: usize, than: usize| turn(sides[than], sides[side], quadrangle.z);
     let mut terms = [vec![(a, sign(a)), (b, sign(b))], vec![(d, sign(d)), (a, -sign(a))]];
     if let Some(c) = c {
@@ -46,9 +48,9 @@ pub(crate) fn couplings(
 struct Quadrangle<'a> {
     joints: &'a [Joint],
     convention: Convention,
-    /// The joints of the first way, at V0 and V1.
+    /// The two joints of the first way, at V0 and V1.
     first: [usize; 2],
-    /// The joint of the other way at V0, if that way has two, and the joint at V3.
+    /// The joints of the other way: the one at V0, if that way has two joints, and the one at V3.
     other: (Option<usize>, usize),
     /// The places of the cut joint at the ends of the two ways.
     ends: [FixedFrame; 2],
@@ -57,7 +59,7 @@ struct Quadrangle<'a> {
 }
 
 impl<'a> Quadrangle<'a> {
-    /// The quadrangle of a loop with two joints on one way and one or two joints on the other, all of them revolute.
+    /// Makes the quadrangle of a loop whose joints are all revolute: two on one way, one or two on the other.
     fn of(between: &[FixedFrame; 2], convention: Convention, joints: &'a [Joint]) -> Result<Self, String> {
         let ways = own_joints(joints, between);
         let (mut ways, mut ends) = ([&ways[0][..], &ways[1][..]], *between);
@@ -99,7 +101,8 @@ impl<'a> Quadrangle<'a> {
         axis_at_zero(self.joints, self.convention, joint)
     }
 
-    /// The sign of each joint: 1 if its axis has the direction of the first axis, -1 if it has the opposite one.
+    /// Returns the sign of each joint: 1 if its axis has the direction of the first axis, -1 if it has the opposite
+    /// one.
     fn signs(&self) -> Result<Vec<(usize, f64)>, String> {
         let sign = |joint: usize| {
             let cosine = dot(self.axis(joint).axis(2), self.z);
@@ -112,8 +115,8 @@ impl<'a> Quadrangle<'a> {
         self.all().map(sign).collect()
     }
 
-    /// The sides from axis to axis, each on its link, where all positions are 0: V0 V1, V1 V2; V3 V2, V0 V3. Opposite
-    /// sides have equal lengths.
+    /// Returns the sides as vectors from axis to axis, where all positions are 0: V0 V1, V1 V2, V3 V2, V0 V3. Refuses a
+    /// loop whose opposite sides have different lengths.
     fn sides(&self) -> Result<[[f64; 3]; 4], String> {
         let (z, [a, b], (c, d)) = (self.z, self.first, self.other);
         let cut =
@@ -150,7 +153,7 @@ impl<'a> Quadrangle<'a> {
                 ));
             }
         }
-        // along the axes the ways must end at one height
+        // both ways must end at the same height along the axes
         let heights = [[sides[0], sides[1]], [sides[3], sides[2]]].map(|way| dot(way[0], z) + dot(way[1], z));
         let apart = (heights[0] - heights[1]).abs();
         if apart > TOLERANCE * lengths[0].max(lengths[1]) {
@@ -163,7 +166,7 @@ impl<'a> Quadrangle<'a> {
     }
 }
 
-/// The two dependent joints from Σ coefficient · q + constant = 0, twice.
+/// Solves two equations Σ coefficient · q + constant = 0 for the two dependent joints.
 fn solved(
     dependent: [usize; 2],
     terms: &[Vec<(usize, f64)>; 2],
@@ -191,7 +194,7 @@ fn solved(
     }))
 }
 
-/// The coupling by joints that follow no other.
+/// Rewrites a coupling in terms of joints that follow no other joint.
 fn without_followers(coupling: Coupling, joints: &[Joint]) -> Coupling {
     let mut found = Coupling { follows: Vec::new(), offset: coupling.offset };
     let mut add = |joint: usize, ratio: f64| match found.follows.iter_mut().find(|(known, _)| *known == joint) {
@@ -218,13 +221,13 @@ fn length(v: [f64; 3]) -> f64 {
     dot(v, v).sqrt()
 }
 
-/// The part of a vector across z.
+/// Returns the part of a vector that is perpendicular to z.
 fn in_plane(v: [f64; 3], z: [f64; 3]) -> [f64; 3] {
     let along = dot(v, z);
     [0, 1, 2].map(|i| v[i] - along * z[i])
 }
 
-/// The angle about z from one vector to another, rad: a multiple of π/2 is exact.
+/// Returns the angle about z from one vector to another, rad; a multiple of π/2 is exact.
 fn turn(from: [f64; 3], to: [f64; 3], z: [f64; 3]) -> f64 {
     let [from, to] = [from, to].map(|v| in_plane(v, z));
     let angle = dot(cross(from, to), z).atan2(dot(from, to));

@@ -1,4 +1,5 @@
-//! Bodies: matter that is fixed to links, such as a camera. Reading makes each a part of its link.
+//! Bodies: masses that are fixed to links, such as a camera. Reading a robot file adds each to the link that carries
+//! it.
 
 use std::fmt;
 
@@ -10,21 +11,22 @@ use crate::{FixedFrame, FloatingBase, Inertia, InertiaReference, Joint, Link, Ro
 /// A body that is fixed to a link: an entry of the list `bodies` of a robot file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// Its name, `[A-Za-z][A-Za-z0-9_]*`; no other body has it.
+    /// The name of the body, `[A-Za-z][A-Za-z0-9_]*`; no other body has it.
     pub name: String,
     /// The link that carries it, and the place of its frame there. A body on a base that is fixed to the world has no
     /// effect.
     pub fixed: FixedFrame,
-    /// Mass, centre of mass and inertia about the centre of mass, in its own frame.
+    /// Mass, centre of mass and inertia about the centre of mass, in the frame of the body.
     pub matter: Link,
 }
 
-/// The bodies of a robot, and the links that carry them without them.
+/// The bodies of a robot, and the links as they are without bodies.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bodies {
     /// The bodies that are parts of links, in the order of the file.
     pub list: Vec<Body>,
-    /// Each link that a body was added to, counted from 0: the link without bodies, and its inertia as written.
+    /// For each link that has bodies: the joint that moves the link, counted from 0, the link without bodies, and its
+    /// inertia as the file writes it.
     pub(crate) bare: Vec<(usize, Link, (Inertia, InertiaReference))>,
     /// The floating base without bodies.
     pub(crate) bare_base: Option<Link>,
@@ -59,7 +61,7 @@ impl fmt::Display for UnknownBody {
 impl std::error::Error for UnknownBody {}
 
 impl Robot {
-    /// The robot without the bodies that have these names: their links are as if the file did not have them.
+    /// Returns the robot without the bodies that have these names, as if the file did not have them.
     ///
     /// # Errors
     /// When no body of the robot has one of the names.
@@ -87,7 +89,7 @@ impl Robot {
 }
 
 impl Bodies {
-    /// Makes each body a part of its link.
+    /// Adds the mass and inertia of each body to its link.
     pub(crate) fn add_to(&mut self, joints: &mut [Joint], mut base: Option<&mut FloatingBase>) {
         for body in &self.list {
             let matter = seen_from_link(&body.matter, &body.fixed.placement);
@@ -108,7 +110,8 @@ impl Bodies {
     }
 }
 
-/// A body in the axes of the link frame: R c + p and R I Rᵀ, with R = Rz(yaw) Ry(pitch) Rx(roll).
+/// Returns a body in the axes of the link frame: centre R c + p and inertia R I Rᵀ, with R = Rz(yaw) Ry(pitch)
+/// Rx(roll).
 fn seen_from_link(matter: &Link, placement: &Transform) -> Link {
     let [roll, pitch, yaw] = placement.rpy.map(|angle| (angle.sin, angle.cos));
     let about = |x: usize, (s, c): (f64, f64)| {
@@ -138,13 +141,14 @@ fn seen_from_link(matter: &Link, placement: &Transform) -> Link {
 
 fn product(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     [0, 1, 2].map(|row: usize| {
-        // + 0.0 makes of -0 a 0
+        // adding 0.0 changes -0 to 0
         [0, 1, 2].map(|column: usize| (0..3).map(|k| a[row][k] * b[k][column]).sum::<f64>() + 0.0)
     })
 }
 
-/// Two bodies as one, by the parallel axis theorem: with δ from one centre of mass to the other and the reduced mass
-/// μ = m₁ m₂ / (m₁ + m₂), the inertia about the common centre of mass is I₁ + I₂ + μ (|δ|² 1 - δ δᵀ).
+/// Combines two bodies into one, by the parallel axis theorem: with the vector δ from one centre of mass to the other
+/// and the reduced mass μ = m₁ m₂ / (m₁ + m₂), the inertia about the common centre of mass is I₁ + I₂ + μ (|δ|² 1 - δ
+/// δᵀ).
 fn together(one: &Link, other: &Link) -> Link {
     let mass = one.mass + other.mass;
     let delta = [0, 1, 2].map(|axis: usize| other.com[axis] - one.com[axis]);
@@ -167,7 +171,8 @@ fn together(one: &Link, other: &Link) -> Link {
     Link { mass, com, inertia, first_moment: [0.0; 3] }
 }
 
-/// The first body, counted from 0, with which its link is not finite any more, and the joint of that link.
+/// Returns the first body, counted from 0, that makes the numbers of its link infinite by overflow, and the joint of
+/// the link.
 pub(crate) fn overflow(list: &[Body], joints: &[Joint]) -> Option<(usize, usize)> {
     let mut links: Vec<Link> = joints.iter().map(|joint| joint.row.link).collect();
     list.iter().enumerate().find_map(|(index, body)| {

@@ -3,24 +3,24 @@
 use crate::{Limits, Robot};
 
 /// How a joint follows others: its position is Σ ratio · q + offset, with the positions q of the joints that it
-/// follows. Such a joint, a follower, is not among the coordinates of the robot: q, q̇, q̈ and τ have no element for it.
+/// follows. Such a joint, a follower, is not a coordinate of the robot: q, q̇, q̈ and τ have no element for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coupling {
     /// The joints that it follows, counted from 0, in the order of the rows, and the ratio of each: rad/rad, m/m, m/rad
     /// or rad/m. None of them is a follower, and no ratio is zero.
     pub follows: Vec<(usize, f64)>,
-    /// The position of the joint where those that it follows are at 0, rad or m.
+    /// The position of the follower where all joints that it follows are at 0, rad or m.
     pub offset: f64,
 }
 
 impl Coupling {
-    /// The limits of the one joint that the follower follows, by which the follower keeps within its own limits of
-    /// position and speed; `None` where it follows several. An effort limit of the follower limits no torque of this
-    /// joint, because gravity and inertia act on the follower, too.
+    /// Returns the joint that the follower follows, and limits for this joint that keep the follower within its own
+    /// limits of position and speed; `None` where it follows several. An effort limit of the follower limits no torque
+    /// of the followed joint, because gravity and inertia act on the follower, too.
     pub(crate) fn limits_of_followed(&self, follower: Limits) -> Option<(usize, Limits)> {
         let &[(joint, ratio)] = self.follows.as_slice() else { return None };
         let position = follower.position.map(|(lower, upper)| {
-            // + 0.0 makes a zero of a negative zero
+            // adding 0.0 changes -0 to 0
             let [a, b] = [lower, upper].map(|end| (end - self.offset) / ratio + 0.0);
             (a.min(b), a.max(b))
         });
@@ -30,7 +30,8 @@ impl Coupling {
 }
 
 impl Limits {
-    /// The narrower of both limits each; without a position within both, the own ones.
+    /// Returns the narrower of both limits for each quantity; where no position satisfies both, the position limits of
+    /// `self`.
     fn narrowed(self, other: Self) -> Self {
         let position = match (self.position, other.position) {
             (Some((lower, upper)), Some((low, high))) if low.max(lower) <= high.min(upper) => {
@@ -44,9 +45,9 @@ impl Limits {
 }
 
 impl Robot {
-    /// Limits of the coordinates, in the order of q: those of the joint, narrowed so that each joint that follows it
-    /// alone is within its own limits of position and speed. Effort limits are those of the joint, and limits of a
-    /// joint that follows several are in none of them.
+    /// Returns the limits of the coordinates, in the order of q. They are those of the joint, narrowed so that each
+    /// joint that follows only this one stays within its own limits of position and speed. Effort limits are those of
+    /// the joint itself; limits of a joint that follows several others have no effect.
     #[must_use]
     pub fn coordinate_limits(&self) -> Vec<Limits> {
         let limits = |index: usize| {

@@ -1,7 +1,7 @@
 //! Numbers of twice the precision: the unevaluated sum of two `f64`, about 106 bits.
 //!
-//! The compiler compares values with them; a conversion between descriptions of an arm computes in them, so that a
-//! number that is the same in both keeps its digits and a structural zero stays one.
+//! The compiler compares values with them. Conversions between robot descriptions compute with them, so that a number
+//! that is the same in both descriptions keeps its digits, and a structural zero stays zero.
 //!
 //! T. J. Dekker, "A floating-point technique for extending the available precision", Numer. Math. 18, 1971.
 
@@ -10,16 +10,16 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// `high + low`, with |low| at most half a unit in the last place of `high`.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Double {
-    /// The number, rounded.
+    /// The number, rounded to an `f64`.
     pub high: f64,
-    /// The part that rounding removed.
+    /// The rest that this rounding removed.
     pub low: f64,
 }
 
 /// π/2 to 106 bits.
 const HALF_PI: Double = Double { high: std::f64::consts::FRAC_PI_2, low: 6.123_233_995_736_766e-17 };
 
-/// 1 to 10²², which are numbers of 53 bits.
+/// The powers of ten from 1 to 10²², each of which an `f64` represents exactly.
 const POWERS_OF_TEN: [f64; 23] = {
     let mut powers = [1.0; 23];
     let mut places = 1;
@@ -31,13 +31,14 @@ const POWERS_OF_TEN: [f64; 23] = {
 };
 
 impl Double {
-    /// The number `value`, exactly.
+    /// Makes the number `value`, exactly.
     #[must_use]
     pub const fn new(value: f64) -> Self {
         Self { high: value, low: 0.0 }
     }
 
-    /// The number whose shortest decimal is that of `value`: 0.1 is a tenth, not the binary fraction next to it.
+    /// Makes the number that the shortest decimal of `value` means: 0.1 is one tenth, not the binary fraction next to
+    /// it.
     #[must_use]
     pub fn decimal(value: f64) -> Self {
         let (digits, exponent) = decimal_digits(value.abs());
@@ -45,7 +46,7 @@ impl Double {
         if value < 0.0 { -number } else { number }
     }
 
-    /// `digits` times ten to the power of `exponent`.
+    /// Returns `digits` times ten to the power of `exponent`.
     #[must_use]
     pub fn of_digits(digits: u64, exponent: i32) -> Self {
         #[allow(clippy::cast_precision_loss)] // the rest of the digits is in `low`
@@ -63,34 +64,35 @@ impl Double {
         number
     }
 
-    /// The nearest `f64`.
+    /// Returns the nearest `f64`.
     #[must_use]
     pub fn to_f64(self) -> f64 {
         self.high + self.low
     }
 
-    /// The square root; 0 of what is not positive.
+    /// Returns the square root; 0 for numbers that are not positive.
     #[must_use]
     pub fn sqrt(self) -> Self {
         if self.high <= 0.0 {
             return Self::default();
         }
-        // one step of Newton from the rounded root
+        // one step of Newton's method, from the rounded root
         let root = Self::new(self.high.sqrt());
         root + (self - root * root) / (root + root)
     }
 
-    /// Sine and cosine of an angle in rad, of a few turns.
+    /// Returns the sine and the cosine of an angle of a few turns, rad.
     #[must_use]
     pub fn sin_cos(self) -> (Self, Self) {
         let quarters = (self.high / HALF_PI.high).round();
         let r = self - HALF_PI * Self::new(quarters);
         let square = r * r;
-        // Taylor; |r| ≤ π/4, so that the last term is below 1e-33
+        // Taylor series; |r| ≤ π/4, so that the last term is below 1e-33
         let (mut sine, mut cosine) = (r, Self::new(1.0));
         let (mut sine_term, mut cosine_term) = (r, Self::new(1.0));
         for k in 1..14 {
-            // what is left changes no bit: most angles of a robot are right angles, whose rest is nearly none
+            // stop where further terms change no bit: early for most angles of a robot, because they are right angles
+            // up to rounding
             if cosine_term.high.abs() <= 1e-36 * cosine.high.abs() && sine_term.high.abs() <= 1e-36 * sine.high.abs() {
                 break;
             }
@@ -109,8 +111,8 @@ impl Double {
     }
 }
 
-/// The digits and the decimal exponent of the shortest decimal that reads back as `value`, which is not negative. A
-/// whole number that an `f64` counts up to has the exponent 0.
+/// Returns the digits and the decimal exponent of the shortest decimal that reads back as `value`, which is not
+/// negative. Whole numbers that an `f64` represents exactly have the exponent 0.
 #[must_use]
 pub fn decimal_digits(value: f64) -> (u64, i32) {
     const COUNTED: f64 = 9_007_199_254_740_992.0; // 2⁵³
@@ -126,20 +128,20 @@ pub fn decimal_digits(value: f64) -> (u64, i32) {
     (number, exponent.parse().unwrap_or(0) - i32::try_from(places).unwrap_or(0))
 }
 
-/// a + b when |a| ≥ |b|.
+/// Returns a + b exactly, for |a| ≥ |b|.
 fn quick_sum(a: f64, b: f64) -> Double {
     let high = a + b;
     Double { high, low: b - (high - a) }
 }
 
-/// a + b, exactly.
+/// Returns a + b exactly.
 fn two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
     let back = high - a;
     Double { high, low: (a - (high - back)) + (b - back) }
 }
 
-/// a · b, exactly, by splitting each into halves of 26 bits.
+/// Returns a · b exactly, by splitting each factor into halves of 26 bits.
 fn two_product(a: f64, b: f64) -> Double {
     let split = |x: f64| {
         let big = 134_217_729.0 * x; // 2²⁷ + 1

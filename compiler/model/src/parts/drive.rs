@@ -6,37 +6,38 @@ use crate::Robot;
 /// [`Motor`](crate::Motor) of a joint, which has friction and turns with that joint alone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
-    /// Its name; `motor1`, `motor2`, … when the file gives none.
+    /// The name of the motor; `motor1`, `motor2`, … when the file gives none.
     pub name: String,
-    /// The joints with which it turns, counted from 0, in the order of the rows, and n of each: motor turns per joint
-    /// turn (rad/rad, rad/m for a prismatic joint). No n is zero.
+    /// The joints with which the motor turns, counted from 0, in the order of the rows, with the ratio n of each: motor
+    /// turns per joint turn (rad/rad, rad/m for a prismatic joint). No n is zero.
     pub turns: Vec<(usize, f64)>,
     /// The part that turns; `None` for a motor that only maps torques and speeds.
     pub rotor: Option<Rotor>,
 }
 
-/// The rotor of a [`Drive`]: it turns on a link, its carrier, whose mass and inertia include the rotor at rest.
+/// The rotor of a [`Drive`]. It turns on a link, its carrier, whose mass and inertia include the rotor at rest.
 ///
 /// With the spin s = Σ n q̇ about the axis a, relative to the carrier, it adds Jm s a to the angular momentum of the
-/// carrier, and n Jm (s + a · ω) to the momentum of each joint with which it turns; ω is that of the carrier.
+/// carrier, and n Jm (s + a · ω) to the momentum of each joint with which it turns; ω is the angular velocity of the
+/// carrier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotor {
     /// The direction of its axis in the axes of the carrier's link frame: a unit vector.
     pub axis: [f64; 3],
-    /// The joint whose link carries it, counted from 0; `None` for the base.
+    /// The joint whose link carries the rotor, counted from 0; `None` for the base.
     pub on: Option<usize>,
-    /// Jm, its inertia about the axis, kg m².
+    /// Inertia Jm of the rotor about its axis, kg m².
     pub inertia: f64,
 }
 
 impl Robot {
-    /// Whether a rotor of the list `motors` turns on a link or on the base.
+    /// Returns whether the list `motors` has a rotor with inertia, which turns on a link or on the base.
     #[must_use]
     pub fn has_spinning_rotors(&self) -> bool {
         self.spinning_rotors().next().is_some()
     }
 
-    /// The rotors of the list `motors` that resist, with the joints with which they turn.
+    /// Returns the rotors of the list `motors` whose inertia is not zero, with the joints with which each turns.
     pub fn spinning_rotors(&self) -> impl Iterator<Item = (&Rotor, &[(usize, f64)])> {
         self.drives.iter().filter_map(|drive| {
             let rotor = drive.rotor.as_ref().filter(|rotor| rotor.inertia != 0.0)?;
@@ -44,8 +45,8 @@ impl Robot {
         })
     }
 
-    /// N, by rows: the speeds of the motors of the list `motors` are N q̇, and the torques that work on the coordinates
-    /// are Nᵀ τ of the motors.
+    /// Returns the matrix N, by rows: N q̇ are the speeds of the motors of the list `motors`, and motor torques τ act
+    /// on the coordinates as Nᵀ τ.
     #[must_use]
     pub fn motor_matrix(&self) -> Vec<Vec<f64>> {
         let coordinates: Vec<usize> = self.coordinates().collect();
@@ -67,11 +68,10 @@ impl Robot {
         self.drives.iter().map(row).collect()
     }
 
-    /// N⁻¹, by rows, where there are as many motors as coordinates and no speed of the coordinates leaves all of them
-    /// at rest; `None` elsewhere.
+    /// Returns N⁻¹ of the [`motor_matrix`](Self::motor_matrix), by rows; `None` where N is singular or not square.
     #[must_use]
     pub fn inverse_motor_matrix(&self) -> Option<Vec<Vec<f64>>> {
-        /// A smaller pivot, in parts of the largest element, counts as zero.
+        /// A pivot below this part of the largest element counts as zero.
         const LEAST_PIVOT: f64 = 1e-12;
         let size = self.dof();
         let mut left = self.motor_matrix();
@@ -102,7 +102,7 @@ impl Robot {
                 }
             }
         }
-        // no element is -0
+        // adding 0.0 changes -0 to 0
         right.iter_mut().flatten().for_each(|x| *x += 0.0);
         Some(right)
     }

@@ -1,11 +1,13 @@
-//! The floating base: a link that no joint holds, such as the trunk of a robot that walks. Its frame is frame 0.
+//! The floating base: a link that no joint connects to the world, such as the trunk of a robot that walks. Its frame is
+//! frame 0.
 
 use crate::Link;
 
 /// The link that carries the joints of a floating base: `floating_base` of a robot file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloatingBase {
-    /// Its name, `[A-Za-z][A-Za-z0-9_]*`, which means the same as `base`. No joint and no frame has it.
+    /// The name of the base, `[A-Za-z][A-Za-z0-9_]*`, which a file may write in place of `base`. No joint and no frame
+    /// has it.
     pub name: String,
     /// Mass, centre of mass and inertia about the centre of mass, in frame 0.
     pub link: Link,

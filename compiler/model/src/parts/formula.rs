@@ -4,8 +4,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number of the table as arithmetic over the run-time parameters.
 ///
-/// The operators `+ - * /` build one and fold what is constant, by rules that change no value: two numbers give a
-/// number, `x + 0`, `x * 1` and `x / 1` are `x`, `0 * x`, `0 / x` and `x - x` are 0. The sign of a zero is all that may
+/// The operators `+ - * /` build a formula and fold constants, by rules that change no value: two numbers give a
+/// number, `x + 0`, `x * 1` and `x / 1` are `x`; `0 * x`, `0 / x` and `x - x` are 0. Only the sign of a zero may
 /// differ, and in a table it carries no meaning.
 ///
 /// ```
@@ -35,8 +35,8 @@ pub enum Formula {
 }
 
 impl Formula {
-    /// The value at given parameters: the operations of the formula and no others, in its order. A parameter that is
-    /// not given is not a number.
+    /// Evaluates the formula at given parameters, with exactly its operations in their order. A parameter that is
+    /// missing counts as not-a-number.
     #[must_use]
     pub fn evaluate(&self, parameters: &[f64]) -> f64 {
         match self {
@@ -50,7 +50,7 @@ impl Formula {
         }
     }
 
-    /// Whether a parameter occurs in it.
+    /// Returns whether a parameter occurs in the formula.
     #[must_use]
     pub fn depends_on(&self, parameter: usize) -> bool {
         match self {
@@ -59,7 +59,7 @@ impl Formula {
         }
     }
 
-    /// The first parameter in it; `None` for a constant.
+    /// Returns the first parameter of the formula; `None` for a constant.
     pub(crate) fn first_parameter(&self) -> Option<usize> {
         match self {
             Self::Parameter(index) => Some(*index),
@@ -67,7 +67,7 @@ impl Formula {
         }
     }
 
-    /// Its numbers, parameters and operations.
+    /// Counts the numbers, parameters and operations of the formula.
     pub(crate) fn parts(&self) -> usize {
         1 + self.operands().map(Self::parts).sum::<usize>()
     }
@@ -88,7 +88,8 @@ impl Formula {
         }
     }
 
-    /// Whether both have the same bits whatever the parameters are: equal but for the order within sums and products.
+    /// Returns whether two formulas give the same bits for all parameters: they are equal except for the order within
+    /// sums and products.
     fn same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Sum(a, b), Self::Sum(x, y)) | (Self::Product(a, b), Self::Product(x, y)) => {
@@ -194,7 +195,7 @@ mod tests {
         assert_eq!(formula.evaluate(&[0.7, 0.2]), -(0.7 * 3.0 - 0.2) / (0.1 + 0.7));
         assert!(formula.evaluate(&[0.7]).is_nan());
         assert_eq!(formula.parts(), 10);
-        // Not contracted, not reassociated.
+        // Constants are folded neither across nor in another order than written.
         let third = (x() + number(0.1)) + number(0.2);
         assert_eq!(third.evaluate(&[1e16]), 1e16 + 0.1 + 0.2);
         assert_eq!((x() * number(3.0) * number(0.1)).evaluate(&[0.7]), 0.7 * 3.0 * 0.1);

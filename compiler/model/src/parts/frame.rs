@@ -1,4 +1,4 @@
-//! Named frames: places on the links of an arm, such as a camera, beside the tip.
+//! Named frames: places on the links of an arm, such as a camera, in addition to the tip.
 
 use std::fmt;
 
@@ -6,15 +6,15 @@ use crate::text::source::quoted;
 use crate::text::spelling::nearest_name;
 use crate::{FixedFrame, Robot, Transform};
 
-/// The name of frame 0 in `on`.
+/// The name of frame 0 as a value of the key `on`.
 pub(crate) const BASE: &str = "base";
 
 /// A named frame of a robot file: an entry of its list `frames`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
-    /// Its name, `[A-Za-z][A-Za-z0-9_]*`; no joint and no other frame has it.
+    /// The name of the frame, `[A-Za-z][A-Za-z0-9_]*`; no joint and no other frame has it.
     pub name: String,
-    /// The link that carries it, and its place there.
+    /// The link that carries the frame, and the placement of the frame on it.
     pub fixed: FixedFrame,
 }
 
@@ -23,7 +23,7 @@ pub struct Frame {
 pub enum FrameId {
     /// The frame of [`Robot::frames`] with this index.
     Named(usize),
-    /// The link frame of the table that belongs to the joint with this index, from 0.
+    /// The link frame of the joint with this index, from 0.
     Link(usize),
 }
 
@@ -34,9 +34,9 @@ pub struct UnknownFrame {
     pub name: String,
     /// The name of the robot.
     pub robot: String,
-    /// The names of its frames.
+    /// The names of the named frames of the robot.
     pub frames: Vec<String>,
-    /// The names of its joints, which are the names of their link frames.
+    /// The names of the joints of the robot, which are also the names of their link frames.
     pub joints: Vec<String>,
     /// Whether the name is that of frame 0, which no joint moves.
     pub is_base: bool,
@@ -65,7 +65,7 @@ impl fmt::Display for UnknownFrame {
 impl std::error::Error for UnknownFrame {}
 
 impl UnknownFrame {
-    /// The names that there are, in words.
+    /// Lists the names that exist, for a message.
     fn known(&self) -> String {
         let listed = |names: &[String]| names.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(", ");
         let frames = match self.frames.as_slice() {
@@ -77,7 +77,7 @@ impl UnknownFrame {
 }
 
 impl Robot {
-    /// The frame with this name: a frame of the list `frames`, or the link frame of the joint with this name.
+    /// Returns the frame with this name: a frame of the list `frames`, or the link frame of the joint with this name.
     ///
     /// # Errors
     /// When neither a frame nor a joint has the name.
@@ -93,20 +93,20 @@ impl Robot {
         })
     }
 
-    /// The names of the frames that the robot has, in words.
+    /// Lists the names of the frames of the robot, for a message.
     #[must_use]
     pub fn known_frames(&self) -> String {
-        // no name is empty
+        // no frame has an empty name, so this is an error that lists the names
         self.frame("").err().map_or_else(String::new, |unknown| unknown.known())
     }
 
-    /// Every frame that has a name: first the list `frames` in the order of the file, then the link frames from base to
-    /// tip.
+    /// Returns every frame that has a name: first the list `frames` in the order of the file, then the link frames from
+    /// base to tip.
     pub fn frame_ids(&self) -> impl Iterator<Item = FrameId> + use<> {
         (0..self.frames.len()).map(FrameId::Named).chain((0..self.joints.len()).map(FrameId::Link))
     }
 
-    /// The name of a frame.
+    /// Returns the name of a frame.
     #[must_use]
     pub fn frame_name(&self, frame: FrameId) -> &str {
         match frame {
@@ -115,7 +115,7 @@ impl Robot {
         }
     }
 
-    /// The link that carries a frame, and the place of the frame there.
+    /// Returns the link that carries a frame, and the placement of the frame on it.
     #[must_use]
     pub fn fixed_frame(&self, frame: FrameId) -> FixedFrame {
         match frame {
@@ -124,7 +124,8 @@ impl Robot {
         }
     }
 
-    /// The arm as seen from a frame: [`Robot::at`] says which functions this changes.
+    /// Returns the robot with its kinematic functions at a frame instead of the tip; [`Robot::at`] says which functions
+    /// this changes.
     #[must_use]
     pub fn at_frame(self, frame: FrameId) -> Self {
         Self { at: Some(frame), ..self }

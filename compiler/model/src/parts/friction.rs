@@ -1,5 +1,5 @@
-//! Friction of a joint: viscous, and Coulomb's, that changes its sign about a speed or over a displacement.
-//!
+//! Friction of a joint: viscous friction plus Coulomb friction, whose sign changes about a speed or over a
+//! displacement.
 //! ```text
 //! f_v q̇ + ½ (f⁺ + f⁻) s + ½ (f⁺ - f⁻)
 //! about a speed w:          s = q̇ / √(q̇² + w²)
@@ -7,16 +7,16 @@
 //! ```
 //!
 //! From -f⁻ to f⁺ it goes in proportion to s: half their difference is an offset, of a current or a sensor, that is
-//! there at rest, too. A sign that changes at once has no friction at rest.
+//! The Coulomb part is between -f⁻ and f⁺, linear in s. Half the difference of f⁺ and f⁻ is an offset, such as of a
+//! current sensor, and is there at rest, too. Friction whose sign changes at once is zero at rest.
 //!
-//! The second s remembers where the joint turned: bristles, teeth and belts give way before they slip, so that a joint
-//! that sticks or creeps has any friction between f⁺ and -f⁻. It is Dahl's model, of exponent one (P. R. Dahl, A solid
-//! friction model, Aerospace Corporation TOR-0158(3107-18)-1, 1968), exact between samples where the joint does not
-//! turn between them.
-
+//! The second s remembers where the joint reversed: bristles, teeth and belts deform before they slip, so a joint that
+//! sticks or creeps may have any friction between f⁺ and -f⁻. This is Dahl's model, of exponent one (P. R. Dahl, A
+//! solid friction model, Aerospace Corporation TOR-0158(3107-18)-1, 1968), exact between two samples where the joint
+//! does not reverse between them.
 use crate::{Joint, Motor};
 
-/// rad/s or m/s: a joint that begins faster than that begins slipping.
+/// Speed above which a joint is slipping at its first state, rad/s or m/s.
 const SLIPPING: f64 = 0.05;
 
 /// How Coulomb friction changes its sign.
@@ -29,7 +29,7 @@ pub enum FrictionTransition {
 }
 
 impl FrictionTransition {
-    /// The transition that the robot file gives; without one the sign changes at once.
+    /// Returns the transition that the robot file gives; without one, the sign changes at once.
     #[must_use]
     pub fn of(joint: &Joint) -> Self {
         let speed = Self::Speed(joint.coulomb_width.unwrap_or(0.0));
@@ -37,16 +37,16 @@ impl FrictionTransition {
     }
 }
 
-/// The friction of a joint on its way from state to state.
+/// The friction of a joint along a sequence of states.
 #[derive(Clone, Copy, Debug)]
 pub struct Friction {
-    /// N m s/rad, N m: at the joint; viscous, Coulomb's, offset.
+    /// Viscous coefficient, Coulomb friction and offset at the joint, N m s/rad and N m.
     parts: [f64; 3],
     sign: TransitionSign,
 }
 
 impl Friction {
-    /// The friction of a joint before its first state.
+    /// Makes the friction of a joint before its first state.
     #[must_use]
     pub fn of(joint: &Joint) -> Self {
         let motor = joint.motor.unwrap_or(Motor { inertia: 0.0, gear_ratio: 1.0, viscous: 0.0, coulomb: [0.0; 2] });
@@ -57,7 +57,7 @@ impl Friction {
         Self { parts, sign: TransitionSign::new(FrictionTransition::of(joint)) }
     }
 
-    /// The friction of a joint at a speed that it has had for long, N m or N.
+    /// Returns the friction of a joint that has moved at a constant speed for long, N m or N.
     #[must_use]
     pub fn at(joint: &Joint, speed: f64) -> f64 {
         let mut friction = Self::of(joint);
@@ -67,7 +67,7 @@ impl Friction {
         friction.next(0.0, speed)
     }
 
-    /// The friction at the next state, N m or N: a position and a speed.
+    /// Returns the friction at the next state, given by a position and a speed, N m or N.
     pub fn next(&mut self, position: f64, speed: f64) -> f64 {
         let [viscous, coulomb, offset] = self.parts;
         let sign = self.sign.next(position, speed);
@@ -76,16 +76,16 @@ impl Friction {
     }
 }
 
-/// The odd part of Coulomb friction, -1 to 1, from state to state.
+/// The smooth sign s of Coulomb friction, from -1 to 1, along a sequence of states.
 #[derive(Clone, Copy, Debug)]
 pub struct TransitionSign {
     transition: FrictionTransition,
-    /// The position before, and what it was there.
+    /// The position at the previous state, and the sign there.
     before: Option<(f64, f64)>,
 }
 
 impl TransitionSign {
-    /// The sign of a joint before its first state.
+    /// Makes the sign of a joint before its first state.
     #[must_use]
     pub fn new(transition: FrictionTransition) -> Self {
         Self { transition, before: None }
@@ -110,7 +110,7 @@ impl TransitionSign {
     }
 }
 
-/// v / √(v² + width²). Of width 0 the sign itself.
+/// Returns v / √(v² + width²); for the width 0 this is the sign of the speed.
 fn smooth_sign(speed: f64, width: f64) -> f64 {
     if speed == 0.0 { 0.0 } else { speed / (speed * speed + width * width).sqrt() }
 }
@@ -119,7 +119,7 @@ fn smooth_sign(speed: f64, width: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// After a transition the friction is 1 - 2 exp(-x / ℓ), however finely the way is sampled.
+    /// After a reversal the sign is 1 - 2 exp(-x / ℓ), however finely the motion is sampled.
     #[test]
     fn a_transition_takes_its_displacement() {
         for steps in [1, 10, 1000] {
@@ -136,7 +136,7 @@ mod tests {
         }
     }
 
-    /// Between its limits friction goes in proportion, and a sharp sign has none at rest.
+    /// Friction is linear between its two limits; friction whose sign changes at once is zero at rest.
     #[test]
     fn friction_is_between_its_limits() {
         let mut joint = crate::Robot::from_yaml(ONE).unwrap().joints.remove(0);
@@ -149,7 +149,7 @@ mod tests {
         }
     }
 
-    /// Coulomb's 3 N m forward and 1 backward, about 0.4 rad/s.
+    /// A joint with Coulomb friction of 3 N m forward and 1 N m backward, whose sign changes about 0.4 rad/s.
     const ONE: &str = "\
 format: 1
 name: one

@@ -1,4 +1,4 @@
-//! Golden files: torques at states, as a table beside a robot file that its tests compare with.
+//! Golden files: tables of states and torques beside a robot file, with which its tests compare.
 
 use std::ops::Range;
 
@@ -6,16 +6,16 @@ use crate::text::diagnostic::{Diagnostic, Problems, Report};
 use crate::text::source::{not_utf8, quoted};
 use crate::text::spelling::did_you_mean;
 
-/// Parts of the largest torque by which torques may differ where the file does not say so.
+/// Tolerance of torques where the file gives none, as a part of the largest torque of the file.
 const TOLERANCE: f64 = 1e-9;
 
-/// The comment that says how far torques may differ.
+/// The word of the comment that gives the tolerance of torques.
 const TOLERANCE_KEY: &str = "tolerance:";
 
-/// Torques at states: lines of comma-separated numbers below the header `q1, …, qd1, …, qdd1, …, tau1, …`, n columns of
-/// each for n joints, rad, rad/s, rad/s² and N m, or m, m/s, m/s² and N of a prismatic joint. `#` begins a comment;
-/// `# tolerance: 1e-6` says by how many parts of the largest torque of the file torques may differ, `1e-9` by default.
-///
+/// A golden file: lines of comma-separated numbers below the header `q1, …, qd1, …, qdd1, …, tau1, …`, with n columns
+/// of each for n joints; rad, rad/s, rad/s² and N m, or m, m/s, m/s² and N for a prismatic joint. `#` begins a comment;
+/// the comment `# tolerance: 1e-6` says by which part of the largest torque of the file torques may differ, `1e-9` by
+/// default.
 /// ```
 /// let text = "# of a test rig\nq1,qd1,qdd1,tau1\n0, 0, 0, 4.9 # at rest\n";
 /// let golden = rne_model::GoldenFile::read("rod.golden.csv", text.as_bytes(), 1).unwrap();
@@ -26,9 +26,9 @@ const TOLERANCE_KEY: &str = "tolerance:";
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct GoldenFile {
-    /// Parts of the largest torque of the file by which torques may differ.
+    /// By which part of the largest torque of the file torques may differ.
     pub tolerance: f64,
-    /// The states, in the order of the file; at least one.
+    /// The states, in the order of the file; there is at least one.
     pub states: Vec<GoldenState>,
 }
 
@@ -55,11 +55,11 @@ impl GoldenFile {
         ["q", "qd", "qdd", "tau"].into_iter().flat_map(columns).collect()
     }
 
-    /// Reads the file of a robot with `dof` joints; `name` is the file's name in messages.
+    /// Reads the golden file of a robot with a number of joints; `name` is the file's name in messages.
     ///
     /// # Errors
     /// Everything that is wrong, with line and column: bytes that are no text, another header, another number of
-    /// columns, what is no finite number, a tolerance that is not above 0, a file without states.
+    /// columns, a cell that is no finite number, a tolerance that is not above 0, a file without states.
     pub fn read(name: &str, bytes: &[u8], joints: usize) -> Result<Self, Report> {
         let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
         let problems = Problems::new();
@@ -99,7 +99,7 @@ fn read(text: &str, joints: usize, problems: &Problems) -> Option<GoldenFile> {
             let cells = cells(data, start);
             if !has_header {
                 has_header = true;
-                // below another header every number would be wrong
+                // below another header every number would have another meaning, so reading stops
                 is_header(&cells, &names, problems).then_some(())?;
             } else if let Some(numbers) = numbers(&cells, &names, problems) {
                 let list = |index: usize| numbers[index * joints..(index + 1) * joints].to_vec();
@@ -116,7 +116,7 @@ fn read(text: &str, joints: usize, problems: &Problems) -> Option<GoldenFile> {
     Some(GoldenFile { tolerance, states })
 }
 
-/// The cells of a line without the blanks around them, and where they stand.
+/// Splits a line into cells without surrounding blanks, with the place of each cell in the text.
 fn cells(data: &str, start: usize) -> Vec<(&str, Range<usize>)> {
     let mut at = start;
     let cell = |cell: &'_ str| {
@@ -150,7 +150,7 @@ fn is_header(cells: &[(&str, Range<usize>)], names: &[String], problems: &Proble
 
 fn numbers(cells: &[(&str, Range<usize>)], names: &[String], problems: &Problems) -> Option<Vec<f64>> {
     if cells.len() != names.len() {
-        // the first that is too many, or the last that is there
+        // points at the first surplus cell, or at the last cell of a line that is too short
         let place = cells.get(names.len()).or(cells.last()).map_or(0..0, |(_, place)| place.clone());
         let columns = if cells.len() == 1 { "column" } else { "columns" };
         let message = format!("the line has {} {columns}, but the header has {}", cells.len(), names.len());
@@ -173,12 +173,12 @@ fn numbers(cells: &[(&str, Range<usize>)], names: &[String], problems: &Problems
         }
         value
     };
-    // every mistake of the line
+    // collected before any return, so that every mistake of the line is reported
     let values: Vec<Option<f64>> = cells.iter().zip(names).map(number).collect();
     values.into_iter().collect()
 }
 
-/// Whether a comment begins with the word, or with a similar one, followed by a number.
+/// Returns whether a comment begins with the word for the tolerance, or a misspelling of it, followed by a number.
 fn is_nearly_a_tolerance(comment: &str) -> bool {
     let mut words = comment.trim_start().split([':', '=', ' ']).filter(|word| !word.is_empty());
     let word = words.next().unwrap_or_default().to_lowercase();
@@ -246,7 +246,7 @@ mod tests {
         ] {
             assert_eq!(found, format!("arm.golden.csv:{expected}"));
         }
-        // every mistake of a line
+        // two mistakes in one line are both reported
         assert_eq!(state("a,b,3,4,5,6,7,8").lines().count(), 2);
         let report = GoldenFile::read("arm.golden.csv", b"q1\xFF", 2).expect_err("no text");
         assert!(

@@ -1,4 +1,4 @@
-//! Inertia tensors: the point they refer to, and their principal moments.
+//! Inertia tensors: moving them to the centre of mass, their principal moments, and their rounding.
 
 use std::fmt;
 use std::ops::{Add, Mul, Sub};
@@ -7,19 +7,19 @@ use crate::parts::double::decimal_digits;
 use crate::text::source::{exact_digits, half_of_last_digit};
 use crate::{Inertia, Link};
 
-/// Rounding that is forgiven, relative to the largest magnitude involved.
+/// Rounding error that is tolerated, relative to the largest number involved.
 const TOLERANCE: f64 = 1e-12;
-/// Rounding that is forgiven of a tensor whose numbers another program may have turned, and so have lost their digits:
-/// what six digits leave.
+/// Rounding error that is tolerated in a tensor that another program may have rotated: numbers of six digits cause it.
 const OF_SIX_DIGITS: f64 = 1e-6;
-/// The largest half of a last digit, in parts of the largest element: that of 1.00. Fewer digits may be exact.
+/// Largest rounding error of an element, relative to the largest element: that of the number 1.00. Numbers of fewer
+/// digits may be exact.
 const OF_THREE_DIGITS: f64 = 0.005;
 
 /// Moves a tensor from the origin of the link frame to the centre of mass: I - m(|c|² 1 - c cᵀ).
 ///
-/// A zero mass or a zero coordinate takes nothing away, so exact zeros stay exact zeros.
+/// A zero mass or a zero coordinate subtracts nothing, so exact zeros stay exact zeros.
 ///
-/// It serves numbers and formulas, so that both take the same steps.
+/// The function is generic, so that numbers and formulas go through the same steps.
 pub(crate) fn about_com<S>(origin: Inertia<S>, m: &S, [x, y, z]: [S; 3]) -> Inertia<S>
 where
     S: Clone + PartialEq<f64> + Add<Output = S> + Sub<Output = S> + Mul<Output = S>,
@@ -40,7 +40,8 @@ where
     }
 }
 
-/// The largest number that went into a tensor about the centre of mass: what its rounding errors are relative to.
+/// Returns the largest number in the computation of a tensor about the centre of mass, which rounding errors are
+/// relative to.
 fn largest_magnitude(written: &Inertia, m: f64, [x, y, z]: [f64; 3]) -> f64 {
     largest(written).max(m * (x * x + y * y + z * z))
 }
@@ -65,15 +66,16 @@ impl fmt::Display for NegativeMoment {
 }
 
 impl Inertia {
-    /// Refuses the inertia of a payload that has a principal moment below zero. A number that is not finite passes.
+    /// Refuses the inertia of a payload that has a principal moment below zero. Numbers that are not finite are not
+    /// refused.
     ///
     /// # Errors
-    /// The least principal moment.
+    /// The smallest principal moment.
     pub fn check_of_payload(&self) -> Result<(), NegativeMoment> {
         let slack = OF_SIX_DIGITS * largest(self);
         let Self { xx, yy, zz, xy, xz, yz } = *self;
         let [a, b, c] = [xx + slack, yy + slack, zz + slack];
-        // by Sylvester's criterion, which takes no iteration: a table has a payload in each row
+        // Sylvester's criterion needs no iteration, and a table of payloads has one in each row
         let minor = b * c - yz * yz;
         let determinant = a * minor - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz);
         if a > 0.0 && a * b > xy * xy && determinant > 0.0 {
@@ -83,15 +85,16 @@ impl Inertia {
         negative.map_or(Ok(()), |[least, ..]| Err(NegativeMoment(least)))
     }
 
-    /// The principal moments, ascending, kg m²; `None` when an element is not finite. A body has none below zero.
+    /// Returns the principal moments, ascending, kg m²; `None` when an element is not finite. A physical body has none
+    /// below zero.
     #[must_use]
     pub fn principal_moments(&self) -> Option<[f64; 3]> {
         principal_moments(self)
     }
 
-    /// The principal moments, ascending, kg m², where the largest is more than the sum of the two others by more than
-    /// rounding of the decimal digits explains: no distribution of mass has such moments. A moment alone is not among
-    /// them: it stands for a link whose other moments enter nothing.
+    /// Returns the principal moments, ascending, kg m², if the largest exceeds the sum of the two others by more than
+    /// the rounding of the decimal digits explains: no distribution of mass has such moments. A tensor with only one
+    /// moment is accepted: it describes a link whose other moments have no effect.
     #[must_use]
     pub fn impossible_moments(&self) -> Option<[f64; 3]> {
         self.impossible_beyond(self.slack())
@@ -101,24 +104,25 @@ impl Inertia {
         self.principal_moments().filter(|[a, b, c]| [*a, *b] != [0.0; 2] && c - (a + b) > slack)
     }
 
-    /// The error of the tensor, as a norm, kg m², where each element is rounded to its last digit: no principal moment
-    /// is off by more.
+    /// Returns the error of the tensor, as a norm, kg m², if each element is rounded to its last digit: no principal
+    /// moment is wrong by more than this.
     #[must_use]
     pub fn rounding(&self) -> f64 {
         let rows = self.half_digits().map(|row| row.into_iter().sum::<f64>());
         rows.into_iter().fold(OF_SIX_DIGITS * largest(self), f64::max)
     }
 
-    /// How far c - (a + b) is off then: an error E of the tensor moves it by at most |tr E| + 2 ‖E‖.
+    /// Returns the largest error of c - (a + b) by this rounding, with the principal moments a ≤ b ≤ c: an error E of
+    /// the tensor changes it by at most |tr E| + 2 ‖E‖.
     fn slack(&self) -> f64 {
         let half = self.half_digits();
         half[0][0] + half[1][1] + half[2][2] + 2.0 * self.rounding()
     }
 
-    /// Half of the last digit of each element. Files print all elements with as many decimals, or with as many
-    /// significant digits; zeros at the end are lost, so the longest element tells how many.
+    /// Returns half of the last digit of each element. Files print all elements with the same number of decimals, or of
+    /// significant digits; trailing zeros are lost, so the element with the most digits tells the number.
     fn half_digits(&self) -> [[f64; 3]; 3] {
-        // digits after the first one, and the exponent of the last
+        // the number of digits after the first one, and the decimal exponent of the last digit
         let digits = |x: f64| {
             let (digits, last) = decimal_digits(x.abs());
             (i32::try_from(digits.checked_ilog10().unwrap_or(0)).unwrap_or(0), last)
@@ -138,8 +142,9 @@ impl Inertia {
 }
 
 impl Link {
-    /// Whether the inertia is positive semidefinite about the centre of mass, but for rounding, and there is no first
-    /// moment without mass: so it is with a body. `written` is the inertia as the file has it, about any point.
+    /// Returns whether a physical body can have this inertia: it is positive semidefinite about the centre of mass, up
+    /// to rounding, and there is no first moment without mass. `written` is the inertia as the file has it, about any
+    /// point.
     #[must_use]
     pub fn is_physical(&self, written: &Inertia) -> bool {
         let moments = self.inertia.principal_moments();
@@ -147,13 +152,14 @@ impl Link {
             && moments.is_some_and(|moments| moments[0] >= -(written.rounding() + self.moved(written)))
     }
 
-    /// [`Inertia::impossible_moments`] of a link whose inertia is `written` so, about any point.
+    /// Returns [`Inertia::impossible_moments`] of the link; `written` is the inertia as the file has it, about any
+    /// point.
     pub(crate) fn impossible_moments(&self, written: &Inertia) -> Option<[f64; 3]> {
         self.inertia.impossible_beyond(written.slack() + 5.0 * self.moved(written))
     }
 
-    /// The error of the inertia about the centre of mass by rounding of mass and centre, if the inertia is `written`
-    /// about another point.
+    /// Returns the error of the inertia about the centre of mass that the rounding of mass and centre causes; 0 if
+    /// `written` is already about the centre of mass.
     fn moved(&self, written: &Inertia) -> f64 {
         if *written == self.inertia {
             return 0.0;
@@ -164,7 +170,7 @@ impl Link {
     }
 }
 
-/// The principal moments, ascending, by Jacobi's rotations; `None` when an element is not finite.
+/// Computes the principal moments, ascending, by Jacobi rotations; `None` when an element is not finite.
 pub(crate) fn principal_moments(inertia: &Inertia) -> Option<[f64; 3]> {
     if !inertia.rows().iter().flatten().all(|element| element.is_finite()) {
         return None;
@@ -175,7 +181,7 @@ pub(crate) fn principal_moments(inertia: &Inertia) -> Option<[f64; 3]> {
     }
     // Scaled to 1, so that no square overflows or vanishes.
     let mut a = inertia.rows().map(|row| row.map(|element| element / scale));
-    // Convergence is quadratic: a handful of sweeps suffices.
+    // Convergence is quadratic, so a few sweeps are enough.
     for _ in 0..16 {
         for (p, q) in [(0, 1), (0, 2), (1, 2)] {
             rotate(&mut a, p, q);
@@ -186,7 +192,7 @@ pub(crate) fn principal_moments(inertia: &Inertia) -> Option<[f64; 3]> {
     Some(moments)
 }
 
-/// One Jacobi rotation, Jᵀ A J, that makes `a[p][q]` zero.
+/// Applies one Jacobi rotation, Jᵀ A J, which makes `a[p][q]` zero.
 fn rotate(a: &mut [[f64; 3]; 3], p: usize, q: usize) {
     if a[p][q] == 0.0 {
         return;
@@ -224,9 +230,9 @@ mod tests {
         let moments = |i: Inertia| principal_moments(&i).unwrap();
         assert_eq!(moments(tensor(3.0, 1.0, 2.0, 0.0, 0.0, 0.0)), [1.0, 2.0, 3.0]);
         assert_eq!(moments(Inertia::default()), [0.0; 3]);
-        // [[2, 1], [1, 2]] has 1 and 3.
+        // The matrix [[2, 1], [1, 2]] has the eigenvalues 1 and 3.
         assert!(close(moments(tensor(2.0, 2.0, 5.0, 1.0, 0.0, 0.0)), [1.0, 3.0, 5.0], 1e-15));
-        // c cᵀ with c = (1, 2, 3): 0, 0, 14.
+        // The matrix c cᵀ with c = (1, 2, 3) has the eigenvalues 0, 0 and 14.
         assert!(close(moments(tensor(1.0, 4.0, 9.0, 2.0, 3.0, 6.0)), [0.0, 0.0, 14.0], 1e-14));
     }
 

@@ -1,4 +1,4 @@
-//! The parts of a robot: each file has the data of a key of the robot file, or numbers that these need.
+//! The parts of a robot: each file has the data of one key of the robot file, or numbers that these parts need.
 
 pub(crate) mod body;
 pub(crate) mod coupling;

@@ -1,9 +1,9 @@
-//! Placements as numbers, and the frames of a row.
+//! Placements with numbers, and the frames within a row of the table.
 
 use crate::robot::parent;
 use crate::{Convention, FixedFrame, Joint, JointKind, Transform};
 
-/// A rotation, by rows, and a translation.
+/// A rotation matrix, by rows, and a translation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pose {
     pub(crate) rotation: [[f64; 3]; 3],
@@ -14,7 +14,7 @@ impl Pose {
     pub(crate) const IDENTITY: Self =
         Self { rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], translation: [0.0; 3] };
 
-    /// A turn about an axis of the frame.
+    /// Makes a rotation about an axis of the frame, 0 to 2 for x to z.
     fn turn(axis: usize, sin: f64, cos: f64) -> Self {
         let mut pose = Self::IDENTITY;
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -40,20 +40,20 @@ impl Pose {
         }
     }
 
-    /// The inverse of the rotation, without a translation.
+    /// Returns the inverse of the rotation, with no translation.
     pub(crate) fn turned_back(&self) -> Self {
         let rotation = [0, 1, 2].map(|row| [0, 1, 2].map(|column: usize| self.rotation[column][row]));
         Self { rotation, translation: [0.0; 3] }
     }
 
-    /// An axis of the frame, 0 to 2 for x to z.
+    /// Returns an axis of the frame, 0 to 2 for x to z.
     pub(crate) fn axis(&self, axis: usize) -> [f64; 3] {
         self.rotation.map(|row| row[axis])
     }
 }
 
-/// The frame at a joint, z along its axis, in the link frame of the link that carries it. The joint turns about this z
-/// or slides along it.
+/// Returns the frame at a joint in the link frame of the link that carries the joint. Its z is the axis about which the
+/// joint turns, or along which it slides.
 pub(crate) fn axis_on_link(joints: &[Joint], convention: Convention, joint: usize) -> Pose {
     let start = joints[joint].branch.map_or(Pose::IDENTITY, |branch| Pose::of(&branch.placement));
     let dh = &joints[joint].row.dh;
@@ -65,7 +65,8 @@ pub(crate) fn axis_on_link(joints: &[Joint], convention: Convention, joint: usiz
     }
 }
 
-/// The link frame that a joint moves, in the frame at the joint, at a position of the joint, rad or m.
+/// Returns the link frame that a joint moves, relative to the frame at the joint, for a position of the joint, rad or
+/// m.
 pub(crate) fn link_behind_axis(joints: &[Joint], convention: Convention, joint: usize, position: f64) -> Pose {
     let row = &joints[joint].row;
     let dh = &row.dh;
@@ -86,26 +87,26 @@ pub(crate) fn link_behind_axis(joints: &[Joint], convention: Convention, joint: 
     }
 }
 
-/// The frame at a joint in frame 0, where all positions are 0.
+/// Returns the frame at a joint in frame 0, where all positions are 0.
 pub(crate) fn axis_at_zero(joints: &[Joint], convention: Convention, joint: usize) -> Pose {
     let of_parent = link_at_zero(joints, convention, parent(joints, joint));
     of_parent.then(&axis_on_link(joints, convention, joint))
 }
 
-/// The frame of a link in frame 0, where all positions are 0.
+/// Returns the frame of a link in frame 0, where all positions are 0.
 pub(crate) fn link_at_zero(joints: &[Joint], convention: Convention, link: Option<usize>) -> Pose {
     let Some(link) = link else { return Pose::IDENTITY };
     axis_at_zero(joints, convention, link).then(&link_behind_axis(joints, convention, link, 0.0))
 }
 
-/// The joints that move a link, base first.
+/// Returns the joints that move a link, base first.
 pub(crate) fn way(joints: &[Joint], on: Option<usize>) -> Vec<usize> {
     let mut way: Vec<usize> = std::iter::successors(on, |&joint| parent(joints, joint)).collect();
     way.reverse();
     way
 }
 
-/// The joints that move one place on the links of a tree and not the other, base first.
+/// Returns the joints that move one of two places on links of a tree and not the other, base first.
 pub(crate) fn own_joints(joints: &[Joint], between: &[FixedFrame; 2]) -> [Vec<usize>; 2] {
     let ways = between.map(|place| way(joints, place.on));
     let shared = ways[0].iter().zip(&ways[1]).take_while(|(a, b)| a == b).count();

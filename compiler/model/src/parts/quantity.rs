@@ -1,13 +1,14 @@
-//! A value of an expression together with the formula it comes from.
+//! The value of an expression together with the formula that computes it from run-time parameters.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::Formula;
 
-/// The largest whole power of a run-time parameter, which becomes products.
+/// The largest whole power of a run-time parameter, because powers become products.
 pub(crate) const LARGEST_POWER: f64 = 16.0;
 
-/// A value, and how it depends on the run-time parameters; the value is the formula's at the values of the file.
+/// A value and how it depends on the run-time parameters; the value is that of the formula for the parameters' values
+/// in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Quantity {
     pub(crate) value: f64,
@@ -19,40 +20,40 @@ impl Quantity {
         Self { value, formula: Formula::Number(value) }
     }
 
-    /// A run-time parameter and its value in the file.
+    /// Makes the quantity of a run-time parameter from its index and its value in the file.
     pub(crate) fn parameter(index: usize, value: f64) -> Self {
         Self { value, formula: Formula::Parameter(index) }
     }
 
-    /// A value with its formula; without one it is a constant.
+    /// Makes a quantity from a value and its formula; without a formula it is a constant.
     pub(crate) fn known(value: f64, formula: Option<&Formula>) -> Self {
         formula.map_or(Self::constant(value), |formula| Self::new(value, formula.clone()))
     }
 
     fn new(value: f64, formula: Formula) -> Self {
         match formula {
-            // What is not finite in the file, as 0/p is where p is 0, stays so and is refused.
+            // A value that is not finite in the file, such as 0/p for p = 0, keeps its formula and is refused later.
             Formula::Number(number) if value.is_finite() => Self::constant(number),
             _ => Self { value, formula },
         }
     }
 
-    /// The formula, unless this is a constant.
+    /// Returns the formula, unless the quantity is a constant.
     pub(crate) fn varying(&self) -> Option<&Formula> {
         (!matches!(self.formula, Formula::Number(_))).then_some(&self.formula)
     }
 
-    /// Numbers, parameters and operations of its formula.
+    /// Counts the numbers, parameters and operations of the formula.
     pub(crate) fn parts(&self) -> usize {
         self.formula.parts()
     }
 
-    /// The first run-time parameter it depends on.
+    /// Returns the first run-time parameter on which the quantity depends.
     pub(crate) fn first_parameter(&self) -> Option<usize> {
         self.formula.first_parameter()
     }
 
-    /// A power with a constant exponent as products; `None` where that is not possible.
+    /// Rewrites a power with a constant exponent as products; `None` where that is not possible.
     pub(crate) fn whole_power(self, exponent: f64) -> Option<Self> {
         let mut factors = exponent.abs();
         if factors > LARGEST_POWER || factors != libm::floor(factors) {

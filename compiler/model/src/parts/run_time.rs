@@ -1,29 +1,31 @@
-//! Parameters that stay free until run time: which numbers of the table depend on them, and how.
+//! Parameters that stay free until run time: which numbers of the table depend on them, and by which formulas.
 
 use crate::{Formula, Inertia, InertiaReference, Robot};
 
-/// The run-time parameters of a robot and what depends on them; nothing by default.
+/// The run-time parameters of a robot and the numbers that depend on them; none by default.
 ///
-/// Every number of the [`Robot`] itself has the value that follows from the parameters in the file. What the formulas
-/// give for those values is the same, bit for bit; [`Robot::with_parameters`] gives the robot at others.
+/// Every number of the [`Robot`] itself has the value for the parameters in the file. For those parameters the formulas
+/// give the same bits; [`Robot::with_parameters`] gives the robot for other values.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct RunTime {
-    /// The names of the run-time parameters, in the order in which they were asked for. Each stands in
-    /// [`Robot::parameters`] too, with its value in the file.
+    /// The names of the run-time parameters, in the order in which the caller named them. [`Robot::parameters`] has
+    /// each of them, too, with its value in the file.
     pub names: Vec<String>,
-    /// The numbers of the table that depend on them, each once: gravity, base, tool, frames, then joint by joint. None
-    /// of them is zero in the table. Of a file no angle and no limit is among them; a program may put sines and cosines
-    /// there.
+    /// The numbers of the table that depend on the parameters, each once: gravity, base, tool, frames, then joint by
+    /// joint. None of them is zero in the table. From a file, no angle and no limit is among them; a program may add
+    /// sines and cosines.
     pub entries: Vec<(Entry, Formula)>,
-    /// The elements of [`Joint::written_inertia`](crate::Joint::written_inertia) that depend on them, with the joint
-    /// from 0, where a file gives the tensor about the origin. About the centre of mass it is [`Entry::Inertia`].
+    /// The elements of [`Joint::written_inertia`](crate::Joint::written_inertia) that depend on the parameters, each
+    /// with its joint from 0, where a file gives the tensor about the origin. Elements about the centre of mass are
+    /// entries [`Entry::Inertia`].
     pub written_inertia: Vec<(usize, InertiaElement, Formula)>,
-    /// The other parameters of the file that are defined through them: the index into [`Robot::parameters`].
+    /// The other parameters of the file that are defined through run-time parameters, each as an index into
+    /// [`Robot::parameters`].
     pub parameters: Vec<(usize, Formula)>,
 }
 
 impl RunTime {
-    /// The values that the parameters have in the file of `robot`, in the order of the names.
+    /// Returns the values that the run-time parameters have in the file of `robot`, in the order of the names.
     #[must_use]
     pub fn values(&self, robot: &Robot) -> Vec<f64> {
         let value =
@@ -37,7 +39,7 @@ impl RunTime {
         self.names.is_empty()
     }
 
-    /// The formula of a number of the table; `None` when it is constant.
+    /// Returns the formula of a number of the table; `None` when the number is constant.
     #[must_use]
     pub fn formula(&self, entry: Entry) -> Option<&Formula> {
         self.entries.iter().find(|(place, _)| *place == entry).map(|(_, formula)| formula)
@@ -61,7 +63,7 @@ pub enum Entry {
     A(usize),
     /// The sine of the constant part of θ: the joint. This and the next three are in no file.
     ThetaSine(usize),
-    /// The cosine of the constant part of θ: the joint.
+    /// The sine of the constant part of θ: the joint. No file has this entry or the next three; only programs add them.
     ThetaCosine(usize),
     /// The sine of the twist α: the joint.
     AlphaSine(usize),
@@ -73,7 +75,7 @@ pub enum Entry {
     Com(usize, usize),
     /// A component of the first moment of a link without mass: the joint and the axis.
     FirstMoment(usize, usize),
-    /// An element of a link's inertia about the centre of mass, whatever point the file gives it about: the joint and
+    /// An element of a link's inertia about the centre of mass, about whichever point the file gives it: the joint and
     /// the element.
     Inertia(usize, InertiaElement),
     /// The rotor inertia of a motor: the joint.
@@ -106,10 +108,10 @@ pub enum InertiaElement {
 }
 
 impl InertiaElement {
-    /// All six, in the order of the fields of [`Inertia`].
+    /// All six elements, in the order of the fields of [`Inertia`].
     pub const ALL: [Self; 6] = [Self::Xx, Self::Yy, Self::Zz, Self::Xy, Self::Xz, Self::Yz];
 
-    /// Its key in a robot file: `xx`, …
+    /// Returns the key of the element in a robot file, such as `xx`.
     #[must_use]
     pub const fn key(self) -> &'static str {
         match self {
@@ -122,7 +124,7 @@ impl InertiaElement {
         }
     }
 
-    /// This element of a tensor.
+    /// Returns this element of a tensor.
     pub fn of<S>(self, inertia: &Inertia<S>) -> &S {
         match self {
             Self::Xx => &inertia.xx,
@@ -134,7 +136,7 @@ impl InertiaElement {
         }
     }
 
-    /// This element of a tensor, to be changed.
+    /// Returns this element of a tensor, for changing it.
     pub fn of_mut<S>(self, inertia: &mut Inertia<S>) -> &mut S {
         match self {
             Self::Xx => &mut inertia.xx,
@@ -148,10 +150,9 @@ impl InertiaElement {
 }
 
 impl Robot {
-    /// The robot at given values of its run-time parameters, in the order of [`RunTime::names`]; `None` when there are
-    /// not as many. It is what its file gives with these numbers in place of the parameters' own, bit for bit, but
-    /// nothing is checked: a mass may become negative, a gear ratio zero.
-    ///
+    /// Returns the robot for given values of its run-time parameters, in the order of [`RunTime::names`]; `None` when
+    /// their number differs. It is the robot that its file gives with these values in place of the parameters' own, bit
+    /// for bit, but nothing is checked: a mass may become negative, a gear ratio zero.
     /// ```
     /// let text = "
     /// format: 1
@@ -176,7 +177,7 @@ impl Robot {
         if values.len() != names.len() {
             return None;
         }
-        // -0 is 0, as in a file.
+        // adding 0.0 changes -0 to 0, as reading a file does
         let value = |formula: &Formula| formula.evaluate(values) + 0.0;
         for (known, number) in &mut robot.parameters {
             if let Some(index) = names.iter().position(|name| name == known) {
@@ -201,7 +202,8 @@ impl Robot {
         Some(robot)
     }
 
-    /// The place of a number of the table; `None` where the robot has no such joint, motor or axis.
+    /// Returns a reference to a number of the table, for changing it; `None` where the robot has no such joint, motor
+    /// or axis.
     pub fn number_mut(&mut self, entry: Entry) -> Option<&mut f64> {
         match entry {
             Entry::Gravity(axis) => self.gravity.get_mut(axis),

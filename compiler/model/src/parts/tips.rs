@@ -1,4 +1,4 @@
-//! Tips: the named frames of a robot that carry wrenches.
+//! Tips: the named frames of a robot on which wrenches act.
 
 use crate::{Entry, FixedFrame, Robot};
 
@@ -6,7 +6,8 @@ use crate::{Entry, FixedFrame, Robot};
 pub(crate) const TIP: &str = "tip";
 
 impl Robot {
-    /// The frames that carry wrenches, in the order of these: those of the list `tips`, or the tip frame alone.
+    /// Returns the frames on which wrenches act, in the order of the wrenches: those of the list `tips`, or only the
+    /// tip frame.
     #[must_use]
     pub fn wrench_frames(&self) -> Vec<FixedFrame> {
         if self.tips.is_empty() {
@@ -15,7 +16,7 @@ impl Robot {
         self.tips.iter().map(|&tip| self.frames[tip].fixed).collect()
     }
 
-    /// The names of [`wrench_frames`](Self::wrench_frames): `tip` where the file has no list `tips`.
+    /// Returns the names of the [`wrench_frames`](Self::wrench_frames): only `tip` where the file has no list `tips`.
     #[must_use]
     pub fn tip_names(&self) -> Vec<&str> {
         if self.tips.is_empty() {
@@ -24,7 +25,8 @@ impl Robot {
         self.tips.iter().map(|&tip| self.frames[tip].name.as_str()).collect()
     }
 
-    /// The message for a tip whose name has two meanings: the robot has no list `tips`, and a frame has the name `tip`.
+    /// Returns a message if the name of a tip is ambiguous: the robot has no list `tips`, and a frame has the name
+    /// `tip`.
     #[must_use]
     pub fn two_tips(&self, name: &str) -> Option<String> {
         let has_two = self.tips.is_empty() && name == TIP && self.frames.iter().any(|frame| frame.name == TIP);
@@ -37,14 +39,14 @@ impl Robot {
         })
     }
 
-    /// How many frames carry wrenches.
+    /// Returns the number of frames on which wrenches act.
     #[must_use]
     pub const fn tip_count(&self) -> usize {
         if self.tips.is_empty() { 1 } else { self.tips.len() }
     }
 
-    /// The number of the table that a component of a tip's translation is: the tip as in
-    /// [`wrench_frames`](Self::wrench_frames), and the axis.
+    /// Returns which number of the table a component of a tip's translation is: `tip` is an index into
+    /// [`wrench_frames`](Self::wrench_frames), `axis` is 0, 1, 2 for x, y, z.
     #[must_use]
     pub fn tip_entry(&self, tip: usize, axis: usize) -> Entry {
         self.tips.get(tip).map_or(Entry::ToolXyz(axis), |&frame| Entry::FrameXyz(frame, axis))

@@ -9,44 +9,44 @@ use rne_machine::Number;
 use crate::handle::Arm;
 use crate::status::{self, Failure, Status};
 
-/// Gives an arm that was made, or NULL.
+/// Makes an arm and writes a pointer to it to `place`, or NULL if it cannot be made.
 ///
 /// # Safety
 /// `place` is NULL or a place for a pointer.
 pub(super) unsafe fn made(place: *mut *mut Arm, make: impl FnOnce() -> Result<Arm, Failure>) -> Status {
     status::status(|| {
         checked(place.cast_const(), 1, "arm")?;
-        // SAFETY: it is not NULL, and aligned; for the rest the caller's promise of the place.
+        // SAFETY: it is not NULL, and aligned; the caller promises that it is valid.
         unsafe { place.write(ptr::null_mut()) };
         let arm = Box::new(make()?);
-        // SAFETY: the same.
+        // SAFETY: as for the write of NULL above.
         unsafe { place.write(Box::into_raw(arm)) };
         Ok(())
     })
 }
 
-/// Gives a value.
+/// Writes a value to `place`.
 ///
 /// # Safety
 /// `place` is NULL or a place for a value.
 pub(super) unsafe fn give<T>(place: *mut T, what: &str, value: T) -> Result<(), Failure> {
     checked(place.cast_const(), 1, what)?;
-    // SAFETY: it is not NULL, and aligned; for the rest the caller's promise of the place.
+    // SAFETY: it is not NULL, and aligned; the caller promises that it is valid.
     unsafe { place.write(value) };
     Ok(())
 }
 
-/// What a pointer points to.
+/// Returns a reference to the value at `pointer`, or an error if it is NULL or not aligned.
 ///
 /// # Safety
 /// It is NULL or points to a value that nobody changes as long as the reference is used.
 pub(super) unsafe fn reference<'a, T>(pointer: *const T, what: &str) -> Result<&'a T, Failure> {
     checked(pointer, 1, what)?;
-    // SAFETY: it is not NULL, and aligned; for the rest the caller's promise.
+    // SAFETY: it is not NULL, and aligned; the caller promises that it is valid.
     Ok(unsafe { &*pointer })
 }
 
-/// A text of C's.
+/// Returns a text of C, or an error if it is NULL or no UTF-8.
 ///
 /// # Safety
 /// `pointer` is NULL or its bytes end with a zero, and nobody changes them as long as the text is used.
@@ -54,12 +54,13 @@ pub(super) unsafe fn text<'a>(pointer: *const c_char, what: &str) -> Result<&'a 
     if pointer.is_null() {
         return Err(Failure::null(what));
     }
-    // SAFETY: the caller's promise.
+    // SAFETY: it is not NULL; the caller promises that it ends with a zero byte.
     let text = unsafe { CStr::from_ptr(pointer) };
     text.to_str().map_err(|_| Failure::new(Status::NotUtf8, format!("`{what}` is not text in UTF-8")))
 }
 
-/// The addresses of an array, if it can be one; empty where it has no values.
+/// Returns the range of addresses of an array, or an error if memory cannot contain such an array. The range is empty
+/// if the array has no values.
 pub(super) fn checked<T>(pointer: *const T, count: usize, what: &str) -> Result<Range<usize>, Failure> {
     if count == 0 {
         return Ok(0..0);
@@ -81,7 +82,7 @@ pub(super) fn checked<T>(pointer: *const T, count: usize, what: &str) -> Result<
     }
 }
 
-/// An array of C's; no pointer is needed for an empty one.
+/// Returns an array of C as a slice. The pointer of an empty array may be NULL.
 ///
 /// # Safety
 /// `pointer` is NULL or points to `count` values that nobody changes as long as the slice is used.
@@ -90,19 +91,19 @@ pub(super) unsafe fn slice<'a, T>(pointer: *const T, count: usize, what: &str) -
     if count == 0 {
         return Ok(&[]);
     }
-    // SAFETY: it is not NULL, aligned, and no larger than memory; for the rest the caller's promise.
+    // SAFETY: it is not NULL, aligned, and no larger than memory; the caller promises that its values are valid.
     Ok(unsafe { std::slice::from_raw_parts(pointer, count) })
 }
 
-/// An array of C's to be written to, which [`checked`] has let pass.
+/// Returns an array of C as a slice to be written to. [`checked`] must have accepted it.
 ///
 /// # Safety
-/// It has room for `count` numbers, and nobody else uses it as long as the slice is used. Whatever bytes C has there
-/// are numbers; they are written to and not read.
+/// It has room for `count` numbers, and nobody else uses it as long as the slice is used. Any bytes are valid numbers;
+/// they are written and not read.
 pub(super) unsafe fn slice_mut<'a, T: Number>(pointer: *mut T, count: usize) -> &'a mut [T] {
     if count == 0 {
         return &mut [];
     }
-    // SAFETY: it is not NULL, aligned, and no larger than memory; for the rest the caller's promise.
+    // SAFETY: it is not NULL, aligned, and no larger than memory; the caller promises that it is valid.
     unsafe { std::slice::from_raw_parts_mut(pointer, count) }
 }

@@ -267,18 +267,3 @@ fn registers<V: Vector, const N: usize>(unit: V::Unit, numbers: &[Aligned<V::Num
     }
     registers
 }
-
-/// The torques of each state by itself.
-#[cfg(feature = "arm")]
-pub(super) fn one_by_one<R, T: BatchScalar, const DOF: usize>(all: States<'_, R, T, 3, DOF, DOF>)
-where
-    R: crate::InverseDynamics<DOF>,
-{
-    let States { robot, count, inputs, mut elements } = all;
-    for state in 0..count {
-        let [q, qd, qdd] = inputs.map(|arrays| arrays.map(|numbers| numbers[state]));
-        for (numbers, torque) in elements.iter_mut().zip(robot.inverse_dynamics(&q, &qd, &qdd)) {
-            numbers[state] = torque;
-        }
-    }
-}

@@ -3,13 +3,7 @@
 //! One slice per joint and quantity, or per element of a matrix, and in it one number per state. All slices have the
 //! same length. Units are those of the single call of the same name.
 
-#[cfg(feature = "arm")]
-use super::blocks::one_by_one;
-#[cfg(feature = "arm")]
-use super::{Argument, for_each_part};
 use super::{BatchScalar, LengthMismatch, VectorUnit};
-#[cfg(feature = "arm")]
-use crate::{Arm, Constant};
 use crate::{
     BaseMotion, FloatingBase, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, MassMatrix, Wrench,
 };
@@ -48,22 +42,6 @@ pub trait BatchInverseDynamics<const DOF: usize>: InverseDynamics<DOF> {
         qdd: [&[T]; DOF],
         tau: [&mut [T]; DOF],
     ) -> Result<(), LengthMismatch>;
-}
-
-/// One state after the other: a robot that is known at run time is loops, in which no vector unit finds work.
-#[cfg(feature = "arm")]
-impl<const DOF: usize, S: Constant + Sync> BatchInverseDynamics<DOF> for Arm<DOF, S> {
-    fn inverse_dynamics_batch_on<T: BatchScalar>(
-        &self,
-        _: VectorUnit,
-        q: [&[T]; DOF],
-        qd: [&[T]; DOF],
-        qdd: [&[T]; DOF],
-        tau: [&mut [T]; DOF],
-    ) -> Result<(), LengthMismatch> {
-        let motion = ["q", "qd", "qdd"].map(|name| Argument::vector(name, DOF));
-        for_each_part(self, [&motion, &[Argument::vector("tau", DOF)]], [q, qd, qdd], tau, one_by_one)
-    }
 }
 
 /// The mass matrix of many states at once.

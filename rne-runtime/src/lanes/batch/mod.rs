@@ -46,6 +46,8 @@
 //! themselves.
 #![allow(clippy::inline_always)] // what a vector unit computes must be compiled with its instructions
 
+#[cfg(feature = "arm")]
+mod arm;
 mod blocks;
 #[cfg_attr(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")), path = "x86.rs")]
 #[cfg_attr(not(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64"))), path = "undetected.rs")]

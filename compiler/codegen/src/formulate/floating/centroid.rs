@@ -16,10 +16,10 @@ use crate::formulate::ldlt::System;
 use crate::formulate::mass_matrix::OfBase;
 use crate::ir::{Builder, Name, Quantity, Symbol, Vector};
 
-/// Moments about the centre of mass of a robot.
+/// The centre of mass of a robot, about which moments are computed.
 struct Centre<'s> {
     builder: &'s Builder,
-    /// The centre of mass in frame 0, or of a robot without mass what is not finite.
+    /// The centre of mass in frame 0; for a robot without mass, a number that is not finite.
     position: Result<Vector<'s>, Symbol<'s>>,
 }
 
@@ -32,7 +32,7 @@ impl<'s> Centre<'s> {
         Self { builder, position }
     }
 
-    /// The moment about it of a wrench that is about the origin of frame 0.
+    /// Returns the moment about the centre of mass, given a force and its moment about the origin of frame 0.
     fn moment(&self, [force, moment]: [Vector<'s>; 2]) -> Vector<'s> {
         let line = self.builder.joint(0);
         line.within(Quantity::CentroidalMoment, || match self.position {
@@ -42,13 +42,13 @@ impl<'s> Centre<'s> {
     }
 }
 
-/// The rows of the momentum; `of_base` has a column for each coordinate.
+/// Returns the rows of the centroidal momentum matrix; `of_base` has a column for each coordinate.
 pub(crate) fn momentum_matrix<'s>(builder: &'s Builder, system: &System<'_>, of_base: &OfBase<'s>) -> Outputs<'s> {
     let centre = Centre::of(builder, (of_base.mass, of_base.h));
     let columns: Vec<[Vector<'s>; 2]> = (0..system.size())
         .map(|column| {
             let [force, moment] = of_base.column(builder, column);
-            // a body that does not turn has no angular momentum about its centre
+            // a pure translation gives no angular momentum about the centre of mass
             let about = if column < 3 { builder.no_vector() } else { centre.moment([force, moment]) };
             [force, about]
         })
@@ -63,7 +63,7 @@ pub(crate) fn momentum_matrix<'s>(builder: &'s Builder, system: &System<'_>, of_
     places.map(element).collect()
 }
 
-/// The momentum, or its rate, about the centre of mass, from what it is about the origin of frame 0; `centre` is the
+/// Returns the momentum, or its rate, about the centre of mass, given that about the origin of frame 0. `centre` is the
 /// mass and the first moment of the robot, `linear` the quantity of the linear part.
 pub(crate) fn about_centre<'s>(
     builder: &'s Builder,

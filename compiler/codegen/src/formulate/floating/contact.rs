@@ -1,4 +1,4 @@
-//! Motion of a robot on a floating base while contacts hold some of its tips, and the forces of these contacts.
+//! Forward dynamics of a robot on a floating base whose tips are held by contacts, and the forces of these contacts.
 //!
 //! ```text
 //! M x = r + Jᵀ f       r = (0, τ) - bias;  x = (a - g, ω̇, q̈);  f acts on the robot
@@ -9,8 +9,8 @@
 //! Lᵀ x = D⁻¹ (y + Y f)
 //! ```
 //!
-//! All of it is in axes of frame 0, where the columns of the base in J are zeros and ones but for the levers. A column
-//! of Y has elements at the base and at the joints that move its tip, as that of Jᵀ has. f is turned into world axes
+//! All of it is in axes of frame 0: there, the columns of the base in J have only zeros, ones and levers. A column of
+//! Y, like one of Jᵀ, has elements only at the base and at the joints that move its tip. f is turned into world axes
 //! last. μ is [`Contact::DAMPING`].
 
 use rne_model::{Contact, Robot};
@@ -24,18 +24,18 @@ use crate::formulate::ldlt::{Factors, System};
 use crate::formulate::{Outputs, base_rotation};
 use crate::ir::{Builder, Cause, Matrix, Name, Quantity, Symbol, Vector};
 
-/// The accelerations that contacts keep zero.
+/// The acceleration components of tips that contacts keep at zero.
 pub(crate) struct Contacts<'s> {
     list: Vec<Contact>,
-    /// How many tips the robot has.
+    /// Number of tips of the robot.
     tips: usize,
-    /// For each of the accelerations its row of J, and J̇ v + g.
+    /// For each of the acceleration components: its row of J, and J̇ v + g.
     rows: Vec<(Vec<Symbol<'s>>, Symbol<'s>)>,
     rotation: Matrix<'s>,
 }
 
 impl<'s> Contacts<'s> {
-    /// The contacts of a robot, for the function of the builder.
+    /// Returns the contacts of a robot, for the function of the builder.
     pub(crate) fn new(builder: &'s Builder, robot: &Robot) -> Self {
         builder.unnamed(|| Self::of(&Derivation::new(builder, robot)))
     }
@@ -63,7 +63,7 @@ impl<'s> Contacts<'s> {
     }
 }
 
-/// The accelerations of the base and of the joints, then the wrench on the robot at each tip.
+/// Returns the accelerations of the base and of the joints, then the wrench on the robot at each tip.
 pub(crate) fn forward_dynamics<'s>(
     builder: &'s Builder,
     system: &System<'_>,
@@ -117,9 +117,9 @@ pub(crate) fn forward_dynamics<'s>(
     outputs.into_iter().map(|(name, x)| (name, builder.name(name, x))).collect()
 }
 
-/// The solution of A f = b by A = L D Lᵀ; row i of `lower` holds the elements (i, 0) to (i, i) of A.
+/// Returns the solution of A f = b by A = L D Lᵀ; row i of `lower` has the elements (i, 0) to (i, i) of A.
 fn solved<'s>(builder: &'s Builder, lower: &[Vec<Symbol<'s>>], b: Vec<Symbol<'s>>) -> Vec<Symbol<'s>> {
-    // L, and L D
+    // each element of L, with that of L D
     let mut rows: Vec<Vec<[Symbol<'s>; 2]>> = Vec::new();
     let mut inverses: Vec<Symbol<'s>> = Vec::new();
     let mut x = b;

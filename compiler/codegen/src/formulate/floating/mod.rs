@@ -1,4 +1,4 @@
-//! Results of a robot with a floating base: the rows of the base stand before those of the joints.
+//! Results of a robot with a floating base: the rows of the base come before those of the joints.
 
 pub(crate) mod centroid;
 pub(crate) mod contact;
@@ -11,24 +11,24 @@ use crate::formulate::ldlt::{self, System};
 use crate::formulate::{Frame, Outputs, square};
 use crate::ir::{Axis, Builder, Matrix, Name, Quantity, Symbol, Vector, WithRespectTo, all_names_of};
 
-/// The rotation of the base: an argument.
+/// Returns the rotation of the base, which is an argument.
 pub(crate) fn base_rotation(builder: &Builder) -> Matrix<'_> {
     Matrix::from_elements(all_names_of::<9>("base_rotation", 0).map(|name| builder.argument(name)))
 }
 
-/// The pose of the base: an argument.
+/// Returns the pose of the base, which is an argument.
 pub(crate) fn pose_of_base(builder: &Builder) -> Frame<'_> {
     let [rotation @ .., x, y, z] = all_names_of::<12>("pose", 0).map(|name| builder.argument(name));
     Frame { rotation: Matrix::from_elements(rotation), origin: Vector([x, y, z]) }
 }
 
-/// The force and the moment on a floating base.
+/// Returns the force and the moment on a floating base as named results.
 pub(crate) fn on_base([force, moment]: [Vector<'_>; 2]) -> Outputs<'_> {
     let parts = [(Quantity::BaseForce, force), (Quantity::BaseMoment, moment)];
     parts.into_iter().flat_map(|(part, vector)| components(Name::scalar(part, 0), vector)).collect()
 }
 
-/// M with the rows of a floating base, by its upper half.
+/// Returns all elements of M with the rows of a floating base, given its upper half.
 pub(crate) fn floating_mass_matrix<'s>(
     builder: &'s Builder,
     system: &System<'_>,
@@ -41,7 +41,7 @@ pub(crate) fn floating_mass_matrix<'s>(
     })
 }
 
-/// M⁻¹ ((0, τ) - bias): the accelerations of a floating base, and of the joints.
+/// Returns M⁻¹ ((0, τ) - bias): the accelerations of a floating base, then those of the joints.
 pub(crate) fn floating_forward_dynamics<'s>(
     builder: &'s Builder,
     system: &System<'_>,
@@ -52,7 +52,7 @@ pub(crate) fn floating_forward_dynamics<'s>(
     x.map(|(row, x)| (system.name(Quantity::RateDot, row), x)).collect()
 }
 
-/// (0, τ) - bias
+/// Returns the right-hand side (0, τ) - bias.
 pub(crate) fn floating_rest<'s>(builder: &'s Builder, system: &System<'_>, bias: Outputs<'s>) -> Vec<Symbol<'s>> {
     let rest = |(row, (_, bias)): (usize, (Name, Symbol<'s>))| {
         let name = system.name(Quantity::Reduced, row);
@@ -64,7 +64,8 @@ pub(crate) fn floating_rest<'s>(builder: &'s Builder, system: &System<'_>, bias:
     bias.into_iter().enumerate().map(rest).collect()
 }
 
-/// The variables of the derivatives of a robot with a floating base: q, q̇ and the angular velocity of the base.
+/// Returns the variables of the derivatives of a robot with a floating base: q, q̇ and the angular velocity of the
+/// base.
 pub(crate) fn variables(coordinates: &Coordinates) -> [Vec<WithRespectTo>; 3] {
     let of_joints =
         |kind: fn(usize) -> WithRespectTo| coordinates.joints().iter().map(|joint| kind(joint + 1)).collect();
@@ -72,7 +73,8 @@ pub(crate) fn variables(coordinates: &Coordinates) -> [Vec<WithRespectTo>; 3] {
     [of_joints(WithRespectTo::Position), of_joints(WithRespectTo::Rate), about.into()]
 }
 
-/// Three matrices by rows, from the columns of all variables: the names of their rows are those of forces.
+/// Returns three matrices by rows, the derivatives with respect to q, q̇ and ω, given the columns of all variables;
+/// `forces` are the names of the rows.
 pub(crate) fn sensitivity_of_floating_base<'s>(
     coordinates: &Coordinates,
     forces: &[Name],
@@ -92,7 +94,7 @@ pub(crate) fn sensitivity_of_floating_base<'s>(
     found.into_iter().map(|(name, symbol)| coordinates.named(name, symbol)).collect()
 }
 
-/// These matrices by the product rule.
+/// Returns the derivatives of the forces with respect to q, q̇ and ω, computed by the product rule.
 pub(crate) fn floating_derivatives<'s>(
     builder: &'s Builder,
     coordinates: &Coordinates,

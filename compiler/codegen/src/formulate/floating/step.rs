@@ -1,8 +1,9 @@
 //! The derivatives of the step of a robot with a floating base, on the manifold of its positions.
 //!
-//! A change of the base before the step is the shift δp and the turn δθ, in axes of frame 0: p + R δp and R exp(δθ).
-//! After the step, it is δp' and δθ', in axes of frame 0 after the step. With the step as in
-//! [`integrator`](super::integrator), ℓ = v + h a and Newton's step, which changes nothing but rounding, left out:
+//! Before the step, a change of the base is a shift δp and a turn δθ, in axes of frame 0: the base goes to p + R δp and
+//! R exp(δθ). After the step, the change is δp' and δθ', in the axes that frame 0 has then. The step is that of
+//! [`integrator`](super::integrator), with ℓ = v + h a. Newton's step is left out, because it changes only rounding
+//! errors:
 //!
 //! ```text
 //! δω' = δω + h δω̇       δθ' = Eᵀ δθ + K δω'       K = h / (1 + s) ((1 - s) 1 + 2 u uᵀ - 2 u×) / (1 + s)
@@ -10,8 +11,9 @@
 //! δv' = Eᵀ (δℓ + h (Rᵀ g) × δθ) + v' × K δω'
 //! ```
 //!
-//! The matrix behind h / (1 + s) in K is the turn by half of E, backwards. The accelerations do not depend on p, R and
-//! v; h times their changes are -h M⁻¹ times those of the forces by q, q̇ and ω, and h M⁻¹ for the torques.
+//! The matrix after the factor h / (1 + s) in K is the rotation by half the angle of E in the opposite direction. The
+//! accelerations do not depend on p, R and v. With respect to q, q̇ and ω, h times their derivatives are -h M⁻¹ times
+//! those of the forces; with respect to the torques, they are h M⁻¹.
 
 use std::array::from_fn;
 
@@ -23,33 +25,33 @@ use crate::formulate::{Outputs, pose_of_base};
 use crate::function::Length;
 use crate::ir::{Builder, Matrix, Name, Quantity, Symbol, Vector, WithRespectTo};
 
-/// Rows and columns of the base.
+/// Number of rows and columns of the base.
 const BASE: usize = Length::OF_BASE;
 
-/// The changes of the positions and of the velocities after the step: a column of two matrices.
+/// A column of the two matrices of derivatives: the changes of the next positions and of the next velocities.
 type Column<'s> = [Vec<Symbol<'s>>; 2];
 
-/// A step on the way to its derivatives: h M⁻¹ by its factors, and the base after the step.
+/// The data for the derivatives of a step: the factors of h M⁻¹, and the base after the step.
 pub(crate) struct FloatingStep<'s, 'a> {
     builder: &'s Builder,
     system: &'a System<'a>,
     step: Symbol<'s>,
     factors: Factors<'s>,
-    /// ℓ
+    /// ℓ = v + h a
     linear: Vector<'s>,
-    /// h Rᵀ g
+    /// h Rᵀ g, the change of the base's velocity due to gravity
     falling: Vector<'s>,
-    /// Eᵀ
+    /// Eᵀ, the transpose of the base's rotation in the step
     back: Matrix<'s>,
-    /// K
+    /// K, which gives δθ' from δω'
     turning: Matrix<'s>,
-    /// v'
+    /// v', the base's velocity after the step
     velocity: Vector<'s>,
 }
 
 impl<'s, 'a> FloatingStep<'s, 'a> {
-    /// Solves for the accelerations, which formulas that follow have as theirs. Row i of `upper` holds the elements
-    /// (i, i) to (i, n) of M, `gravity` is in axes of the world.
+    /// Solves for the accelerations and stores them in the builder, so that later formulas use them. Row i of `upper`
+    /// has the elements (i, i) to (i, n) of M; `gravity` is in axes of the world.
     pub(crate) fn new(
         builder: &'s Builder,
         system: &'a System<'a>,
@@ -80,9 +82,9 @@ impl<'s, 'a> FloatingStep<'s, 'a> {
         Self { builder, system, step, factors, linear, falling, back, turning, velocity }
     }
 
-    /// The derivatives of the next positions by the positions, by the velocities and by the torques, then those of the
-    /// next velocities; by the columns of the forces by q, by q̇ and by the angular velocity of the base. All are by
-    /// rows.
+    /// Returns the derivatives of the next positions with respect to the positions, the velocities and the torques,
+    /// then those of the next velocities, all by rows. `forces` has the derivatives of the forces by columns: with
+    /// respect to q, to q̇, and to the angular velocity of the base.
     pub(crate) fn derivatives(&self, forces: &[Vec<Symbol<'s>>]) -> Outputs<'s> {
         let (size, dof) = (self.system.size(), self.system.size() - BASE);
         let (by_q, rest) = forces.split_at(dof);
@@ -100,7 +102,7 @@ impl<'s, 'a> FloatingStep<'s, 'a> {
             };
             self.column([None, Some(at)], &forces.map_or_else(|| nothing.clone(), caused))
         });
-        // h M⁻¹ is symmetric
+        // h M⁻¹ is symmetric, so its columns for the torques are also its rows
         let unit = |column: usize| -> Vec<_> {
             (0..size).map(|row| if row == BASE + column { self.builder.one() } else { self.builder.zero() }).collect()
         };
@@ -130,14 +132,15 @@ impl<'s, 'a> FloatingStep<'s, 'a> {
         outputs
     }
 
-    /// h M⁻¹ times a vector.
+    /// Returns h M⁻¹ times a vector.
     fn solved(&self, b: &[Symbol<'s>]) -> Vec<Symbol<'s>> {
         self.builder
             .joint(0)
             .within(Quantity::Scaled, || self.factors.backward(&self.factors.scaled(&self.factors.forward(b))))
     }
 
-    /// The column of a position or of a velocity, where `change` is what it changes in h times the accelerations.
+    /// Returns the column of a position or of a velocity (one of both is `Some`); `change` is the derivative of h times
+    /// the accelerations.
     fn column(&self, [position, velocity]: [Option<usize>; 2], change: &[Symbol<'s>]) -> Column<'s> {
         let plus_own = |own: Option<usize>, (row, &x): (usize, &Symbol<'s>)| {
             if own == Some(row) { self.builder.one() + x } else { x }
@@ -157,7 +160,7 @@ impl<'s, 'a> FloatingStep<'s, 'a> {
         [origin.0.into_iter().chain(turned.0).chain(joints).collect(), velocities]
     }
 
-    /// The column of a shift or of a turn of the base, with which no acceleration changes.
+    /// Returns the column of a shift (0 to 2) or a turn (3 to 5) of the base. Neither changes any acceleration.
     fn column_of_pose(&self, at: usize) -> Column<'s> {
         let (builder, line) = (self.builder, self.builder.joint(0));
         let [mut positions, mut velocities] = [(); 2].map(|()| vec![builder.zero(); self.system.size()]);
@@ -174,8 +177,8 @@ impl<'s, 'a> FloatingStep<'s, 'a> {
         [positions, velocities]
     }
 
-    /// The name of the derivative of a position or of a velocity (`half` 0 or 1), by a position, by a velocity or by a
-    /// torque (`kind` 0, 1 or 2).
+    /// Returns the name of the derivative of a next position or a next velocity (`half` 0 or 1) with respect to a
+    /// position, a velocity or a torque (`kind` 0, 1 or 2).
     fn name(&self, half: usize, kind: usize, [row, column]: [usize; 2]) -> Name {
         let joint = |place: usize| self.system.coordinates.joints()[place] + 1;
         let [linear, angular, of_joint] = [

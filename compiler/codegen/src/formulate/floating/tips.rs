@@ -1,5 +1,4 @@
-//! Jacobians of the named tips of a robot with a floating base, and what these lack of the accelerations of the
-//! tips.
+//! Jacobians J of the named tips of a robot with a floating base, and the terms J̇ v of the accelerations of the tips.
 //!
 //! ```text
 //! W_0 = R          axes of frame 0 in the world; p of the origin of frame 0 is 0, wherever the base is
@@ -7,8 +6,9 @@
 //! J̇ v              point of a joint or tip k on link i:  p̈_k = p̈ + ω̇_i × s + ω_i × (ω_i × s) (+ 2 q̇_i ω_i × e)
 //! ```
 //!
-//! s leads from joint i to joint or tip k, p̈ is the acceleration of joint i. On the base p̈ = 0, ω̇ = 0 and s begins at
-//! the origin of frame 0. All these are in axes of link i, from which its frame turns them.
+//! s is the vector from joint i to joint or tip k, p̈ is the acceleration of joint i. On the base p̈ = 0, ω̇ = 0 and s
+//! begins at the origin of frame 0. All these are in axes of link i; the frame of link i turns the results into world
+//! axes.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
@@ -16,19 +16,19 @@ use crate::coordinates::{Coordinates, scaled};
 use crate::formulate::{Arm, Frame, Frames, JointState, Link, Mount, Outputs, Turning, kinematics, seven_steps};
 use crate::ir::{Axis, Cause, Matrix, Name, Quantity, Vector};
 
-/// Linear and angular part.
+/// Linear and angular part of a Jacobian column or of an acceleration.
 type Parts<'s> = [Vector<'s>; 2];
 
-/// The frames of a robot, with the origins of its tips from that of frame 0.
+/// The frames of a robot, and the positions of its tips from the origin of frame 0.
 pub(crate) struct Tips<'s> {
-    /// The axes of frame 0.
+    /// Rotation of frame 0.
     rotation: Matrix<'s>,
     frames: Frames<'s>,
     origins: Vec<Vector<'s>>,
 }
 
 impl<'s> Tips<'s> {
-    /// In the axes in which `rotation` gives those of frame 0.
+    /// Computes the frames and tips; `rotation` turns frame 0 into the axes of the results.
     pub(crate) fn of(arm: &Arm<'s>, states: &[JointState<'s>], rotation: Matrix<'s>) -> Self {
         let base = Frame { rotation, origin: arm.builder.zeros(Cause::FirstFrame) };
         let frames = kinematics::frames(arm, states, base);
@@ -43,7 +43,7 @@ impl<'s> Tips<'s> {
         Self { rotation, frames, origins }
     }
 
-    /// The columns of the Jacobian of a tip: six of the base, then one of each joint.
+    /// Returns the columns of the Jacobian of a tip: six of the base, then one of each joint.
     fn columns(&self, arm: &Arm<'s>, tip: usize) -> Vec<Parts<'s>> {
         let (builder, origin, on) = (arm.builder, self.origins[tip], arm.tips[tip].0);
         let still = builder.zeros(Cause::BehindFrame);
@@ -68,7 +68,7 @@ impl<'s> Tips<'s> {
         linear.into_iter().chain(angular).chain(joints).collect()
     }
 
-    /// The columns of the Jacobian of a tip, six of the base and one of each coordinate.
+    /// Returns the columns of the Jacobian of a tip: six of the base, then one of each coordinate.
     pub(crate) fn gathered(&self, arm: &Arm<'s>, coordinates: &Coordinates, tip: usize) -> Vec<Parts<'s>> {
         let mut of_base = self.columns(arm, tip);
         let of_joints = of_base.split_off(6);
@@ -77,7 +77,7 @@ impl<'s> Tips<'s> {
         of_base.into_iter().chain(coordinates.gathered(&of_joints, plus, times)).collect()
     }
 
-    /// The Jacobians by rows.
+    /// Returns the Jacobians of all tips, each by rows.
     pub(crate) fn jacobians(&self, arm: &Arm<'s>, coordinates: &Coordinates) -> Outputs<'s> {
         let mut outputs = Vec::new();
         for tip in 0..self.origins.len() {
@@ -85,7 +85,7 @@ impl<'s> Tips<'s> {
             for row in 0..6 {
                 let quantity = if row < 3 { Quantity::JacobianLinear } else { Quantity::JacobianAngular };
                 outputs.extend(columns.iter().enumerate().map(|(column, parts)| {
-                    // the joint, or which column of the base
+                    // the joint of the column, or the number of the column of the base
                     let (joint, of_base) = match column.checked_sub(6) {
                         Some(place) => (coordinates.joints()[place] + 1, 0),
                         None => (0, column + 1),
@@ -99,11 +99,12 @@ impl<'s> Tips<'s> {
         outputs
     }
 
-    /// The accelerations of the tips of a base that turns as `base` does, where nothing else accelerates.
+    /// Returns the accelerations J̇ v of the tips: the base turns with the angular velocity of `base`, and neither base
+    /// nor joints accelerate.
     pub(crate) fn accelerations(&self, arm: &Arm<'s>, states: &[JointState<'s>], base: &Turning<'s>) -> Vec<Parts<'s>> {
         let builder = arm.builder;
         let at_rest = builder.zeros(Cause::FixedBase);
-        // how each link turns, and the acceleration of its joint in its axes
+        // the angular motion of each link, and the acceleration of its joint in its axes
         let mut turnings: Vec<Turning<'s>> = Vec::with_capacity(states.len());
         let mut joints: Vec<Vector<'s>> = Vec::with_capacity(states.len());
         let rigid = |point: Vector<'s>, turning: &Turning<'s>, span: Vector<'s>| {
@@ -118,7 +119,7 @@ impl<'s> Tips<'s> {
             link.unaccelerated(rigid(joints[link.index], turning, span), turning.omega)
         };
         for joint in arm.joints(states).filter(|joint| arm.moves_a_tip(joint.index)) {
-            // links that carry no tip have no part
+            // links that move no tip are skipped; these entries only fill their places
             turnings.resize(joint.index, *base);
             joints.resize(joint.index, at_rest);
             let parent = joint.link.parent;

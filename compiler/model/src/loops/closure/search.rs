@@ -1,24 +1,25 @@
-//! The search for positions at which the loops are closed.
+//! The search for positions of the joints at which the loops are closed.
 
 use std::f64::consts::{PI, TAU};
 
 use super::{Equations, Ways};
 use crate::{Joint, JointKind};
 
-/// A loop is closed where its equations are off by less, lengths as parts of the loops' size.
+/// A loop counts as closed if every residual of its equations is below this; lengths are divided by the loops' size.
 const CLOSED: f64 = 1e-12;
-/// How far from its limits a position may lie by rounding, rad or m.
+/// How far a position may be outside its limits by rounding, rad or m.
 const ROUNDING: f64 = 1e-9;
-/// Starts of Newton's method, and those after which a loop that never closed is given up.
+/// Number of starts of Newton's method; and the number after which the search gives up if no start has closed the
+/// loops.
 const STARTS: usize = 150;
 const STARTS_WITHOUT_SUCCESS: usize = 40;
-/// Products and sums that the search for closures may cost.
+/// Largest number of products and sums that the search for closures may cost.
 const MOST_WORK: usize = 200_000_000;
-/// Products and sums that the search for singular configurations may cost.
+/// Largest number of products and sums that the search for singular configurations may cost.
 const MOST_WORK_OF_DESCENT: usize = 20_000_000;
 
 impl Equations<'_> {
-    /// Products and sums of one step of Newton's method.
+    /// Returns the products and sums that one step of Newton's method costs.
     fn work(&self) -> usize {
         let n = self.variables.len();
         let of_loop = |ways: &Ways| (3 + ways.cut.differences(), ways.joints.iter().map(Vec::len).sum::<usize>());
@@ -26,11 +27,12 @@ impl Equations<'_> {
         (rows + n) * n * n + 200 * joints
     }
 
-    /// Closes the loops from positions near by, by the method of Levenberg and Marquardt over all variables: what the
-    /// equations are off there, free of units, and the positions. `within` keeps variables within their limits.
+    /// Closes the loops, beginning at `positions`, by the method of Levenberg and Marquardt over all variables. Returns
+    /// the largest residual that is left, free of units, and the positions found. `within` keeps variables within their
+    /// limits.
     fn closed(&self, mut positions: Vec<f64>, within: bool, work: &mut usize) -> (f64, Vec<f64>) {
         const STEPS: usize = 80;
-        // redundant equations leave the normal equations singular
+        // damping never becomes 0, because redundant equations make the matrix of the normal equations singular
         const LEAST_DAMPING: f64 = 1e-13;
         let size = |residual: &[f64]| residual.iter().map(|it| it.abs()).fold(0.0, worse);
         let square = |residual: &[f64]| residual.iter().map(|it| it * it).sum::<f64>();
@@ -46,7 +48,7 @@ impl Equations<'_> {
                 damping *= 10.0;
                 continue;
             };
-            // long steps leave the branch of the mechanism
+            // a long step could jump to another assembly mode of the mechanism
             let longest = step.iter().map(|it| it.abs()).fold(1.0, worse);
             let mut next = positions.clone();
             for (&joint, step) in self.variables.iter().zip(&step) {
@@ -78,7 +80,7 @@ impl Equations<'_> {
         self.joints.iter().zip(positions).all(is_within)
     }
 
-    /// Positions to begin with: 0 first, then others that look random, within the limits.
+    /// Returns start positions within the limits: without `random` 0 for each joint, else pseudorandom ones.
     fn start(&self, random: Option<&mut Random>) -> Vec<f64> {
         let mut random = random;
         let position = |joint: &Joint| {
@@ -94,8 +96,9 @@ impl Equations<'_> {
         self.joints.iter().map(position).collect()
     }
 
-    /// Up to `wanted` configurations that close all loops, within the limits as far as such are found: first from where
-    /// all positions are 0, then from others, the same in every run. Beside them the one that came nearest.
+    /// Searches up to `wanted` configurations that close all loops, within the position limits as far as possible:
+    /// first from a start with all positions 0, then from pseudorandom ones, the same in every run. Returns them, and
+    /// the positions at which the loops came nearest to closing.
     pub(crate) fn closures(&self, wanted: usize) -> (Vec<Vec<f64>>, Vec<f64>) {
         let (mut within, mut outside) = (Vec::new(), Vec::new());
         let (mut nearest, mut least) = (vec![0.0; self.joints.len()], f64::INFINITY);
@@ -123,7 +126,7 @@ impl Equations<'_> {
         (within, nearest)
     }
 
-    /// Takes whole turns off the joints that may turn without a limit and that no joint follows.
+    /// Removes whole turns from the positions of joints that turn without limits and that no other joint follows.
     fn turn_back(&self, positions: &mut [f64]) {
         let is_followed = |joint: usize| {
             let of = self.joints.iter().filter_map(|it| it.coupling.as_ref());
@@ -137,8 +140,8 @@ impl Equations<'_> {
         }
     }
 
-    /// The least that a number can be at closures within the limits, and where: by steps downhill from known ones. It
-    /// is an upper bound of the least one.
+    /// Searches the smallest value of `number` at closures within the limits, by random steps downhill from known
+    /// closures. Returns an upper bound of the minimum, and the positions where it is.
     pub(crate) fn least(&self, closures: &[Vec<f64>], number: impl Fn(&[f64]) -> f64) -> Option<(f64, Vec<f64>)> {
         const STARTS: usize = 5;
         const STEPS: usize = 40;
@@ -173,13 +176,13 @@ impl Equations<'_> {
     }
 }
 
-/// The larger of two numbers; not-a-number if one of them is.
+/// Returns the larger of two numbers, or not-a-number if one of them is that.
 fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
 }
 
-/// Numbers from 0 to 1 that look random: G. Steele, D. Lea, C. Flood, "Fast Splittable Pseudorandom Number Generators",
-/// 2014.
+/// A generator of pseudorandom numbers from 0 to 1: G. Steele, D. Lea, C. Flood, "Fast Splittable Pseudorandom Number
+/// Generators", 2014.
 struct Random(u64);
 
 impl Random {
