@@ -1,11 +1,12 @@
-//! Writes the methods of the class `Arm` that are functions of the compiler: signatures and docstrings of the table.
+//! Writes those methods of the class `Arm` that are functions of the compiler, with signatures and docstrings from the
+//! compiler's table.
 
 use std::fmt::Write as _;
 use std::{env, fs, io, path::Path};
 
 use rne_functions::{Argument, Function, Length, Record, Shape};
 
-/// Vectors of the motion of a base, which may be left out.
+/// The vectors of the motion of a base, which may be left out of a call.
 const OF_BASE: [&str; 4] = ["base_omega", "base_omega_dot", "base_acceleration", "base_gravity"];
 
 fn main() -> io::Result<()> {
@@ -13,7 +14,7 @@ fn main() -> io::Result<()> {
     let mut methods = String::from("#[pymethods]\nimpl Arm {\n");
     for function in Function::ALL {
         write(&mut methods, function, function.name());
-        // a pose of the tip has the name that it has at a frame, too
+        // a function of the pose of the tip has a second name, that at a frame, which becomes a method too
         if let Some(other) = function.of_frame().filter(|name| *name != function.name()) {
             write(&mut methods, function, other);
         }
@@ -22,10 +23,10 @@ fn main() -> io::Result<()> {
     fs::write(Path::new(&env::var_os("OUT_DIR").unwrap_or_default()).join("methods.rs"), methods)
 }
 
-/// Writes a method.
+/// Writes the method of a function under a name.
 fn write(methods: &mut String, function: Function, name: &str) {
     let mut documentation = summary(function);
-    // those that must be given, those that may be left out, and those that are given by name alone
+    // arguments that must be given, arguments that may be left out, and arguments that are given by name only
     let (mut needed, mut optional, mut named) = (Vec::new(), Vec::new(), Vec::new());
     let mut given = String::new();
     for &argument in function.arguments() {
@@ -84,7 +85,7 @@ fn write(methods: &mut String, function: Function, name: &str) {
     );
 }
 
-/// What a function computes.
+/// Returns the first sentence of the docstring: what the function computes.
 fn summary(function: Function) -> String {
     let mut documentation = format!("{}\n\n", function.summary());
     if !function.details().is_empty() {
@@ -95,7 +96,7 @@ fn summary(function: Function) -> String {
     documentation
 }
 
-/// What an argument is, where its name does not say it.
+/// Returns a sentence about an argument whose name does not say what it is.
 fn about(argument: Argument) -> String {
     let (name, shape) = (argument.name(), argument.shape());
     let numbers = in_words(&[dimensions(shape)].concat());
@@ -130,7 +131,7 @@ fn about(argument: Argument) -> String {
     format!("`{name}`: {text}\n\n")
 }
 
-/// What a function returns.
+/// Returns the sentence about what a function returns.
 fn returned(function: Function) -> String {
     let shape = function.shape();
     let numbers = in_words(&dimensions(shape));
@@ -168,7 +169,7 @@ fn returned(function: Function) -> String {
     }
 }
 
-/// The parts of a record, and the array `out` that has them all.
+/// Returns a text about the parts of a record, and about the array `out` that contains them all.
 fn of_record(record: Record, parts: &[Shape]) -> String {
     let names = record.fields();
     if parts.iter().all(|part| *part == parts[0]) {
@@ -183,7 +184,8 @@ fn of_record(record: Record, parts: &[Shape]) -> String {
     format!("{}, and {last}; `out` is one array with their numbers, one after the other.", others.join(", "))
 }
 
-/// The parts of a record with their shapes; a record among them with different parts is there by its own.
+/// Returns the parts of a record with their shapes. A part that is itself a record of different shapes is replaced by
+/// its parts.
 fn flat(names: &[&str], parts: &[Shape]) -> Vec<String> {
     let of_part = |(name, part): (&&str, &Shape)| match part {
         Shape::Record(record, of) if of.iter().any(|part| *part != of[0]) && *record != Record::Pose => {
@@ -200,7 +202,7 @@ fn flat(names: &[&str], parts: &[Shape]) -> Vec<String> {
     names.iter().zip(parts).flat_map(of_part).collect()
 }
 
-/// The dimensions of an array for one state.
+/// Returns the dimensions of an array for one state.
 fn dimensions(shape: &Shape) -> Vec<String> {
     match shape {
         Shape::Number => Vec::new(),
@@ -221,7 +223,7 @@ fn dimensions(shape: &Shape) -> Vec<String> {
     }
 }
 
-/// The shape of an array for one state and for N.
+/// Returns the shape of an array for one state and for N states, as a text.
 fn in_words(dimensions: &[String]) -> String {
     let all = dimensions.join(", ");
     let comma = if dimensions.len() == 1 { "," } else { "" };

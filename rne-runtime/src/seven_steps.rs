@@ -5,8 +5,8 @@
 //!
 //! ```text
 //! ω, ω̇         angular velocity and acceleration of a link          e     axis of the joint, (0, 0, 1)
-//! ċ, c̈         velocity and acceleration of its centre of mass      d     from the joint to the centre of mass
-//! g            acceleration of gravity                              r_i   from the parent's centre of mass to joint i
+//! ċ, c̈         velocity and acceleration of its centre of mass      d     from J_i to the centre of mass of link i
+//! g            acceleration of gravity                              r_i   from the parent's centre of mass to J_i
 //! f, n         force and moment that accelerate the link            m, I  mass; inertia about the centre of mass
 //! f_{p,i}      force and moment that the parent link p exerts       R_i   turns components in the axes of link i into
 //! n_{p,i}      on link i                                                  components in the axes of its parent
@@ -16,16 +16,20 @@
 //! Link i is the one that joint i moves. Link p is the one that carries joint i: its `parent`, or the base. In a chain
 //! p is i-1, and r_i is the lecture's r_{i-1} ([`mount`]). f_{i,k} is f_{p,i} of a joint k that link i carries.
 //!
+//! J_i is a point on the axis of joint i, fixed to link p: O_i of the lecture where the table is standard, the foot of
+//! the common normal on axis i where it is modified.
+//!
 //! The components of a vector of link i are along axes that are fixed to link i, with z along joint i; only r_i is
-//! along the axes of link p. These axes are called form P. The lecture uses axes that are fixed to link i-1: Rz(θ_i)
-//! turns one into the other and does not change z elements, so τ is the same.
+//! along the axes of link p. These axes are called form P. The lecture uses axes that are fixed to link i-1: a
+//! vector v here is Rz(θ_i) v there. The z elements are equal, so τ is the same.
 //!
-//! R_i and d_i are computed in [`link_frame`]. `kind.x(rigid, …)` adds the term of a revolute or a prismatic joint to
-//! `rigid`, the value if the joint did not move ([`joint`]).
+//! R_i and d_i are computed in [`link_frame`]. `common` is the part of a step that both kinds of joint have:
+//! `kind.velocity(common, …)` and its like add the term that only a revolute or only a prismatic joint has ([`joint`]).
 //!
-//! The lecture has a chain on a base that does not move. What moving bases, rotors of motors and links without mass
-//! add is in [`base`], [`spin`] and [`first_moment`]. `S` is the type of the numbers of the robot, `T` that of the
-//! computation, such as dual numbers.
+//! The lecture has a chain on a base that does not move. The terms of moving bases and of rotors of motors are in
+//! [`base`] and [`spin`]. [`first_moment`] has those of links with mass 0 and a first moment h = m c (kg m), which
+//! identification of parameters gives. `S` is the type of the robot's numbers, `T` that of q, q̇, q̈ and the results:
+//! `f64`, or a number that carries its derivative (a dual number).
 //!
 //! The order of the operations is part of the contract: generated code repeats it and is compared bit for bit.
 
@@ -43,7 +47,7 @@ pub(crate) mod trace;
 use nalgebra::Vector3;
 
 use crate::seven_steps::at_tip::AtTip;
-use crate::seven_steps::first_moment::{with_force, with_moment, without_weight};
+use crate::seven_steps::first_moment::{add_force_of_h, add_moment_of_h, subtract_weight_of_h};
 use crate::seven_steps::joint::JointLaws;
 use crate::seven_steps::link_frame::{Chain, LinkFrame};
 use crate::seven_steps::link_state::{Carried, ForceMoment, Joint, JointMotions, LinkLoad, LinkMotion};
@@ -62,8 +66,8 @@ fn angular_velocity<T: Scalar>(joint: &Joint<T>, parent: &LinkMotion<T>, this: &
 /// - revolute: ω̇_i = R_iᵀ ω̇_p + q̈_i e_i + q̇_i ω_i × e_i
 /// - prismatic: ω̇_i = R_iᵀ ω̇_p
 fn angular_acceleration<T: Scalar>(joint: &Joint<T>, parent: &LinkMotion<T>, this: &LinkMotion<T>) -> Vector3<T> {
-    let rigid = this.rotation.tr_mul(&parent.omega_dot);
-    joint.link.kind.angular_acceleration(rigid, &this.omega, joint.qd, joint.qdd)
+    let common = this.rotation.tr_mul(&parent.omega_dot);
+    joint.link.kind.angular_acceleration(common, &this.omega, joint.qd, joint.qdd)
 }
 
 /// Step 3: velocity of the centre of mass. No later step uses it.
@@ -76,9 +80,9 @@ fn velocity<T: Scalar>(
     parent_velocity: &Vector3<T>,
     this: &LinkMotion<T>,
 ) -> Vector3<T> {
-    let joint_origin = parent_velocity + parent.omega.cross(&joint.link.mount.r);
-    let rigid = this.rotation.tr_mul(&joint_origin) + this.omega.cross(&this.d);
-    joint.link.kind.velocity(rigid, joint.qd)
+    let velocity_of_j = parent_velocity + parent.omega.cross(&joint.link.mount.r);
+    let common = this.rotation.tr_mul(&velocity_of_j) + this.omega.cross(&this.d);
+    joint.link.kind.velocity(common, joint.qd)
 }
 
 /// Step 4: acceleration of the centre of mass, gravity not included.
@@ -87,10 +91,11 @@ fn velocity<T: Scalar>(
 /// - prismatic: the same + q̈_i e_i + 2 q̇_i ω_i × e_i
 fn acceleration<T: Scalar>(joint: &Joint<T>, parent: &LinkMotion<T>, this: &LinkMotion<T>) -> Vector3<T> {
     let r = &joint.link.mount.r;
-    let joint_origin = (parent.acceleration + parent.omega_dot.cross(r)) + parent.omega.cross(&parent.omega.cross(r));
-    let rigid = (this.rotation.tr_mul(&joint_origin) + this.omega_dot.cross(&this.d))
+    let acceleration_of_j =
+        (parent.acceleration + parent.omega_dot.cross(r)) + parent.omega.cross(&parent.omega.cross(r));
+    let common = (this.rotation.tr_mul(&acceleration_of_j) + this.omega_dot.cross(&this.d))
         + this.omega.cross(&this.omega.cross(&this.d));
-    joint.link.kind.acceleration(rigid, &this.omega, joint.qd, joint.qdd)
+    joint.link.kind.acceleration(common, &this.omega, joint.qd, joint.qdd)
 }
 
 /// Step 5: gravity.
@@ -107,11 +112,11 @@ fn gravity<T: Scalar>(parent: &LinkMotion<T>, this: &LinkMotion<T>) -> Vector3<T
 fn inertia_wrench<T: Scalar>(link: &LinkFrame<T>, this: &LinkMotion<T>) -> ForceMoment<T> {
     let force = this.acceleration * link.mass;
     let moment = link.inertia * this.omega_dot + this.omega.cross(&(link.inertia * this.omega));
-    ForceMoment { force: with_force(link, this, force), moment: with_moment(link, this, moment) }
+    // both return their last argument, unless the link has a first moment h, which the lecture does not have
+    ForceMoment { force: add_force_of_h(link, this, force), moment: add_moment_of_h(link, this, moment) }
 }
 
-/// Step 6, the balance: force and moment from the parent link, the moment about the origin of joint i. The sums
-/// run over the joints k that link i carries, and the tip; in a chain there is one of them.
+/// Step 6, the balance: force and moment from the parent link, the moment about J_i. The sums run over the joints k that link i carries, and the tip; in a chain there is one of them.
 ///
 /// - f_{p,i} = f_i + Σ R_k f_{i,k} - m_i g_i
 /// - n_{p,i} = n_i + Σ R_k n_{i,k} + d_i × f_{p,i} + Σ r_k × R_k f_{i,k}
@@ -123,7 +128,7 @@ fn joint_wrench<T: Scalar>(
     inertia: &ForceMoment<T>,
     carried: Option<&Carried<T>>,
 ) -> ForceMoment<T> {
-    let own = with_force(link, this, (this.acceleration - this.gravity) * link.mass);
+    let own = add_force_of_h(link, this, (this.acceleration - this.gravity) * link.mass);
     let (force, moment) = match carried {
         // the link carries neither a joint nor a tip
         None => (own, inertia.moment + this.d.cross(&own)),
@@ -133,7 +138,8 @@ fn joint_wrench<T: Scalar>(
             (force, ((inertia.moment + wrench.moment) + this.d.cross(&force)) + of_levers)
         }
     };
-    ForceMoment { force, moment: without_weight(link, this, moment) }
+    // - h_i × g_i, if the link has a first moment; otherwise the moment as it is
+    ForceMoment { force, moment: subtract_weight_of_h(link, this, moment) }
 }
 
 /// Step 7: what the actuator delivers is the element along the joint's axis.
@@ -184,9 +190,10 @@ pub(crate) fn velocities<S: Constant, T: Scalar>(
 }
 
 /// The backward pass, steps 6 and 7, from the ends to the base: each link hands its wrench on to its parent. `tip` is
-/// what the links of the tips exert there.
+/// the wrench that the last link exerts at the tip, f_{n,n+1} and n_{n,n+1} of the lecture, or one for each named tip.
 ///
-/// The base is left with what its joints ask of it.
+/// Returns the load of the base: `carried` is the sum of what the base exerts on the links that it carries; the other
+/// fields are zero.
 pub(crate) fn backward<S: Constant, T: Scalar>(
     chain: Chain<'_, S>,
     joints: JointMotions<'_, T>,
@@ -194,7 +201,7 @@ pub(crate) fn backward<S: Constant, T: Scalar>(
     tip: AtTip<'_, T>,
     loads: &mut [LinkLoad<T>],
 ) -> LinkLoad<T> {
-    // the load of the links of the tips: zero at a free tip
+    // first the wrench at each tip: zero at a free tip; that of a payload depends on the motion of its link
     tip.put(chain, motions, loads);
     let mut base = LinkLoad::empty();
     for (index, (link, this)) in chain.links().zip(motions).enumerate().rev() {
@@ -226,7 +233,7 @@ mod tests {
         Row { kind, dh, link: Link { mass, com: [0.1, -0.2, 0.3], inertia, first_moment: [0.0; 3] } }
     }
 
-    /// Torques of links by their parents, all moved by the same numbers.
+    /// τ of a robot with these links, each of which names its parent. All joints have the same q, q̇ and q̈.
     fn torques(links: &[LinkFrame<f64>], tip: &Mount<f64>) -> Vec<f64> {
         let (tip_link, spins) = (links.len().checked_sub(1), Spins::NONE);
         let chain = Chain { links, tip, tip_link, tips: &[], spins, floating_base: None };
@@ -241,8 +248,8 @@ mod tests {
         loads.iter().map(|load| load.tau).collect()
     }
 
-    /// A link that carries two equal branches feels each of them: twice what a chain has, less what the link alone
-    /// asks.
+    /// A link that carries two equal branches: its τ is twice that of the chain with one branch, minus that of the link
+    /// alone.
     #[test]
     fn a_link_may_carry_two_joints() {
         for convention in [Convention::Standard, Convention::Modified] {

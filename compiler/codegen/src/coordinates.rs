@@ -135,7 +135,7 @@ impl Coordinates {
     }
 
     /// The name of what a joint needs: a torque, or one part of those of the joints that it follows or that follow it.
-    pub(crate) fn torque(&self, joint: usize) -> Name {
+    pub(crate) fn name_of_torque(&self, joint: usize) -> Name {
         let is_alone = self.has(joint) && self.followers(joint).next().is_none();
         Name::scalar(if is_alone { Quantity::Torque } else { Quantity::AxisTorque }, joint + 1)
     }

@@ -18,8 +18,8 @@ use crate::arrays::{Axes, Given, Value};
 use crate::errors::{of_arm, of_evaluation, of_report};
 use crate::functions::evaluate;
 
-/// Methods of an arm that differ in what they compute alone: what Python writes for their arguments, the arguments, and
-/// then each method with its documentation.
+/// Defines methods of `Arm` that differ only in what they compute. It takes the signature and the arguments that all of
+/// them have, and then each method with its documentation.
 macro_rules! methods {
     ($signature:tt $arguments:tt -> $returned:ty; $($(#[$($about:tt)*])* $method:ident $body:tt)*) => {
         #[pymethods]
@@ -34,10 +34,10 @@ macro_rules! methods {
 }
 pub(crate) use methods;
 
-/// From what an arm was made: enough to make it again in another process.
+/// The texts and options from which an arm was made, so that another process can make it again.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Origin {
-    /// The file that is read, with the plan beside it; its text stands in `robot` afterwards.
+    /// The file to read, with the plan beside it. After reading, its text is in `robot`.
     pub(crate) file: Option<PathBuf>,
     pub(crate) robot: String,
     pub(crate) plan: Option<String>,
@@ -45,13 +45,13 @@ pub(crate) struct Origin {
     pub(crate) rotors: bool,
     pub(crate) run_time: Vec<String>,
     pub(crate) settings: BTreeMap<String, f64>,
-    /// Of a URDF: the joints that do not move, and where they stand.
+    /// For a URDF: the joints that are locked, and their positions.
     pub(crate) held: BTreeMap<String, f64>,
-    /// Of a URDF: what the import remarks, in sentences.
+    /// For a URDF: the remarks of the import, as sentences.
     pub(crate) notes: Vec<String>,
 }
 
-/// A form; the reduced one unless told.
+/// A form of the code; the default is the reduced one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FormOr(pub(crate) Form);
 
@@ -127,7 +127,7 @@ impl Arm {
         self.arm.robot()
     }
 
-    /// `standard` or `modified`.
+    /// Returns the convention of the rows: `standard` or `modified`.
     pub(crate) fn rows(&self) -> &'static str {
         match self.robot().convention {
             Convention::Standard => "standard",
@@ -156,7 +156,7 @@ impl Arm {
         })
     }
 
-    /// How many numbers an argument has for a state.
+    /// Returns how many numbers an argument has per state.
     pub(crate) fn elements(&self, argument: Argument) -> usize {
         argument.elements(rne_codegen::sizes_of(self.robot()))
     }
@@ -183,18 +183,18 @@ impl Arm {
         Given::matrix(name, axes, elements, value, known)
     }
 
-    /// A vector of the motion of the base; left out, it is zero, gravity that of the robot.
+    /// A vector of the motion of the base. If it is left out, it is zero; gravity is then that of the robot.
     pub(crate) fn of_base_motion<'py>(&self, name: &'static str, value: Option<&Bound<'py, PyAny>>) -> Given<'py> {
         let left_out = if name == "base_gravity" { self.robot().gravity } else { [0.0; 3] };
         value.map_or_else(|| Given::own(name, left_out.to_vec()), |value| Given::vector(name, 3, value.clone()))
     }
 
-    /// What the tip carries.
+    /// The payload at the tip.
     pub(crate) fn payload<'py>(&self, value: &Bound<'py, PyAny>) -> Given<'py> {
         Given::vector("payload", self.elements(Argument::Payload), value.clone())
     }
 
-    /// The pose of a base: homogeneous matrices, of which functions take twelve numbers.
+    /// The pose of a base, as homogeneous matrices. The compiled functions take twelve numbers of each.
     pub(crate) fn of_pose<'py>(&self, name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
         Given::matrix(name, Axes::Pose, self.elements(Argument::BasePose), value.clone(), String::new)
     }
@@ -204,7 +204,7 @@ impl Arm {
         Given::matrix(name, Axes::Rows(3), self.elements(Argument::BaseRotation), value.clone(), String::new)
     }
 
-    /// A function of joint arrays and whatever else it takes; of a pair of results a tuple.
+    /// Computes a function of joint arrays and other arguments. Several results are a tuple.
     pub(crate) fn compute<'py>(
         &self,
         py: Python<'py>,
@@ -216,7 +216,7 @@ impl Arm {
         self.compute_at(py, None, function, given, parameters, out)
     }
 
-    /// As `compute`, with a frame in the place of the tip.
+    /// Computes a function as `compute` does, with a frame in the place of the tip.
     pub(crate) fn compute_at<'py>(
         &self,
         py: Python<'py>,
@@ -239,7 +239,7 @@ impl Arm {
                 Some(value) => {
                     Given::vector(name, elements, by_name(value, || self.parameters(), name, "run-time parameter")?)
                 }
-                None => Given::own(name, run_time.values(self.robot())), // those of the file
+                None => Given::own(name, run_time.values(self.robot())), // the values in the robot file
             }));
         }
         if parameters.is_some() {
@@ -250,7 +250,7 @@ impl Arm {
         Ok(None)
     }
 
-    /// A program of a function, in a form.
+    /// Compiles a function in a form and returns the program.
     pub(crate) fn program(&self, function: &str, form: Option<&str>) -> PyResult<rne_codegen::Program> {
         let function = function_named(function)?;
         function.check_base(self.robot()).map_err(|error| of_evaluation(&error))?;
@@ -267,17 +267,18 @@ impl Arm {
     }
 }
 
-/// The function with a name, or a ValueError with those allowed.
+/// Returns the function with a name, or a ValueError that lists the names that exist.
 pub(crate) fn function_named(text: &str) -> PyResult<Function> {
     rne_codegen::function_named(text).map_err(|error| PyValueError::new_err(error.to_string()))
 }
 
-/// What a name says, or a ValueError with those allowed.
+/// Parses a name, or returns a ValueError that lists the names that exist.
 pub(crate) fn name<T: std::str::FromStr<Err = rne_codegen::UnknownName>>(text: &str) -> PyResult<T> {
     text.parse().map_err(|error: rne_codegen::UnknownName| PyValueError::new_err(error.to_string()))
 }
 
-/// The values of a dict in the order of names; what is no dict is an array already.
+/// Returns the values of a dict in the order of these names. Any other value is taken as an array and returned
+/// unchanged.
 fn by_name<'a, 'py>(
     value: &Bound<'py, PyAny>,
     names: impl Fn() -> Vec<&'a str>,

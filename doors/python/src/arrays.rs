@@ -1,4 +1,4 @@
-//! numpy's arrays as the arguments and results of the machine.
+//! Converts arrays of numpy to the arguments of compiled functions, and their results to arrays of numpy.
 
 mod given;
 mod memory;
@@ -19,32 +19,32 @@ pub(crate) use self::memory::{
 };
 use crate::pose::pose_of;
 
-/// Numbers of a payload without inertia: its mass, and its centre of mass.
+/// How many numbers describe a payload without inertia: its mass and its centre of mass.
 const POINT_MASS: usize = 4;
 
-/// An array that lives as long as it is computed with.
+/// The numbers of an argument, which are borrowed or copied for the duration of a call.
 pub(crate) struct Held<'py, T: Element> {
     name: &'static str,
     elements: usize,
     layout: Layout<'py, T>,
-    /// How many states it has; `None`: it is one row for all.
+    /// The number of states; `None` if it is one row for all states.
     pub(crate) states: Option<usize>,
 }
 
 enum Layout<'py, T: Element> {
-    /// State by state.
+    /// An array in which the numbers of a state are next to each other.
     Rows(PyReadonlyArrayDyn<'py, T>),
-    /// State by state, in memory of its own.
+    /// A copy in which the numbers of a state are next to each other.
     Own(Vec<T>),
-    /// Element by element.
+    /// An array in Fortran order, in which the numbers of an element are next to each other.
     Fortran(PyReadonlyArrayDyn<'py, T>),
-    /// An array for each element.
+    /// One array per element, as columns of Polars and PyArrow.
     Columns(Vec<PyReadonlyArrayDyn<'py, T>>),
 }
 
 impl<'py, T: Element + Number> Held<'py, T> {
-    /// Takes an array as it is where its layout allows, a copy where not; of columns of Polars and PyArrow likewise.
-    /// It has no byte of the memory that is `written`.
+    /// Reads an argument in place if its layout allows it, otherwise from a copy; columns of Polars and PyArrow
+    /// likewise. Returns an error if it shares a byte with the memory `written`.
     pub(crate) fn of(given: &Given<'py>, written: &Range<usize>) -> PyResult<Self> {
         let &Given { name, elements, axes, .. } = given;
         let held = |layout, states| Self { name, elements, layout, states };
@@ -90,7 +90,7 @@ impl<'py, T: Element + Number> Held<'py, T> {
             let rigid = matrices.map(|matrix| of_rigid(name, matrix)).collect::<PyResult<Vec<_>>>()?;
             return Ok(held(Layout::Own(rigid.concat()), states));
         }
-        // matrices have their rows side by side
+        // only vectors may be in Fortran order, because the rows of a matrix must be next to each other
         let is_fortran = !array.is_c_contiguous() && array.is_fortran_contiguous() && array.is_aligned();
         let is_fortran = is_fortran && axes == Axes::Vector;
         let array = readable(name, &if is_fortran { array } else { in_order(array)? })?;
@@ -108,13 +108,13 @@ impl<'py, T: Element + Number> Held<'py, T> {
         Ok(Self { name, elements, layout: Layout::Columns(columns), states })
     }
 
-    /// The slices of its columns, which [`array`](Self::array) is given.
+    /// Returns the slices of its columns, an argument of [`array`](Self::array).
     pub(crate) fn columns(&self) -> PyResult<Vec<&[T]>> {
         let Layout::Columns(columns) = &self.layout else { return Ok(Vec::new()) };
         columns.iter().map(|column| column.as_slice().map_err(|_| no_slice(self.name))).collect()
     }
 
-    /// The array for so many states: a single row is that of all.
+    /// Returns the array for this number of states. A single row is used for all of them.
     pub(crate) fn array<'a>(&'a self, states: usize, columns: &'a [&'a [T]]) -> PyResult<Array<'a, T>> {
         if let Some(found) = self.states.filter(|&found| found != states && found != 1) {
             return Err(PyValueError::new_err(format!(
@@ -143,7 +143,8 @@ impl<'py, T: Element + Number> Held<'py, T> {
         }
     }
 
-    /// Its numbers where they are one slice, state by state unless they are element by element.
+    /// Returns all numbers as one slice if the layout allows it: state by state, or element by element in Fortran
+    /// order.
     pub(crate) fn numbers(&self) -> PyResult<&[T]> {
         match &self.layout {
             Layout::Rows(array) | Layout::Fortran(array) => array.as_slice().map_err(|_| no_slice(self.name)),
@@ -152,7 +153,7 @@ impl<'py, T: Element + Number> Held<'py, T> {
         }
     }
 
-    /// The numbers of so many states, state by state.
+    /// Returns the numbers of `states` states, state by state.
     pub(crate) fn rows(&self, states: usize) -> PyResult<Vec<T>> {
         let columns = self.columns()?;
         Ok(match self.array(states, &columns)? {
@@ -168,7 +169,7 @@ impl<'py, T: Element + Number> Held<'py, T> {
         })
     }
 
-    /// Whether all its numbers pass a test.
+    /// Whether all numbers pass a test.
     pub(crate) fn all(&self, test: impl Fn(T) -> bool) -> bool {
         let pass = |numbers: &[T]| numbers.iter().all(|&number| test(number));
         match &self.layout {
@@ -186,18 +187,19 @@ impl<'py, T: Element + Number> Held<'py, T> {
     }
 }
 
-/// A shape as Python writes it.
+/// Writes a shape as Python does.
 pub(crate) fn shape_in_words(shape: &[usize]) -> String {
     let numbers: Vec<String> = shape.iter().map(ToString::to_string).collect();
     if numbers.len() == 1 { format!("({},)", numbers[0]) } else { format!("({})", numbers.join(", ")) }
 }
 
-/// An array that cannot be a slice: it is copied before, or refused.
+/// The error for an array that is not contiguous or not aligned.
 fn no_slice(name: &str) -> PyErr {
     PyValueError::new_err(format!("`{name}` is not contiguous, or not aligned"))
 }
 
-/// The twelve numbers of a pose, of the sixteen of a homogeneous matrix.
+/// Returns the twelve numbers of a pose from the sixteen of a homogeneous matrix, or an error if it is not a rigid
+/// pose.
 fn of_rigid<T: Number>(name: &str, matrix: &[T]) -> PyResult<[T; 12]> {
     let pose = pose_of(matrix);
     if !(Pose { rotation: pose.rotation.map(|row| row.map(Into::into)), translation: [0.0; 3] }).is_rigid() {
@@ -215,13 +217,13 @@ fn of_rigid<T: Number>(name: &str, matrix: &[T]) -> PyResult<[T; 12]> {
     Ok([a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], x, y, z])
 }
 
-/// The pose that twelve numbers are.
+/// Returns the pose that twelve numbers describe.
 pub(crate) fn pose_of_twelve<T: Copy>(numbers: &[T]) -> Pose<T> {
     let three = |at: usize| [numbers[at], numbers[at + 1], numbers[at + 2]];
     Pose { rotation: [three(0), three(3), three(6)], translation: three(9) }
 }
 
-/// What `rne.columns` sees of a column or a table; `None` of all else.
+/// Returns a column or a table as `rne.columns` reads it; `None` for any other value.
 fn seen<'py>(name: &str, elements: usize, value: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
     if is_array(value) || !is_arrow(value) {
         return Ok(None);
@@ -230,7 +232,7 @@ fn seen<'py>(name: &str, elements: usize, value: &Bound<'py, PyAny>) -> PyResult
     Ok((!views.is_none()).then_some(views))
 }
 
-/// How many states the arguments have; `None` where all are one row.
+/// Returns how many states the arguments have; `None` if each of them is one row for all states.
 pub(crate) fn states<T: Element + Number>(held: &[Held<'_, T>]) -> PyResult<Option<usize>> {
     let mut states = None;
     for held in held {
@@ -246,7 +248,7 @@ pub(crate) fn states<T: Element + Number>(held: &[Held<'_, T>]) -> PyResult<Opti
     Ok(states)
 }
 
-/// The error for an array of this shape.
+/// Returns the error for an array of a wrong shape.
 fn wrong_shape(&Given { name, elements, axes, .. }: &Given<'_>, shape: &[usize]) -> PyErr {
     let shape = shape_in_words(shape);
     PyValueError::new_err(match axes {

@@ -1,6 +1,6 @@
-//! The motion of a floating base in the vectors of other tools, as arguments of
-//! `Arm.inverse_dynamics_of_floating_base`, and its derivatives as their matrices: docs/reference/conventions.md has
-//! the table of these conventions.
+//! Converts the motion of a floating base from the vectors of other tools to arguments of
+//! `Arm.inverse_dynamics_of_floating_base`, and its derivatives to the matrices of these tools.
+//! docs/reference/conventions.md has a table of the conventions.
 
 use numpy::PyUntypedArrayMethods;
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -10,27 +10,27 @@ use rne::{BaseMotion, Pose};
 
 use crate::arrays::{array_of, in_order, readable, shape_in_words, taken};
 
-/// A quaternion that is written with three digits has the length 1 but for this.
+/// The largest difference of a quaternion's length from 1: that of a quaternion written with three digits.
 const MOST_ROUNDED: f64 = 1e-3;
 
-/// An argument whose last axes are those of one state.
+/// An argument as an array, whose last axes are those of one state and whose first axes count the states.
 struct Numbers {
     name: &'static str,
     shape: Vec<usize>,
     elements: Vec<f64>,
-    /// How many of the axes are those of one state.
+    /// How many of the last axes belong to one state.
     axes: usize,
-    /// The first element of a vector that counts.
+    /// The index of the first element of a vector that is used.
     begin: usize,
 }
 
 impl Numbers {
-    /// Vectors of at least `least` elements, or matrices with at least as many columns.
+    /// Reads vectors of at least `least` elements, or matrices with at least as many columns.
     fn of(name: &'static str, value: &Bound<'_, PyAny>, axes: usize, least: usize) -> PyResult<Self> {
         Self::after(0, name, value, axes, least)
     }
 
-    /// The same, of which the elements from `begin` on count.
+    /// Reads vectors as `of` does, of which the elements from `begin` on are used.
     fn after(begin: usize, name: &'static str, value: &Bound<'_, PyAny>, axes: usize, least: usize) -> PyResult<Self> {
         let least = begin + least;
         let array = in_order(taken::<f64>(name, value, &(0..0))?)?;
@@ -46,12 +46,12 @@ impl Numbers {
         Ok(Self { name, shape, elements, axes, begin })
     }
 
-    /// The axes of the states.
+    /// The axes that count the states.
     fn leading(&self) -> &[usize] {
         &self.shape[..self.shape.len() - self.axes]
     }
 
-    /// The numbers of a state; one state is that of all.
+    /// Returns the numbers of one state. An argument with one state has the same numbers for all states.
     fn at(&self, state: usize) -> &[f64] {
         let size = self.shape[self.leading().len()..].iter().product::<usize>();
         let states = self.elements.len() / size.max(1);
@@ -64,7 +64,8 @@ impl Numbers {
 }
 
 impl Numbers {
-    /// Refuses positions of a base whose quaternion, with its elements in this order, has not the length 1.
+    /// Returns an error if the quaternion in the positions of a base does not have the length 1. `order` names the
+    /// order of its elements, for the message.
     fn with_unit_quaternion(self, order: &str) -> PyResult<Self> {
         let size = self.shape.last().copied().unwrap_or(1).max(1);
         let (first, end) = (self.begin + 3, self.begin + 7);
@@ -81,7 +82,7 @@ impl Numbers {
     }
 }
 
-/// The axes of the states that all arguments have, of which some may have one state alone.
+/// Returns the axes of the states that all arguments share. An argument may also have one state, which is used for all.
 fn states_of<'a>(all: &[&'a Numbers]) -> PyResult<&'a [usize]> {
     let is_one = |numbers: &&&Numbers| numbers.leading().iter().product::<usize>() == 1;
     let many = all.iter().find(|numbers| !is_one(numbers));
@@ -100,7 +101,7 @@ fn states_of<'a>(all: &[&'a Numbers]) -> PyResult<&'a [usize]> {
     Ok(first.leading())
 }
 
-/// The motions of the states as keywords of `Arm.inverse_dynamics_of_floating_base`.
+/// Returns the motions of all states as a dict of keywords for `Arm.inverse_dynamics_of_floating_base`.
 fn told<'py>(
     py: Python<'py>,
     given: &[&Numbers],
@@ -119,8 +120,9 @@ fn told<'py>(
     Ok(told)
 }
 
-/// Gravity in the axes in which the tool has the orientation of the base, and where the base begins in positions and in
-/// velocities. The function `base_of` of the module `rne.models` reads them from the model of the tool.
+/// Returns gravity, and the indices at which the base begins in the positions and in the velocities. Gravity is in the
+/// axes to which the tool refers the orientation of the base. The function named `base_of` in the module `rne.models`
+/// reads them from the model of the tool.
 fn base_of(
     py: Python<'_>,
     base_of: &str,
@@ -187,8 +189,9 @@ pub(crate) fn base_from_imu<'py>(
     })
 }
 
-/// Functions that tell the motion of the base of a model from its vectors: their names, those of the vectors, what
-/// finds the base of a model, the order of a quaternion there, and the conversion.
+/// Defines Python functions that compute the motion of the base of a model from its vectors. For each it takes the
+/// name, the names of the vectors, the name of the function that finds the base in a model, the order of the
+/// quaternion's elements, and the conversion.
 macro_rules! base_from_vectors {
     ($(
         $(#[$($about:tt)*])*
@@ -295,7 +298,7 @@ pub(crate) fn derivatives_to_pinocchio<'py>(
     for state in 0..leading.iter().product() {
         let (q, a): ([f64; 7], _) = (q.first(state), [0.0; 6]);
         let v: [f64; 6] = v.first(state);
-        // Pinocchio holds gravity in world axes, and its spatial acceleration a - ω × v
+        // in Pinocchio, gravity is in world axes, and the spatial acceleration is a - ω × v
         let base = BaseMotion::from_pinocchio(&q, &v, &a, gravity.first(state));
         let of_row = |matrix: &Numbers, row| {
             let columns = *matrix.shape.last().unwrap_or(&0);

@@ -1,5 +1,5 @@
-//! The functions of the class `Arm`: arrays in, arrays out. They are those of the compiler's table: `build.rs` writes
-//! them.
+//! The functions of the class `Arm`, from arrays to arrays. `build.rs` writes these methods from the compiler's table
+//! of functions.
 
 use pyo3::prelude::*;
 use rne_codegen::{Argument, Function, Length, Record, Shape};

@@ -23,7 +23,7 @@ create_exception!(
 );
 create_exception!(rne, EvaluationError, PyValueError, "A function cannot be computed for this arm or these arguments.");
 
-/// What is wrong with a file.
+/// Returns the exception for the errors in a file.
 pub(crate) fn of_report(py: Python<'_>, report: &Report) -> PyErr {
     let report = &report.clone().worded(in_keywords);
     let error = RobotFileError::new_err(report.render(false));
@@ -36,8 +36,8 @@ pub(crate) fn of_report(py: Python<'_>, report: &Report) -> PyErr {
     told.err().unwrap_or(error)
 }
 
-/// A remedy as keywords of `rne.load`.
-#[allow(clippy::unnecessary_wraps)] // what a report asks for
+/// Returns a remedy in terms of the keywords of `rne.load`.
+#[allow(clippy::unnecessary_wraps)] // a report needs a function with this type
 pub(crate) fn in_keywords(remedy: &Remedy) -> Option<String> {
     Some(match remedy {
         Remedy::ImportUrdf { .. } => "rne.load(path) imports a URDF".to_owned(),
@@ -56,7 +56,7 @@ pub(crate) fn in_keywords(remedy: &Remedy) -> Option<String> {
     })
 }
 
-/// Why there is no arm.
+/// Returns the exception for an arm that could not be compiled.
 pub(crate) fn of_arm(py: Python<'_>, error: &ArmError) -> PyErr {
     match error {
         ArmError::Invalid(report) => of_report(py, report),
@@ -65,7 +65,7 @@ pub(crate) fn of_arm(py: Python<'_>, error: &ArmError) -> PyErr {
     }
 }
 
-/// Why no description of an arm was opened.
+/// Returns the exception for a description of an arm that could not be opened.
 pub(crate) fn of_opening(error: OpenError) -> PyErr {
     match &error {
         OpenError::NotFound { path, hint: Some(hint), error } => of_system(path, error, &format!("; {hint}")),
@@ -74,7 +74,8 @@ pub(crate) fn of_opening(error: OpenError) -> PyErr {
     }
 }
 
-/// An error of the system with a hint, so that Python makes it a FileNotFoundError where it is one.
+/// Returns an error of the system with a hint. By its number Python makes it the right subclass, such as
+/// FileNotFoundError.
 fn of_system(path: &Path, error: &std::io::Error, hint: &str) -> PyErr {
     let words = error.to_string();
     let words = words.split(" (os error").next().unwrap_or_default().to_owned() + hint;
@@ -84,7 +85,7 @@ fn of_system(path: &Path, error: &std::io::Error, hint: &str) -> PyErr {
     }
 }
 
-/// Why nothing was computed.
+/// Returns the exception for a function that could not be computed.
 pub(crate) fn of_evaluation(error: &dyn std::fmt::Display) -> PyErr {
     EvaluationError::new_err(error.to_string())
 }

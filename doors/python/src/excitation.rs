@@ -1,4 +1,4 @@
-//! A motion that excites an arm.
+//! Finds a motion that excites an arm, for identification.
 
 use std::time::{Duration, Instant};
 
@@ -13,10 +13,10 @@ use crate::interruption::check_signals;
 use crate::log_errors::of_excitation;
 use crate::logs::{robot_of, rows};
 
-/// Samples of a motion, at most.
+/// The largest number of samples of a motion.
 const MOST: f64 = 500_000.0;
 
-/// Time between two looks at signals.
+/// Time between two checks for signals.
 const MOMENT: Duration = Duration::from_millis(100);
 
 /// The options of a search, from the dict that the package makes of its keywords.
@@ -141,12 +141,12 @@ pub(crate) fn exciting<'py>(py: Python<'py>, arm: PyRef<'_, Arm>, asked: Asked) 
                 return true;
             }
             looked = Instant::now();
-            // Ctrl-C ends the search, and the best motion so far is worth having
+            // after Ctrl-C the search ends, and the best motion so far is returned
             check_signals().is_ok()
         })
     });
     let found = found.map_err(|error| of_excitation(&error))?;
-    // whole steps, none of them longer than those of the rate
+    // a whole number of steps, none of them longer than the sampling rate asks for
     let steps = (asked.seconds * asked.rate * (1.0 - 1e-12)).ceil().max(1.0) as u32;
     let mut time = Vec::new();
     let mut states = [Vec::new(), Vec::new(), Vec::new()];

@@ -11,7 +11,8 @@ use crate::arm::{Arm, methods};
 use crate::arrays::{Given, Held, are_single, array_of};
 
 impl Arm {
-    /// The numbers viscous, odd, even and width of each joint.
+    /// Returns the coefficients of each joint's friction: viscous, odd, even and width. `width` replaces that of the
+    /// robot file.
     fn friction(&self, width: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<[f64; 4]>> {
         let number = |width: &Bound<'_, PyAny>| {
             let number = if width.is_instance_of::<PyBool>() { None } else { width.extract::<f64>().ok() };
@@ -37,7 +38,7 @@ impl Arm {
         Ok(frictions.iter().map(JointFriction::numbers).collect())
     }
 
-    /// A law of each joint at its velocity.
+    /// Evaluates a law of friction at the velocity of each joint.
     fn at_velocities<'py>(
         &self,
         qd: &Bound<'py, PyAny>,
@@ -54,7 +55,7 @@ impl Arm {
     }
 }
 
-/// What becomes of each number of an argument, with its place.
+/// Applies a function to each number of an argument, with the index of the number.
 fn of_each<'py, T: Element + Number>(
     py: Python<'py>,
     given: &Given<'py>,
@@ -88,7 +89,7 @@ methods! {
     /// Returns N m, or N for a sliding joint: shape (n,) or (N, n).
     friction_torques {
         self.at_velocities(qd, width, |qd, [viscous, odd, even, width]| {
-            let s = qd / qd.hypot(width); // whose squares may be too large
+            let s = qd / qd.hypot(width); // `hypot`, because the squares may overflow
             viscous * qd + odd * s + even * s * s
         })
     }

@@ -1,4 +1,4 @@
-//! A function of an arm over numpy's arrays.
+//! Computes functions of an arm with arrays of numpy.
 
 use std::ffi::CString;
 use std::ops::Range;
@@ -13,15 +13,15 @@ use rne_codegen::{Answer, Length, Record, Shape, Sizes};
 use crate::arrays::{Given, Held, are_single, memory, room, states, writable};
 use crate::errors::of_evaluation;
 
-/// The shape of a part of a result for one state, as numpy users expect it.
+/// Returns the shape of a part of a result for one state, as numpy users expect it.
 fn shape_of(part: &Shape, sizes: Sizes) -> Vec<usize> {
     const TRIPLE: Shape = Shape::Array(Length::Fixed(3), &Shape::Number);
     match part {
         Shape::Number => Vec::new(),
         Shape::Array(length, of_each) => [vec![length.of(sizes)], shape_of(of_each, sizes)].concat(),
-        // homogeneous matrices
+        // a pose becomes a homogeneous matrix
         Shape::Record(Record::Pose, _) => vec![4, 4],
-        // force, then moment
+        // a wrench becomes six numbers: force, then moment
         Shape::Record(_, parts) if **parts == [TRIPLE; 2] => vec![6],
         Shape::Record(_, parts) => {
             [vec![parts.len()], parts.first().map_or(Vec::new(), |part| shape_of(part, sizes))].concat()
@@ -29,7 +29,7 @@ fn shape_of(part: &Shape, sizes: Sizes) -> Vec<usize> {
     }
 }
 
-/// The parts of a record, if they have different shapes: they stand one after the other.
+/// Returns the parts of a record if they have different shapes. Then the result has their numbers one after the other.
 fn unlike(shape: &Shape) -> Option<&'static [Shape]> {
     match *shape {
         Shape::Record(record, parts) if record != Record::Pose => {
@@ -39,20 +39,20 @@ fn unlike(shape: &Shape) -> Option<&'static [Shape]> {
     }
 }
 
-/// The shape of a result for one state, as numpy users expect it.
+/// Returns the shape of a result for one state, as numpy users expect it.
 fn shape(function: Function, arm: &CompiledArm) -> Vec<usize> {
     if unlike(function.shape()).is_some() {
         return vec![arm.layout(function).len()];
     }
     let found = shape_of(function.shape(), rne_codegen::sizes_of(arm.robot()));
     match found[..] {
-        // a column per parameter: Y @ parameters are torques
+        // one column per parameter, so that Y @ parameters gives torques
         [rows, bodies, parameters] if function.is_of_every_link() => vec![rows, bodies * parameters],
         _ => found,
     }
 }
 
-/// Computes a function: arrays of single precision give single precision, everything else double.
+/// Computes a function. If all arrays are in single precision, the result is too; otherwise it is in double precision.
 pub(crate) fn evaluate<'py>(
     py: Python<'py>,
     arm: &CompiledArm,
@@ -68,7 +68,7 @@ pub(crate) fn evaluate<'py>(
     }
 }
 
-/// Computes a function of some states.
+/// Computes a function of `count` states.
 pub(crate) fn run<T: Number>(
     arm: &CompiledArm,
     function: Function,
@@ -82,7 +82,8 @@ pub(crate) fn run<T: Number>(
     arm.run(function, count, arguments, Destination::Rows(numbers))
 }
 
-/// Warns where single precision is not enough for a function. What cannot be compiled is told by who computes it.
+/// Warns if single precision is not enough for a function. If the function cannot be compiled, the later evaluation
+/// returns the error.
 pub(crate) fn warn_of_loss(py: Python<'_>, arm: &CompiledArm, function: Function) -> PyResult<()> {
     let Some(loss) = py.detach(|| arm.function(function)).ok().and_then(|compiled| compiled.program().loss) else {
         return Ok(());
@@ -143,7 +144,7 @@ pub(crate) fn computed<'py, T: Element + Number>(
     Ok((result, many))
 }
 
-/// Elements of the last axis of the results, of each state in this shape.
+/// Returns the elements in a range of the last axis of the results, where those of each state get this shape.
 fn part<'py, T: Element>(
     result: &Bound<'py, PyArrayDyn<T>>,
     many: Option<usize>,
@@ -163,7 +164,7 @@ fn part<'py, T: Element>(
     Ok(part.cast::<PyArrayDyn<T>>()?.reshape(whole)?.into_any())
 }
 
-/// The homogeneous matrix of a pose: three rows of the rotation, then the origin.
+/// Writes the homogeneous matrix of a pose, whose numbers are the three rows of the rotation and then the origin.
 pub(crate) fn homogeneous<T: Number>(pose: &[T], matrix: &mut [T]) {
     for row in 0..3 {
         matrix[4 * row..][..3].copy_from_slice(&pose[3 * row..][..3]);
@@ -172,7 +173,7 @@ pub(crate) fn homogeneous<T: Number>(pose: &[T], matrix: &mut [T]) {
     matrix[12..].copy_from_slice(&[T::zero(), T::zero(), T::zero(), T::one()]);
 }
 
-/// A new array that has so many numbers for each result, of this shape, which `write` makes of the result's numbers.
+/// Returns a new array with a block of this shape for each state, which `write` computes from the numbers of the state.
 pub(crate) fn rewritten<'py, T: Element + Number>(
     result: &Bound<'py, PyArrayDyn<T>>,
     many: Option<usize>,
@@ -191,7 +192,8 @@ pub(crate) fn rewritten<'py, T: Element + Number>(
     Ok(made.into_any())
 }
 
-/// A and B of the rows of q_dq, q_dv, q_dtau, v_dq, v_dv and v_dtau, one behind the other.
+/// Returns the matrices A and B of a linear model from the rows of q_dq, q_dv, q_dtau, v_dq, v_dv and v_dtau, which
+/// follow each other.
 fn linear_model<'py, T: Element + Number>(
     result: &Bound<'py, PyArrayDyn<T>>,
     many: Option<usize>,
@@ -213,7 +215,7 @@ fn linear_model<'py, T: Element + Number>(
     Ok(PyTuple::new(result.py(), [a?, b?])?.into_any())
 }
 
-/// The array of all results as the user has them: records are tuples of arrays.
+/// Returns the results in the form for Python: a record becomes a tuple of arrays.
 fn as_python<'py, T: Element + Number>(
     arm: &CompiledArm,
     function: Function,
@@ -240,7 +242,7 @@ fn as_python<'py, T: Element + Number>(
         }
         Shape::Record(record, all) if record != Record::Pose => {
             if let Some(all) = unlike(function.shape()) {
-                // a record in the first place stands there by its parts
+                // the parts of a record in the first place are elements of the tuple themselves
                 let (first, rest) = all.split_at(1);
                 let first = first.iter().flat_map(|part| unlike(part).unwrap_or(std::slice::from_ref(part)));
                 let sizes = rne_codegen::sizes_of(arm.robot());
@@ -258,7 +260,7 @@ fn as_python<'py, T: Element + Number>(
     }
 }
 
-/// The arguments of a call: the arrays of Python as those of the machine, for a number of states.
+/// Returns the arguments of a call for the compiled arm, from the arrays of Python.
 fn arguments<'a, T: Element + Number>(
     given: &[Given<'_>],
     held: &'a [Held<'_, T>],
@@ -279,7 +281,7 @@ fn arguments<'a, T: Element + Number>(
     Ok(arguments)
 }
 
-/// A number for an array without axes.
+/// Turns an array without axes into a number.
 fn finished<T: Element>(result: Bound<'_, PyArrayDyn<T>>, is_number: bool) -> PyResult<Bound<'_, PyAny>> {
     if is_number { result.into_any().get_item(()) } else { Ok(result.into_any()) }
 }

@@ -1,6 +1,6 @@
-//! Functions of an arm on a graphics card: `Arm.gpu` stands on it, in `rne/gpu.py`.
+//! Functions of an arm on a graphics card. The Python module `rne/gpu.py` builds `Arm.gpu` from them.
 //!
-//! Arrays on the card are addresses here. `rne/gpu.py` checks what they are before it gives them on.
+//! Arrays on the card are addresses here. `rne/gpu.py` checks the arrays before it passes their addresses.
 
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
@@ -15,7 +15,7 @@ use crate::errors::of_evaluation;
 use crate::functions::warn_of_loss;
 use crate::xla::results;
 
-/// The cards that are open: their context is kept as long as the process lives, as other libraries do it.
+/// The cards that were opened. They stay open until the process ends, as in other libraries.
 static DEVICES: Mutex<Option<HashMap<usize, Device>>> = Mutex::new(None);
 
 /// An arm on a graphics card.
@@ -24,7 +24,8 @@ pub(crate) struct GpuArm {
     arm: rne_gpu::GpuArm,
 }
 
-/// The arguments of a function with their numbers of elements, and the shapes of its results. The flag marks poses.
+/// The arguments of a function with their numbers of elements, and the shapes of its results, each with a flag for
+/// poses.
 type Told = (Vec<(&'static str, usize)>, Vec<(Vec<usize>, bool)>);
 
 fn of_gpu(error: &GpuError) -> PyErr {
@@ -108,9 +109,10 @@ impl GpuArm {
         let order = if is_columns { Order::Columns } else { Order::Rows };
         let rollout = rollout.map(|(steps, step, every)| GpuRollout { steps, step, every });
         let (arm, arguments, results) = (&self.arm, &arguments[..], &results[..]);
-        // SAFETY: `rne/gpu.py` has read the addresses from the arrays of a library, with their shapes, number type,
-        // order and card, and keeps the arrays until the launch has been queued; libraries free memory in the order of
-        // the stream. That nobody else writes to the arrays meanwhile is the caller's duty, as for all arrays on cards.
+        // SAFETY: `rne/gpu.py` has read the addresses from the arrays of a library, has checked their shapes, number
+        // type, order and card, and keeps the arrays until the launch is queued; libraries free memory in the order of
+        // the stream. The caller must ensure that nobody else writes to the arrays meanwhile, as for all arrays on
+        // cards.
         let launched = py.detach(|| match (rollout, is_double) {
             (None, false) => unsafe { arm.launch::<f32>(function, order, states, arguments, results, stream) },
             (None, true) => unsafe { arm.launch::<f64>(function, order, states, arguments, results, stream) },
@@ -137,7 +139,7 @@ impl Arm {
     #[pyo3(signature = (device=None), text_signature = "($self, device=0)")]
     fn gpu<'py>(slf: &Bound<'py, Self>, device: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         let gpu = slf.py().import("rne.gpu")?.getattr("Gpu")?;
-        // `rne/gpu.py` says what is wrong with a number of a card
+        // `rne/gpu.py` reports a wrong number of a card
         device.map_or_else(|| gpu.call1((slf,)), |device| gpu.call1((slf, device)))
     }
 }

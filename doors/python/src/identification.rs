@@ -18,10 +18,10 @@ use crate::log_errors::{of_arm_log, of_pass};
 use crate::logs::{Reading, Said, robot_of, said};
 use crate::reply::dict_of;
 
-/// States of a picture.
+/// The largest number of states that a picture shows.
 const DRAWN: u64 = 4000;
 
-/// Errors of a robot on a part of a log.
+/// The errors of a robot's predicted torques on a part of a log.
 pub(crate) struct Judged {
     pub(crate) errors: Vec<JointError>,
     pub(crate) extent: JudgedPart,
@@ -40,7 +40,7 @@ impl Judged {
     }
 }
 
-/// Measured and predicted torques of a part of a log.
+/// Returns a picture of the measured and predicted torques of a part of a log.
 fn picture(
     robot: &Robot,
     log: &ArmLog,
@@ -69,7 +69,7 @@ fn picture(
     Ok(comparison_svg(robot, &of))
 }
 
-/// What was computed without the interpreter.
+/// The results, which are computed while other threads of Python may run.
 struct Found {
     identification: Identification,
     verdict: Verdict,
@@ -135,7 +135,7 @@ fn dict<'py>(py: Python<'py>, found: &Found, paths: &[PathBuf]) -> PyResult<Boun
     reply.set_item("words", &found.words)?;
     reply.set_item("remarks", &found.remarks)?;
     reply.set_item("picture", &found.picture)?;
-    // a model of which nothing is known is no file
+    // if nothing was identified, there is no robot file
     let text = identification.is_anything_excited().then(|| identification.robot_file(&found.words));
     reply.set_item("robot_file", text)?;
     Ok(reply)

@@ -1,4 +1,5 @@
-//! What the class `Arm` tells of itself: code, counts, parameters, slips, better plans, pages.
+//! Methods of the class `Arm` about its code: annotated and generated code, counts of operations, parameters, likely
+//! mistakes in another tool's torques, better plans, and pages.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -17,13 +18,13 @@ use crate::arrays::refuse_masked;
 use crate::errors::of_evaluation;
 use crate::notebook;
 
-/// An array of ten numbers in each row.
+/// Returns an array of numpy with ten numbers in each row.
 fn rows(py: Python<'_>, parameters: Vec<[f64; 10]>) -> PyResult<Bound<'_, PyAny>> {
     let parameters: Vec<Vec<f64>> = parameters.into_iter().map(Vec::from).collect();
     py.import("numpy")?.call_method1("array", (parameters,))
 }
 
-/// Refuses what is composed of calls of functions, with the function that CasADi can compose it from.
+/// Returns an error for a method that is a composition of several functions, and says how to get it in CasADi.
 fn is_no_composition(function: &str) -> PyResult<()> {
     let instead = match function {
         "runge_kutta_step" | "runge_kutta_step_derivatives" => {
@@ -42,7 +43,7 @@ fn is_no_composition(function: &str) -> PyResult<()> {
 }
 
 impl Arm {
-    /// Adds the functions by which CasADi's derivatives of the others are computed, each once.
+    /// Adds the functions from which CasADi's derivatives of these functions are computed, each once.
     fn add_derivatives(functions: &mut Vec<String>) -> PyResult<()> {
         for asked in functions.clone() {
             for needed in rne_emit::casadi_derivatives(function_named(&asked)?) {
@@ -286,7 +287,7 @@ impl Arm {
                     told = Instant::now();
                     Python::attach(|py| {
                         if py.check_signals().is_err() {
-                            // the plan so far is worth having: Ctrl-C ends the search, not the program
+                            // after Ctrl-C the search ends, but the best plan so far is still returned
                             failed = Some(Ok(()));
                         } else if let Some(progress) = &progress
                             && let Err(error) = progress.call1(py, (so_far.share, so_far.operations))

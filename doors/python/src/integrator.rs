@@ -1,4 +1,4 @@
-//! Steps of the classical Runge-Kutta method, by functions of the machine.
+//! Steps of the classical Runge-Kutta method, by functions of the compiled arm.
 
 mod floating_base;
 
@@ -15,13 +15,13 @@ use crate::errors::of_evaluation;
 use crate::functions::run;
 use rne_codegen::CheckFor as _;
 
-/// A matrix by rows.
+/// A matrix, row by row.
 type Matrix<T> = Vec<Vec<T>>;
 
-/// A and B.
+/// The matrices A and B of a linear model.
 type Model<T> = [Matrix<T>; 2];
 
-/// A homogeneous matrix, the twist, q and qd; and A and B, if they were asked for.
+/// The homogeneous matrix of the base, its twist, q and qd; then A and B, if they were requested.
 type Moved<T> = (Vec<Vec<T>>, Option<Model<T>>);
 
 methods! {
@@ -105,7 +105,7 @@ methods! {
     }
 }
 
-/// The steps that are asked for.
+/// The steps of a call, with the arm and the arguments.
 struct Steps<'a, 'py> {
     arm: &'a CompiledArm,
     given: Vec<Given<'py>>,
@@ -165,7 +165,7 @@ impl<'py> Steps<'_, 'py> {
 /// The numbers of all arguments, state by state.
 struct Rows<T> {
     many: Option<usize>,
-    /// The name, how many numbers a state has, and the numbers.
+    /// For each argument its name, how many numbers it has per state, and all its numbers.
     rows: Vec<(&'static str, usize, Vec<T>)>,
 }
 
@@ -175,7 +175,7 @@ impl<T: Element + Number> Rows<T> {
         let many = states(&held)?;
         let of_each = |held: &Held<'_, T>| Ok((held.name(), held.elements(), held.rows(many.unwrap_or(1))?));
         let rows = Self { many, rows: held.iter().map(of_each).collect::<PyResult<_>>()? };
-        // the machine is given the accelerations alone
+        // `step` is checked here, because the compiled arm only computes accelerations and never reads it
         let mut steps = rows.all("step").iter();
         steps
             .try_for_each(|&step| OutOfRange::check("step", |_| Some(step.into())))
@@ -183,7 +183,7 @@ impl<T: Element + Number> Rows<T> {
         Ok(rows)
     }
 
-    /// The numbers of an argument at some states.
+    /// Returns the numbers of an argument in one state.
     fn at(&self, name: &str, state: usize) -> &[T] {
         let found = self.rows.iter().find(|(own, ..)| *own == name);
         found.map_or(&[], |(_, elements, numbers)| &numbers[state * elements..][..*elements])
@@ -193,7 +193,7 @@ impl<T: Element + Number> Rows<T> {
         self.rows.iter().find(|(own, ..)| *own == name).map_or(&[], |(.., numbers)| numbers)
     }
 
-    /// The arguments of the states of a range, without those of the state itself.
+    /// Returns the arguments of a range of states, except the positions and velocities, which change within a step.
     fn arguments(&self, from: usize, count: usize) -> Arguments<'_, T> {
         let named = self.rows.iter().filter(|(name, ..)| ["tau", "wrenches", "payload", "parameters"].contains(name));
         named.fold(Arguments::new(), |arguments, (name, elements, numbers)| {
@@ -220,7 +220,7 @@ impl<T: Element + Number> Rows<T> {
             let arguments = self.arguments(from, count).q(Array::Rows(q)).qd(Array::Rows(qd));
             computed(arm, function, &arguments, count)
         };
-        // states from one on
+        // computes one step of `count` states, the first of which is the state `from`
         let next = |from: usize, count: usize, [q, qd]: &[Vec<T>; 2]| {
             let accelerations = |q: &Vec<T>, qd: &Vec<T>| of_states(from, count, dynamics, q, qd);
             integrators::runge_kutta_step(accelerations, [q, qd], |at| step[from + at / dof])
@@ -260,7 +260,7 @@ impl<T: Element + Number> Rows<T> {
         PyTuple::new(py, [q?, qd?])
     }
 
-    /// The arrays of A and of B.
+    /// Returns the arrays of the matrices A and B of all states.
     fn models<'py>(
         &self,
         py: Python<'py>,
@@ -274,7 +274,7 @@ impl<T: Element + Number> Rows<T> {
     }
 }
 
-/// A function of some states.
+/// Computes a function of some states and returns the results.
 fn computed<T: Number>(
     arm: &CompiledArm,
     function: Function,
@@ -286,7 +286,7 @@ fn computed<T: Number>(
     Ok(found)
 }
 
-/// A and B of the derivatives of positions and velocities by q, by q̇ and by τ.
+/// Returns A and B from the derivatives of positions and velocities with respect to q, q̇ and τ.
 fn side_by_side<T: Copy>(found: [[Matrix<T>; 3]; 2]) -> Model<T> {
     let (mut a, mut b) = (Matrix::new(), Matrix::new());
     for [dq, dqd, dtau] in found {
@@ -296,7 +296,7 @@ fn side_by_side<T: Copy>(found: [[Matrix<T>; 3]; 2]) -> Model<T> {
     [a, b]
 }
 
-/// The model of a step after those before it.
+/// Returns the linear model of all steps from that of the steps before and that of the last step.
 fn chained<T: Number>(before: Option<Model<T>>, [a, b]: Model<T>) -> Model<T> {
     let Some([by_x, by_u]) = before else { return [a, b] };
     let product = |with: &Matrix<T>, added: Option<&Matrix<T>>| {

@@ -1,4 +1,4 @@
-//! Long work without the interpreter's lock, which Ctrl-C ends.
+//! Runs long work without the interpreter's lock, so that Ctrl-C can end it.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -6,20 +6,20 @@ use std::time::{Duration, Instant};
 
 use pyo3::prelude::*;
 
-/// Time between two looks at signals.
+/// Time between two checks for signals.
 const MOMENT: Duration = Duration::from_millis(20);
 
-/// An exception of a signal's handler, on its way out of the work.
+/// The exception of a signal's handler, as the payload of the panic that ends the work.
 struct Interrupted(PyErr);
 
-/// Runs the handlers of signals that have come, from work without the lock.
-#[allow(clippy::redundant_closure_for_method_calls)] // the method is of one lifetime
+/// Runs the handlers of signals that have arrived. Work that does not have the interpreter's lock calls it.
+#[allow(clippy::redundant_closure_for_method_calls)] // the method itself has only one lifetime
 pub(crate) fn check_signals() -> PyResult<()> {
     Python::attach(|py| py.check_signals())
 }
 
-/// Does work without the lock. The work reports progress; a signal whose handler raises ends it there, by unwinding,
-/// for readers of logs cannot be told to stop.
+/// Runs work without the interpreter's lock. The work reports progress. If the handler of a signal raises then, the
+/// work ends by a panic that is caught here, because readers of logs have no other way to stop.
 pub(crate) fn interruptible<T: Send>(
     py: Python<'_>,
     work: impl Send + FnOnce(&mut dyn FnMut(f64)) -> T,

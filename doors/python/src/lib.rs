@@ -1,10 +1,10 @@
-//! Python's door to rne: any arm at run time, with numpy in and out.
+//! The Python interface of rne: any arm at run time, with arrays of numpy as arguments and results.
 //!
-//! Thin: [`arm`] has the class, [`dynamics`], [`operational_space`], [`pose`], [`rollout`], [`integrator`],
-//! [`friction`] and [`insight`] its methods, [`arrays`] what numpy's arrays are to the machine, [`xla`] what those of
-//! JAX are and `gpu` what those on a graphics card are, [`load`] how an arm is read, [`errors`] what goes wrong.
-//! [`logs`], [`identification`], [`watching`] and [`excitation`] are about logs of arms; [`log_errors`] words what goes
-//! wrong there, and [`interruption`] lets Ctrl-C end them. The package around it is in `rne/`.
+//! [`arm`] has the class `Arm`, and [`dynamics`], [`operational_space`], [`pose`], [`rollout`], [`integrator`],
+//! [`friction`] and [`insight`] have its methods. Arrays of numpy are converted in [`arrays`], those of JAX in [`xla`],
+//! and those on a graphics card in `gpu`. [`load`] reads an arm, and [`errors`] makes exceptions. [`logs`],
+//! [`identification`], [`watching`] and [`excitation`] are about logs of arms; [`log_errors`] words their errors, and
+//! [`interruption`] lets Ctrl-C end them. The Python files of the package are in `rne/`.
 
 mod arm;
 mod arrays;

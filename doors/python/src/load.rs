@@ -1,4 +1,4 @@
-//! An arm from a robot file, a URDF, an MJCF file, their texts, or the box.
+//! Loads an arm from a robot file, a URDF or an MJCF file, from their texts, or from the shipped robots.
 
 use std::collections::BTreeMap;
 use std::ffi::CString;
@@ -148,10 +148,10 @@ fn convention_named(convention: Option<&str>, whole: bool) -> PyResult<Conventio
     }
 }
 
-/// The arm of a robot file, with the warnings of its lints.
+/// Returns the arm of a robot file, and gives the warnings of its lints.
 fn of_robot_file(py: Python<'_>, origin: Origin, given: Given, name: &str) -> PyResult<Arm> {
     let origin = match given {
-        // with the plan beside it
+        // `Arm::of` also reads the plan beside it
         Given::File(path) => Origin { file: Some(path), ..origin },
         Given::Text(text) => Origin { robot: text, ..origin },
     };
@@ -161,7 +161,7 @@ fn of_robot_file(py: Python<'_>, origin: Origin, given: Given, name: &str) -> Py
     Ok(arm)
 }
 
-/// The arm of an import, with its warnings.
+/// Returns the arm of an import, and gives its warnings.
 fn of_import(py: Python<'_>, origin: Origin, imported: &Imported, name: &str, whole: bool) -> PyResult<Arm> {
     let held = imported.account.held.iter().cloned().collect();
     let snapping = imported.account.snapping().map(|told| format!("{told}; `snap=False` keeps the angles of the file"));
@@ -174,18 +174,18 @@ fn of_import(py: Python<'_>, origin: Origin, imported: &Imported, name: &str, wh
     let (warnings, remarks): (Vec<_>, Vec<_>) = said.map(|(warns, text)| (warns.then(|| text.clone()), text)).unzip();
     let notes = snapping.into_iter().chain(floats).chain(remarks).collect();
     let arm = Arm::of(py, Origin { robot: imported.text.clone(), held, notes, ..origin })?;
-    // nobody has written the lines of this robot file, and `snap` has decided on its angles; of inertias, the lines of
-    // the URDF say more
+    // nobody has written the numbers of this robot file by hand, and `snap` has rounded its angles; about inertias, the
+    // remarks on the URDF say more
     let said = [Some("rounded?"), Some("violates the triangle inequality")];
     warn_of(py, &imported.account.lints, |lint| (!said.contains(&lint.label.as_deref())).then(|| name.to_owned()))?;
     warn(py, name, warnings.into_iter().flatten().map(|text| format!("{name}: {text}")).collect())?;
     Ok(arm)
 }
 
-/// Largest number of warnings about one file.
+/// The largest number of warnings about one file.
 const WARNED: usize = 8;
 
-/// Warns of each lint, behind its place; of a lint without a place not.
+/// Warns of each lint, after its place. Lints without a place are left out.
 fn warn_of(py: Python<'_>, lints: &Report, place: impl Fn(&Diagnostic) -> Option<String>) -> PyResult<()> {
     let lints = lints.clone().worded(in_keywords);
     let said = lints.warnings().filter_map(|lint| {
@@ -195,7 +195,7 @@ fn warn_of(py: Python<'_>, lints: &Report, place: impl Fn(&Diagnostic) -> Option
     warn(py, &lints.name, said.collect())
 }
 
-/// Gives these warnings about the file `name`, the first of them where there are many.
+/// Gives warnings about the file `name`, only the first ones if there are many.
 fn warn(py: Python<'_>, name: &str, mut said: Vec<String>) -> PyResult<()> {
     let more = said.len().saturating_sub(WARNED);
     said.truncate(WARNED);
@@ -206,7 +206,7 @@ fn warn(py: Python<'_>, name: &str, mut said: Vec<String>) -> PyResult<()> {
     said.into_iter().try_for_each(|text| PyErr::warn(py, &category, &CString::new(text)?, 1))
 }
 
-/// One link or several.
+/// The argument `tip`: one link or several.
 #[derive(FromPyObject)]
 pub(crate) enum Tips {
     One(String),
@@ -226,7 +226,7 @@ impl Given {
                 Err(_) => Err(PyTypeError::new_err("`source` is a path or a text: str or os.PathLike")),
             };
         };
-        // no path has a line break, and no text of an arm has none
+        // a path has no line break, while the text of an arm has one, unless it is XML or JSON
         if text.contains('\n') || text.trim_start().starts_with(['<', '{']) {
             return Ok(Self::Text(text));
         }
@@ -235,12 +235,12 @@ impl Given {
 }
 
 impl Origin {
-    /// The origin with the robot file of a shipped robot and its plan.
+    /// Returns this origin with the robot file and the plan of a shipped robot.
     fn shipped(self, file: &rne_robots::RobotFile) -> Self {
         Self { robot: file.yaml.to_owned(), plan: file.plan.map(str::to_owned), ..self }
     }
 
-    /// The table as a reader of this origin reads it, with its lints.
+    /// Reads a robot file with the parameters of this origin, and returns its lints, too.
     pub(crate) fn read(&self, name: &str, text: &[u8]) -> Result<Checked, Report> {
         let names: Vec<&str> = self.run_time.iter().map(String::as_str).collect();
         let reader = Reader::new(name).trees().couplings().loops().run_time(&names);

@@ -6,12 +6,13 @@ use rne_identify::{ArmLogError, ArmLogRemark, ExcitationError, Mismatch, PassErr
 use rne_logs::{LogError, Mapping, Remark, Remedy, Setting, suggested};
 use rne_watch::WatchError;
 
-/// An error of a log. Files that cannot be opened are OSErrors of the package, before.
+/// Returns the exception for an error of a log. Files that cannot be opened are an OSError, which the Python package
+/// raises before.
 pub(crate) fn of_log(error: &LogError, joints: &[String]) -> PyErr {
     PyValueError::new_err(sentence(error, joints))
 }
 
-/// An error of the logs of an arm.
+/// Returns the exception for an error of the logs of an arm.
 pub(crate) fn of_arm_log(error: &ArmLogError) -> PyErr {
     let text = match error {
         ArmLogError::Log { error, joints } => return of_log(error, joints),
@@ -29,7 +30,7 @@ pub(crate) fn of_arm_log(error: &ArmLogError) -> PyErr {
     PyValueError::new_err(text)
 }
 
-/// Why a pass over logs ended.
+/// Returns the exception for an error that ended a pass over logs.
 pub(crate) fn of_pass<E: std::fmt::Display>(error: PassError<E>) -> PyErr {
     match error {
         PassError::Log(error) => of_arm_log(&error),
@@ -37,7 +38,7 @@ pub(crate) fn of_pass<E: std::fmt::Display>(error: PassError<E>) -> PyErr {
     }
 }
 
-/// Why nothing is watched; `words` name the logs.
+/// Returns the exception for logs that cannot be watched; `words` name the logs.
 pub(crate) fn of_watch(error: &WatchError, words: &str) -> PyErr {
     match error {
         WatchError::Log(error) => of_arm_log(error),
@@ -46,7 +47,7 @@ pub(crate) fn of_watch(error: &WatchError, words: &str) -> PyErr {
     }
 }
 
-/// Why there is no motion that excites an arm.
+/// Returns the exception if no motion that excites an arm is found.
 pub(crate) fn of_excitation(error: &ExcitationError) -> PyErr {
     PyValueError::new_err(match error {
         ExcitationError::NoPosition { .. } => format!("{error} with range=…"),
@@ -57,7 +58,7 @@ pub(crate) fn of_excitation(error: &ExcitationError) -> PyErr {
     })
 }
 
-/// A remark with the keywords that help.
+/// Returns the text of a remark, with the Python keywords that help.
 pub(crate) fn remark(remark: &ArmLogRemark) -> String {
     match remark {
         ArmLogRemark::Log(remark) => log_remark(remark),
@@ -68,7 +69,7 @@ pub(crate) fn remark(remark: &ArmLogRemark) -> String {
     }
 }
 
-/// A remark on a log with the keywords that help.
+/// Returns the text of a remark on a log, with the Python keywords that help.
 pub(crate) fn log_remark(remark: &Remark) -> String {
     let keywords = match remark {
         Remark::MayBeDegrees { .. } => {
@@ -101,7 +102,7 @@ fn sentence(error: &LogError, joints: &[String]) -> String {
     [error.to_string()].into_iter().chain(remedies).collect::<Vec<_>>().join("; ")
 }
 
-/// Mappings as the keyword `map`.
+/// Writes mappings of columns as the keyword `map`.
 fn map(mappings: &[Mapping]) -> String {
     let each = mappings.iter().map(|mapping| format!("{:?}: {:?}", mapping.target.to_string(), mapping.column));
     format!("map={{{}}}", each.collect::<Vec<_>>().join(", "))

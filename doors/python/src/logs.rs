@@ -77,13 +77,14 @@ impl Reading {
         })
     }
 
-    /// The options of logs of an arm that are read for a purpose.
+    /// Returns the options for logs of an arm, which are read for a purpose.
     pub(crate) fn of_arm(&self, purpose: Purpose) -> PyResult<ArmLogOptions> {
         Ok(ArmLogOptions { log: self.options()?, purpose })
     }
 }
 
-/// The robot of an arm whose torques a log may have: of one with free parameters nobody knows them.
+/// Returns the robot of an arm, to compare it with the torques of logs. If the arm has free parameters, its torques are
+/// not known, which is an error.
 pub(crate) fn robot_of(arm: &Arm) -> PyResult<Robot> {
     if arm.robot().run_time.is_empty() {
         return Ok(arm.robot().clone());
@@ -98,7 +99,7 @@ pub(crate) fn said(remarks: &[ArmLogRemark]) -> Vec<Said> {
     remarks.iter().map(|of| (of.is_warning(), remark(of))).collect()
 }
 
-/// A log that was opened, by the joints of an arm where one is given.
+/// Opens a log. If an arm is given, the columns of its joints are selected.
 fn open(paths: &[PathBuf], robot: Option<&Robot>, mut options: Options) -> PyResult<(Log, Option<ArmLogRemark>)> {
     let mut matched = None;
     if let Some(robot) = robot {
@@ -131,7 +132,7 @@ pub(crate) fn log_content<'py>(
     dict_of(py, &content)
 }
 
-/// All filtered states of a log: of each quantity the numbers of one state after those of another.
+/// All filtered states of a log. Each quantity has the numbers of one state after those of another.
 #[derive(Default)]
 struct States {
     time: Vec<f64>,
@@ -152,7 +153,7 @@ impl States {
     }
 }
 
-/// An array of the shape (states, joints).
+/// Returns an array of the shape (states, joints).
 pub(crate) fn rows(py: Python<'_>, numbers: Vec<f64>, joints: usize) -> PyResult<Bound<'_, PyAny>> {
     let states = numbers.len() / joints.max(1);
     numpy::PyArray1::from_vec(py, numbers).call_method1("reshape", ((states, joints),))

@@ -1,4 +1,4 @@
-//! What a notebook shows of an arm.
+//! The cell that a notebook shows for an arm.
 
 use std::fmt::Write as _;
 
@@ -8,7 +8,7 @@ use rne_codegen::Program;
 use rne_emit::{Heading, Selection};
 use rne_model::{JointKind, Robot};
 
-/// Of whose counts a notebook has a row.
+/// The functions whose counts of operations a notebook shows.
 const COUNTED: [Function; 6] = [
     Function::InverseDynamics,
     Function::GravityTorques,
@@ -18,8 +18,9 @@ const COUNTED: [Function; 6] = [
     Function::InverseDynamicsDerivatives,
 ];
 
-/// The table, the counts of some functions, and the annotated torques of the seven steps, joint by joint. Some tens of
-/// kilobytes, and no script: it is kept in the notebook, and shown where notebooks are not trusted.
+/// Returns HTML with the table, the counts of some functions, and the annotated torques of the seven steps, joint by
+/// joint. It has some tens of kilobytes and no script, so it can be kept in the notebook and shown where notebooks are
+/// not trusted.
 pub(crate) fn cell(robot: &Robot, rows: &str, program: impl Fn(&str, &str) -> PyResult<Program>) -> PyResult<String> {
     let mut html = table(robot, rows);
     html += &counts(&program);
@@ -27,7 +28,7 @@ pub(crate) fn cell(robot: &Robot, rows: &str, program: impl Fn(&str, &str) -> Py
     for (index, joint) in robot.joints.iter().enumerate() {
         let what = Selection { joint: Some(index + 1), explain: true, ..Selection::default() };
         let listing = rne_emit::listing(robot, &torques, what).to_string();
-        // the table and the counts stand above
+        // the listing begins with the table and the counts, which are shown above already
         let code = listing.find("    //").map_or("", |start| &listing[start..]);
         let code: Vec<&str> = code.lines().map(|line| line.strip_prefix("    ").unwrap_or(line)).collect();
         let _ = write!(
@@ -47,13 +48,13 @@ fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 
-/// The rows of the table.
+/// Returns the table of the robot as HTML.
 fn table(robot: &Robot, rows: &str) -> String {
     let title = escape(robot.title.as_deref().unwrap_or(&robot.name));
     let (on, places) = if robot.is_serial() {
         ("", String::new())
     } else {
-        // where rows begin, and where the tip is
+        // for a tree, the link on which each row begins, and where the tip is
         ("<th>on", format!("<p>{}</p>", escape(&Heading::of(robot).frames).replace('\n', "<br>")))
     };
     let mut html = format!(
@@ -94,12 +95,12 @@ fn table(robot: &Robot, rows: &str) -> String {
     html + "</table>"
 }
 
-/// How many operations some functions have.
+/// Returns a table of the numbers of operations of some functions.
 fn counts(program: impl Fn(&str, &str) -> PyResult<Program>) -> String {
     let mut html = "<table><tr><th>operations<th>form<th>mul<th>add<th>div<th>sin/cos</tr>".to_owned();
     for function in COUNTED {
         for form in Form::ALL {
-            // what cannot be compiled, for it divides by zero, has no row
+            // a function that cannot be compiled, because it divides by zero, has no row
             let Ok(program) = program(function.name(), form.name()) else { continue };
             let counts = program.operations();
             let _ = write!(

@@ -12,7 +12,7 @@ use crate::arrays::{room, writable};
 /// Rows of a Jacobian: three linear ones, then three angular ones.
 const ROWS: usize = 6;
 
-/// Which of both is computed.
+/// The matrix that is computed: the operational-space inertia, or the inverse of the Jacobian.
 #[derive(Clone, Copy, PartialEq)]
 enum Returned {
     Inertia,
@@ -70,7 +70,7 @@ methods! {
 }
 
 impl Arm {
-    /// M and J of the states, of one type of numbers.
+    /// Returns the mass matrix M and the Jacobian J of all states, with the same type of numbers.
     fn mass_and_jacobian<'py>(
         &self,
         py: Python<'py>,
@@ -88,20 +88,20 @@ impl Arm {
         let mass = self.compute(py, of_mass, given, parameters, None)?;
         let given = vec![self.of_joints("q", q)?];
         let jacobian = self.compute_at(py, frame, Function::Jacobian, given, parameters, None)?;
-        // a payload in double precision beside positions in single precision
+        // M is in double precision if only the payload is, while J has the single precision of the positions
         if mass.cast::<PyArrayDyn<f64>>().is_ok() && jacobian.cast::<PyArrayDyn<f64>>().is_err() {
             return Ok([mass, jacobian.call_method1("astype", ("float64",))?]);
         }
         Ok([mass, jacobian])
     }
 
-    /// The rows of the Jacobian that are asked for.
+    /// Returns the rows of the Jacobian that the task controls, after a check of the argument `rows`.
     fn task(&self, rows: Option<Vec<i64>>, frame: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<usize>> {
         let robot = self.robot();
         let frame = frame.map(|frame| self.frame_name(frame)).transpose()?;
         let id = frame.as_ref().map(|name| robot.frame(name)).transpose();
         let id = id.map_err(|unknown| PyValueError::new_err(unknown.to_string()))?;
-        // the joints from the base to the link that carries the frame
+        // the joints from the base to the link that carries the frame, which are those that move it
         let on = id.map_or_else(|| robot.tip(), |id| robot.fixed_frame(id)).on;
         let moving = std::iter::successors(on, |&joint| robot.parent(joint)).count();
         let given = rows.unwrap_or_else(|| (0..6).collect());
@@ -155,7 +155,7 @@ fn computed<'py, T: Element + Number + Scalar>(
         Returned::Inertia => [task, task],
         Returned::Inverse => [dof, task],
     };
-    // the mass matrix has all states: the Jacobian has none of the payload's
+    // the axes of the states are those of M, because J does not depend on a payload, which may have many states
     let states = mass.shape().len().checked_sub(2).and_then(|axes| mass.shape().get(..axes)).unwrap_or_default();
     let shape = [states, &of_state].concat();
     let result = room::<T>(py, out, &shape)?;

@@ -34,7 +34,7 @@ pub(crate) fn payload<'py>(
     let allowed = "a symmetric tensor of shape (3, 3), in kg m²";
     let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = numbers("inertia", inertia, &[3, 3], allowed)?;
     NegativeMass::check(mass).map_err(|error| PyValueError::new_err(error.to_string()))?;
-    // as far as digits of a file say
+    // the two triangles of the tensor may differ as much as digits of a file are rounded
     let is_other = |(one, other): (f64, f64)| (one - other).abs() > 1e-8 + 1e-5 * one.abs().min(other.abs());
     if [(xy, yx), (xz, zx), (yz, zy)].into_iter().any(is_other) {
         return Err(PyValueError::new_err("`inertia` is a symmetric tensor of shape (3, 3)"));
@@ -43,7 +43,8 @@ pub(crate) fn payload<'py>(
     array_of(py, &[], &[10], vec![mass, x, y, z, xx, yy, zz, xy, xz, yz])
 }
 
-/// Finite numbers of a shape, or an error that names the argument and what it may be. What is left out is zero.
+/// Reads finite numbers of a shape. An error names the argument and the values that it may have. Numbers that are left
+/// out are zero.
 fn numbers<const N: usize>(
     name: &'static str,
     value: Option<&Bound<'_, PyAny>>,
@@ -79,7 +80,7 @@ fn numbers<const N: usize>(
     found.try_into().map_err(|_| PyValueError::new_err(format!("`{name}` must be {allowed}")))
 }
 
-/// What was computed without the interpreter.
+/// The results, which are computed while other threads of Python may run.
 struct Found {
     payload: Payload,
     without: Judged,

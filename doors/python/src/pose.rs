@@ -70,7 +70,7 @@ impl Arm {
     }
 }
 
-/// Homogeneous matrices in double precision, state by state.
+/// Returns an array of homogeneous matrices in double precision, or an error for another shape.
 fn matrices<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     refuse_masked(name, value)?;
     let array = match value.cast::<PyArrayDyn<f64>>() {
@@ -96,18 +96,18 @@ fn matrices<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, P
     }
 }
 
-/// The shape without the axes of the matrices.
+/// Returns the shape without the last two axes, which are those of the matrices.
 fn leading<'a>(matrices: &'a Bound<'_, PyArrayDyn<f64>>) -> &'a [usize] {
     &matrices.shape()[..matrices.shape().len() - 2]
 }
 
-/// The pose of a homogeneous matrix of 16 numbers, row by row.
+/// Returns the pose of a homogeneous matrix, which is given by its 16 numbers, row by row.
 pub(crate) fn pose_of<T: Copy>(numbers: &[T]) -> Pose<T> {
     let row = |index: usize| [numbers[4 * index], numbers[4 * index + 1], numbers[4 * index + 2]];
     Pose { rotation: [row(0), row(1), row(2)], translation: [numbers[3], numbers[7], numbers[11]] }
 }
 
-/// Writes six numbers for each state.
+/// Writes the six numbers of each state to an array.
 fn write(room: &Bound<'_, PyArrayDyn<f64>>, results: impl Iterator<Item = [f64; 6]>) -> PyResult<()> {
     let mut writable = writable(room)?;
     let numbers = writable.as_slice_mut().map_err(|error| PyValueError::new_err(error.to_string()))?;

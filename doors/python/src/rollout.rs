@@ -79,7 +79,7 @@ impl Arm {
         let mut given = vec![self.of_joints("q", q)?, self.of_joints("qd", qd)?, self.of_joints("tau", tau)?];
         given.extend(payload.map(|payload| self.payload(payload)));
         given.extend(self.given_parameters(parameters)?);
-        // lists follow the arrays among the arguments
+        // arrays alone decide on the precision; lists follow them
         let is_single = are_single(&given);
         let shapes = [shape_of(&given[0])?, shape_of(&given[1])?];
         let (steps, samples) = steps_of(&mut given[2], dof)?;
@@ -99,7 +99,7 @@ impl Arm {
     }
 }
 
-/// The number of steps, and that of samples where the torques have this axis.
+/// Returns the number of steps, and the number of samples if the torques have an axis for them.
 fn steps_of(tau: &mut Given<'_>, dof: usize) -> PyResult<(usize, Option<usize>)> {
     let Some(shape) = shape_of(tau)? else {
         return Err(PyTypeError::new_err("`tau` is not an array of real numbers"));
@@ -118,7 +118,7 @@ fn steps_of(tau: &mut Given<'_>, dof: usize) -> PyResult<(usize, Option<usize>)>
     Ok((steps, samples))
 }
 
-/// The shape of an argument; `None` of what is no array of real numbers, which is refused later.
+/// Returns the shape of an argument; `None` if it is not an array of real numbers, for which an error follows later.
 fn shape_of(given: &Given<'_>) -> PyResult<Option<Vec<usize>>> {
     match &given.value {
         Value::Of(value) => arrays::shape_of(value),
@@ -126,7 +126,8 @@ fn shape_of(given: &Given<'_>) -> PyResult<Option<Vec<usize>>> {
     }
 }
 
-/// Refuses torques of another number of samples than a state has: their axes may be in another order.
+/// Returns an error if the torques and a state have different numbers of samples: the axes of the torques may be in the
+/// wrong order.
 fn agree(name: &str, shape: &[usize], samples: Option<usize>, steps: usize, dof: usize) -> PyResult<()> {
     match (shape, samples) {
         (&[states, joints], Some(samples)) if joints == dof && states > 1 && states != samples => {
@@ -139,7 +140,7 @@ fn agree(name: &str, shape: &[usize], samples: Option<usize>, steps: usize, dof:
     }
 }
 
-/// Warns where limits or friction are asked for and no joint has any.
+/// Warns if limits or friction are requested but no joint has any.
 fn warn_of_nothing(py: Python<'_>, robot: &Robot, rollout: &Rollout) -> PyResult<()> {
     let RolloutLimits { effort, velocity, position } = rollout.limits;
     let has_limit = robot.coordinate_limits().iter().any(|limits| {
@@ -165,17 +166,18 @@ fn is_finite<T: Number>(number: T) -> bool {
     number.is_finite()
 }
 
-/// A sample whose state is no number any more.
+/// The first sample whose state is no longer finite.
 struct Diverged {
     sample: usize,
-    /// Counted from 0.
+    /// The step after which it is not finite; the first is 0.
     step: usize,
-    /// How many samples are so.
+    /// The number of samples whose state is not finite.
     samples: usize,
 }
 
 impl Diverged {
-    /// The sample that is first not finite, of states of T steps of n joints; `None` where all states are finite.
+    /// Finds the sample that is not finite after the fewest steps, in states of T steps of n joints. `None` if all
+    /// states are finite.
     fn of<T: Number>(positions: &[T], velocities: &[T], [steps, dof]: [usize; 2]) -> Option<Self> {
         let length = (steps * dof).max(1);
         let states = positions.chunks_exact(length).zip(velocities.chunks_exact(length)).enumerate();
@@ -188,7 +190,7 @@ impl Diverged {
         Some(Self { sample: first.1, step: first.0, samples })
     }
 
-    /// Says which sample and step, and what to change.
+    /// Warns with the number of the sample and of the step, and with a remedy.
     fn warn(&self, py: Python<'_>, rollout: &Rollout) -> PyResult<()> {
         let Self { sample, step, samples } = self;
         let others = if *samples > 1 { format!("; {samples} samples are not finite") } else { String::new() };
@@ -207,7 +209,7 @@ impl Diverged {
     }
 }
 
-/// The width of Coulomb friction.
+/// Returns the width of Coulomb friction that the keyword `friction` requests; `None` without friction.
 fn width(value: &Bound<'_, PyAny>) -> PyResult<Option<FrictionWidth>> {
     if let Ok(is_there) = value.cast::<PyBool>() {
         return Ok(is_there.is_true().then_some(FrictionWidth::OfFile));
@@ -221,7 +223,7 @@ fn width(value: &Bound<'_, PyAny>) -> PyResult<Option<FrictionWidth>> {
     Ok(Some(FrictionWidth::Of(width)))
 }
 
-/// The limits that hold.
+/// Returns the limits that the keyword `limits` selects.
 fn which(value: &Bound<'_, PyAny>) -> PyResult<RolloutLimits> {
     if let Ok(hold) = value.cast::<PyBool>() {
         return Ok(if hold.is_true() { RolloutLimits::ALL } else { RolloutLimits::NONE });

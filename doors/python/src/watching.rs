@@ -1,4 +1,4 @@
-//! Watching an arm by its logs, with the keys of `rne watch --json`.
+//! Finds changes of an arm from its logs, and reports them with the keys of `rne watch --json`.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -17,18 +17,18 @@ use crate::log_errors::{of_arm_log, of_pass, of_watch};
 use crate::logs::{Reading, Said, robot_of, said};
 use crate::reply::dict_of;
 
-/// N m or N: what is left of an effort where nothing is.
+/// The largest residual of an effort that counts as zero, N m or N.
 const NOTHING: f64 = 1e-9;
 
-/// What later logs are compared with.
+/// The baseline with which later logs are compared.
 struct Known {
     baseline: Baseline,
     words: String,
-    /// The text of its file; of a log that is its own baseline there is none.
+    /// The text of the baseline file; `None` if the log is its own baseline.
     text: Option<String>,
 }
 
-/// What logs are compared with, as it was given.
+/// The baseline that the caller asked for.
 enum Comparison {
     /// The robot file.
     File,
@@ -81,7 +81,7 @@ fn open(
     ArmLog::open_with_progress(paths, robot, &options, look).map_err(|error| of_arm_log(&error))
 }
 
-/// Remarks that nobody has made.
+/// Adds the remarks on a log that have not been made yet.
 fn add(remarks: &mut Vec<Said>, log: &ArmLog) {
     for remark in said(log.remarks()) {
         if !remarks.contains(&remark) {
@@ -90,33 +90,33 @@ fn add(remarks: &mut Vec<Said>, log: &ArmLog) {
     }
 }
 
-/// How far the torques of a robot are from those of a log, by joint.
+/// Returns, for each joint, how far the predicted torques differ from those of a log.
 fn prediction_errors(robot: &Robot, log: &ArmLog, look: &mut dyn FnMut(f64)) -> PyResult<Vec<JointError>> {
     let mut prediction = Prediction::new(robot, Some(log.cutoff()));
     log.pass_with_progress(Part::All, &mut |motion| prediction.absorb(motion), look).map_err(of_pass)?;
     Ok(prediction.errors())
 }
 
-/// The joints whose torques are no better predicted than by their mean, but those of which the file says that nothing
-/// is known: a rule of `rne watch`.
+/// Returns the names of the joints whose torques the model predicts no better than their mean does. Joints about which
+/// the robot file says that nothing is known are left out, as in `rne watch`.
 fn unexplained(robot: &Robot, errors: &[JointError]) -> String {
     let each = robot.independent_joints().zip(errors).zip(Identification::not_excited(robot));
     let found = each.filter(|((_, error), unknown)| {
-        // an effort that does not change, and is what the model says, is explained
+        // an effort that is constant and equal to the prediction counts as explained
         let is_nothing = error.deviation == 0.0 && error.residual <= NOTHING;
         !unknown && !is_nothing && (error.error >= 1.0 || error.error.is_nan())
     });
     found.map(|((joint, _), _)| one_line(&joint.name)).collect::<Vec<_>>().join(", ")
 }
 
-/// The baseline of a first log, with which others are compared if nothing else is known.
+/// Returns the baseline of the first log, with which the others are compared if no other baseline is given.
 fn of_first(robot: &Robot, name: &str, log: &ArmLog, look: &mut dyn FnMut(f64)) -> PyResult<Known> {
     let structure = Baseline::structure(robot, log.cutoff());
     let baseline = Baseline::of_parameters(&structure, log, look).map_err(|error| of_watch(&error, &log.summary()))?;
     Ok(Known { baseline, words: format!("the first, {name}"), text: None })
 }
 
-/// A log that is its own baseline, compared with the robot file.
+/// Returns the baseline that a log is for itself, compared with the robot file.
 fn of_file(robot: &Robot, log: &ArmLog, look: &mut dyn FnMut(f64)) -> PyResult<Known> {
     let baseline = Baseline::of_file(robot, log, look).map_err(|error| of_watch(&error, &log.summary()))?;
     Ok(Known { baseline, words: "the robot file".to_owned(), text: None })
@@ -131,7 +131,7 @@ struct Watched {
     picture: String,
 }
 
-/// The comparison, by the keywords: quiet logs, the text of a baseline, or neither.
+/// Returns the comparison that the keywords ask for: quiet logs, the text of a baseline, or neither.
 fn comparison(
     py: Python<'_>,
     robot: &Robot,
@@ -217,7 +217,7 @@ pub(crate) fn followed<'py>(
     let Some((name, first)) = groups.first() else { return Err(PyValueError::new_err("there is no log")) };
     let mut remarks = Vec::new();
     let found = interruptible(py, |look| {
-        // the first log is what the others are compared with, if nothing else is known
+        // without another baseline, the first log is the one with which the others are compared
         let known = match comparison.known(&robot, &reading, &Settings::default(), &mut remarks, look)? {
             Some(known) => known,
             None => of_first(&robot, name, &open(first, &robot, &reading, None, look)?, look)?,
@@ -237,7 +237,8 @@ pub(crate) fn followed<'py>(
                     trend.push(name.clone(), &found);
                     events.push(found.events);
                 }
-                // one log of many, such as that of a morning on which the arm stood still
+                // a log that cannot be evaluated, such as one on which the arm stood still, does not end the trend over
+                // the others
                 Err(error) if Python::attach(|py| error.is_instance_of::<PyValueError>(py)) => {
                     let reason = Python::attach(|py| error.value(py).to_string());
                     remarks.push((true, format!("{name} is not compared: {reason}")));

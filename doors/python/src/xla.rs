@@ -1,4 +1,4 @@
-//! Functions of an arm for XLA, the compiler of JAX: `Arm.jax` stands on it, in `rne/xla.py`.
+//! Functions of an arm for XLA, the compiler of JAX. The Python module `rne/xla.py` builds `Arm.jax` from them.
 //!
 //! XLA's foreign-function interface calls a C function with the addresses of its arrays. [`border`] makes slices of
 //! them, and [`compute`] gives these to the machine, which reads and writes them where they are. The attributes of a
@@ -19,7 +19,7 @@ use rne_codegen::{Layout, Record};
 
 use crate::arm::Arm;
 
-/// The arms that XLA may call, by the names that calls have for them.
+/// The arms that XLA may call, by the names that calls use for them.
 static ARMS: LazyLock<RwLock<HashMap<String, CompiledArm>>> = LazyLock::new(RwLock::default);
 
 /// What XLA calls, with one function for all arms, where XLA has this version of its interface.
@@ -28,14 +28,15 @@ pub(crate) fn xla_handler(py: Python<'_>, major: i32, minor: i32) -> PyResult<Bo
     border::capsule(py, (major, minor))
 }
 
-/// An operand of a function: its name, its shape for one state, and the arrays of the machine that it is made of.
+/// An operand of a function in XLA: its name, its shape for one state, and the arguments of the compiled arm that it
+/// consists of.
 struct Operand {
     name: &'static str,
     shape: Vec<usize>,
     parts: Vec<(&'static str, usize)>,
 }
 
-/// The operands of a function: an array for each argument, and for each part of the motion of a base.
+/// Returns the operands of a function: one array per argument, and one per part of the motion of a base.
 fn operands(arm: &CompiledArm, function: Function) -> Vec<Operand> {
     let sizes = rne_codegen::sizes_of(arm.robot());
     let mut all = Vec::new();
@@ -45,7 +46,7 @@ fn operands(arm: &CompiledArm, function: Function) -> Vec<Operand> {
         match (&parts[..], argument.row()) {
             (&[(name, _)], row) => {
                 let shape = match name {
-                    // homogeneous matrices are those of Python
+                    // the Python side converts between twelve numbers and homogeneous matrices
                     "pose" => vec![12],
                     _ if argument.is_number() => Vec::new(),
                     _ => row.map_or_else(|| vec![elements], |row| vec![elements / row, row]),
@@ -67,7 +68,7 @@ fn operands(arm: &CompiledArm, function: Function) -> Vec<Operand> {
     all
 }
 
-/// The shapes of the arrays that a function returns, one behind the other, and whether they are poses.
+/// Returns the shapes of the arrays that a function returns, in order, each with a flag for poses.
 pub(crate) fn results(arm: &CompiledArm, function: Function) -> Vec<(Vec<usize>, bool)> {
     fn of(layout: &Layout) -> Vec<(Vec<usize>, bool)> {
         match layout {
@@ -99,7 +100,7 @@ pub(crate) fn results(arm: &CompiledArm, function: Function) -> Vec<(Vec<usize>,
 type Told = (&'static str, &'static str, Vec<(&'static str, Vec<usize>)>, Vec<(Vec<usize>, bool)>);
 
 impl Arm {
-    /// The arm, or the arm at a frame.
+    /// Returns the arm, or the arm with this frame in the place of the tip.
     pub(crate) fn at(&self, frame: Option<&Bound<'_, PyAny>>) -> PyResult<CompiledArm> {
         let Some(frame) = frame else { return Ok(self.arm.clone()) };
         let frame = self.frame_name(frame)?;
@@ -171,25 +172,25 @@ impl Arm {
     }
 }
 
-/// Numbers of an array of XLA.
+/// The numbers of an array of XLA, in either precision.
 enum Numbers<'a> {
     Single(&'a [f32]),
     Double(&'a [f64]),
 }
 
-/// Room for numbers of a result of XLA.
+/// The memory for the numbers of a result of XLA, in either precision.
 enum Room<'a> {
     Single(&'a mut [f32]),
     Double(&'a mut [f64]),
 }
 
-/// An array of XLA, row by row: the lengths of its axes, and its numbers.
+/// An array of XLA in row-major order: the lengths of its axes, and its numbers.
 struct Argument<'a> {
     shape: Vec<usize>,
     numbers: Numbers<'a>,
 }
 
-/// A call of XLA's: the attributes, the arrays, the shape of the result and the room for it.
+/// A call by XLA: its attributes, the arrays, the shape of the result and the memory for it.
 struct Call<'a> {
     arm: &'a str,
     function: &'a str,
@@ -198,9 +199,9 @@ struct Call<'a> {
     room: Room<'a>,
 }
 
-/// A number whose arrays XLA may pass.
+/// A number type whose arrays XLA may pass: `f32` or `f64`.
 trait Passed: Number {
-    /// The numbers, if they are of this precision.
+    /// Returns the numbers if they have this type.
     fn of<'a>(numbers: &Numbers<'a>) -> Option<&'a [Self]>;
 }
 
@@ -216,7 +217,7 @@ impl Passed for f64 {
     }
 }
 
-/// Computes a call: what an error of XLA says is returned.
+/// Computes a call. XLA reports an error with the text that is returned.
 fn compute(call: Call<'_>) -> Result<(), String> {
     let Call { arm, function: name, arguments, shape, room } = call;
     let found = ARMS.read().unwrap_or_else(PoisonError::into_inner).get(arm).cloned();
@@ -272,7 +273,8 @@ fn compute_in<T: Passed>(
     .map_err(|error| error.to_string())
 }
 
-/// The numbers of an argument: a row for each state, or one row for all, and whether they are that.
+/// Returns the numbers of an argument, and whether they are one row that holds for all states. Otherwise there is one
+/// row per state.
 fn rows<'a, T: Passed>(
     Operand { name, parts, .. }: &Operand,
     argument: &'a Argument<'_>,
@@ -299,7 +301,7 @@ fn rows<'a, T: Passed>(
     })
 }
 
-/// A copy with a row for each state, of an array that has 1 in place of some leading axes.
+/// Returns a copy with one row per state of an array that has the length 1 in place of some leading axes.
 fn spread_over<T: Copy>(numbers: &[T], elements: usize, axes: &[usize], leading: &[usize], states: usize) -> Vec<T> {
     let mut spread = Vec::with_capacity(states * elements);
     for state in 0..states {

@@ -64,7 +64,7 @@ pub(crate) struct ForceMoment<T> {
 pub(crate) struct LinkLoad<T> {
     /// f_i, n_i
     pub(crate) inertia: ForceMoment<T>,
-    /// f_{i-1,i}, n_{i-1,i}
+    /// f_{p,i}, n_{p,i}
     pub(crate) joint: ForceMoment<T>,
     /// τ_i
     pub(crate) tau: T,
@@ -72,7 +72,7 @@ pub(crate) struct LinkLoad<T> {
     pub(crate) carried: Option<Carried<T>>,
 }
 
-/// The wrenches that a link hands on to what is mounted on it, each about its own joint, in the axes of the link.
+/// The wrenches that a link exerts on what is mounted on it, each about its own joint, in the axes of the link.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Carried<T> {
     /// Σ f, Σ n

@@ -293,7 +293,7 @@ fn from_com<'s>(
     parent: Option<usize>,
     (label, lever): (usize, Vector<'s>),
 ) -> Vector<'s> {
-    let from = |line: usize, com| builder.joint(line).carrying(label).name_vector(Quantity::R, lever - com);
+    let from = |line: usize, com| builder.joint(line).with_second_number(label).name_vector(Quantity::R, lever - com);
     match (parent, floating_base) {
         (Some(parent), _) => from(parent + 1, links[parent].body.com),
         (None, Some(base)) => from(0, base.com),

@@ -19,7 +19,7 @@ impl<'s> Load<'s> {
     /// Adds a joint or tip: its wrench, turned into the axes of the link, is R_k f_{i,k} and R_k n_{i,k}. `line`
     /// belongs to the link.
     pub(crate) fn put(&mut self, line: JointLines<'s>, rotation: Matrix<'s>, mount: &Mount<'s>, wrench: &Wrench<'s>) {
-        let line = line.carrying(mount.label);
+        let line = line.with_second_number(mount.label);
         let force = line.define(Quantity::ChildForce).by(rotation * wrench.force);
         let moment = line.define(Quantity::ChildMoment).by(rotation * wrench.moment);
         self.0.push(Carried { wrench: Wrench { force, moment }, r: mount.r });

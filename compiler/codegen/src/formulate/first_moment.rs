@@ -32,17 +32,17 @@ impl<'a, 's> FirstMoment<'a, 's> {
     }
 
     /// Returns the force f_i with the inertia force of h.
-    pub(crate) fn with_force(&self, force: Vector<'s>) -> Vector<'s> {
+    pub(crate) fn add_to_force(&self, force: Vector<'s>) -> Vector<'s> {
         plus_sum(force, self.force)
     }
 
     /// Returns the moment n_i with h_i × c̈_i.
-    pub(crate) fn with_moment(&self, moment: Vector<'s>) -> Vector<'s> {
+    pub(crate) fn add_to_moment(&self, moment: Vector<'s>) -> Vector<'s> {
         plus_sum(moment, self.h.map(|h| h.cross(self.motion.c_ddot)))
     }
 
     /// Returns the joint moment n_{p,i} with the weight term - h_i × g_i.
-    pub(crate) fn without_weight(&self, moment: Vector<'s>) -> Vector<'s> {
+    pub(crate) fn subtract_weight(&self, moment: Vector<'s>) -> Vector<'s> {
         self.h.map_or(moment, |h| moment - h.cross(self.motion.gravity))
     }
 }

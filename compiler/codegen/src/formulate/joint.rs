@@ -1,7 +1,7 @@
 //! Terms by which revolute and prismatic joints differ in the seven steps.
 //!
-//! A joint lets its link move along or about its axis, e = (0, 0, 1) in form P. Each function takes the value that a
-//! quantity of the link would have if the joint were rigid, and returns its actual value. A revolute joint turns its
+//! A joint lets its link move along or about its axis, e = (0, 0, 1) in form P. Each function takes the part of a
+//! step that both kinds of joint have, and adds the term that only its kind has. A revolute joint turns its
 //! link about e by q, which changes the motion of the link's points only through ω and ω̇. The link of a prismatic
 //! joint slides along e by q and turns as its parent does.
 
@@ -124,45 +124,45 @@ impl<'s> Joint<'_, 's> {
     }
 
     /// Step 1: returns ω of the link, given that of its parent.
-    pub(crate) fn angular_velocity(&self, rigid: Vector<'s>) -> Vector<'s> {
+    pub(crate) fn angular_velocity(&self, common: Vector<'s>) -> Vector<'s> {
         match self.link.kind {
-            Revolute => rigid + self.e * self.state.qd,
-            Prismatic => rigid,
+            Revolute => common + self.e * self.state.qd,
+            Prismatic => common,
         }
     }
 
     /// Step 2: returns ω̇ of the link, given that of its parent and the link's ω.
-    pub(crate) fn angular_acceleration(&self, rigid: Vector<'s>, omega: Vector<'s>) -> Vector<'s> {
+    pub(crate) fn angular_acceleration(&self, common: Vector<'s>, omega: Vector<'s>) -> Vector<'s> {
         match self.link.kind {
-            Revolute => rigid + self.e * self.state.qdd + omega.cross(self.e) * self.state.qd,
-            Prismatic => rigid,
+            Revolute => common + self.e * self.state.qdd + omega.cross(self.e) * self.state.qd,
+            Prismatic => common,
         }
     }
 
     /// Step 3: returns the velocity of a point of the link.
-    pub(crate) fn velocity(&self, rigid: Vector<'s>) -> Vector<'s> {
+    pub(crate) fn velocity(&self, common: Vector<'s>) -> Vector<'s> {
         match self.link.kind {
-            Revolute => rigid,
-            Prismatic => rigid + self.e * self.state.qd,
+            Revolute => common,
+            Prismatic => common + self.e * self.state.qd,
         }
     }
 
     /// Step 4: returns the acceleration of a point of the link.
-    pub(crate) fn acceleration(&self, rigid: Vector<'s>, omega: Vector<'s>) -> Vector<'s> {
+    pub(crate) fn acceleration(&self, common: Vector<'s>, omega: Vector<'s>) -> Vector<'s> {
         match self.link.kind {
-            Revolute => rigid,
-            Prismatic => self.unaccelerated(rigid + self.e * self.state.qdd, omega),
+            Revolute => common,
+            Prismatic => self.unaccelerated(common + self.e * self.state.qdd, omega),
         }
     }
 
     /// Step 4 for a joint that does not accelerate (q̈ = 0).
-    pub(crate) fn unaccelerated(&self, rigid: Vector<'s>, omega: Vector<'s>) -> Vector<'s> {
+    pub(crate) fn unaccelerated(&self, common: Vector<'s>, omega: Vector<'s>) -> Vector<'s> {
         match self.link.kind {
-            Revolute => rigid,
+            Revolute => common,
             Prismatic => {
                 let two = || self.lines.builder.entry(Name::scalar(Quantity::Two, 0), 2.0);
                 let twice_rate = || self.lines.define(Quantity::TwiceRate).by(two() * self.state.qd);
-                rigid + omega.cross(self.e) * twice_rate()
+                common + omega.cross(self.e) * twice_rate()
             }
         }
     }

@@ -217,7 +217,7 @@ pub(crate) fn wrench_torques<'s>(arm: &Arm<'s>, frames: &Frames<'s>, wrench: &Wr
             Revolute => axis.dot((frames.tip.origin - frame.origin).cross(force) + moment),
             Prismatic => axis.dot(force),
         });
-        builder.name(arm.coordinates.torque(index), torque)
+        builder.name(arm.coordinates.name_of_torque(index), torque)
     };
     arm.links.iter().zip(&frames.joints).enumerate().map(torque).collect()
 }

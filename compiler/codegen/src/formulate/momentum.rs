@@ -87,7 +87,7 @@ pub(crate) fn momentum_and_rate<'s>(
         momenta.push(momentum);
         rates.push(rate);
         if let Some(parent) = link.parent {
-            carried[parent].push(body.turned(line.named(parent + 1).carrying(link.mount.label), motion));
+            carried[parent].push(body.turned(line.named(parent + 1).with_second_number(link.mount.label), motion));
         }
     }
     momenta.reverse();
@@ -117,7 +117,7 @@ pub(crate) fn centroidal_momentum<'s>(
             Some(parent) => (parent + 1, &mut carried[parent]),
             None => (0, &mut on_base),
         };
-        place.push(body.turned(line.named(number).carrying(link.mount.label), motion));
+        place.push(body.turned(line.named(number).with_second_number(link.mount.label), motion));
     }
     let Some(matter) = &arm.floating_base else { return Vec::new() };
     let nowhere = builder.zeros(Cause::FirstFrame);
@@ -144,7 +144,7 @@ fn of_payload<'s>(arm: &Arm<'s>, payload: &Payload<'s>, link: usize, motion: &Mo
     let (dof, rotation) = (arm.links.len(), arm.tip.rotation);
     let [linear, angular] = payload.momenta(arm, motion);
     let moment = arm.builder.joint(dof + 1).define(Quantity::MomentBehind).by(payload.com * payload.mass);
-    let line = arm.builder.joint(link + 1).carrying(arm.tip.label);
+    let line = arm.builder.joint(link + 1).with_second_number(arm.tip.label);
     let turned = |quantity, vector| line.define(quantity).by(rotation * vector);
     Carried {
         mass: payload.mass,

@@ -49,8 +49,11 @@ impl<'s> Payload<'s> {
         let omega_dot = line.define(Quantity::OmegaDot).by(back * last.turning.omega_dot);
 
         // 4
-        let omega_cross_r =
-            line.named(link).carrying(arm.tip.label).define(Quantity::OmegaCrossR).by(last.turning.omega.cross(r));
+        let omega_cross_r = line
+            .named(link)
+            .with_second_number(arm.tip.label)
+            .define(Quantity::OmegaCrossR)
+            .by(last.turning.omega.cross(r));
         let tip = line
             .define(Quantity::JointPointAcceleration)
             .by(last.c_ddot + last.turning.omega_dot.cross(r) + last.turning.omega.cross(omega_cross_r));
@@ -79,8 +82,11 @@ impl<'s> Payload<'s> {
         let (line, r, back) = (arm.builder.joint(dof + 1), arm.tip.r, arm.tip.rotation.transpose());
         let link = arm.tip_link.map_or(0, |link| link + 1);
         let omega = line.define(Quantity::Omega).by(back * last.turning.omega);
-        let omega_cross_r =
-            line.named(link).carrying(arm.tip.label).define(Quantity::OmegaCrossR).by(last.turning.omega.cross(r));
+        let omega_cross_r = line
+            .named(link)
+            .with_second_number(arm.tip.label)
+            .define(Quantity::OmegaCrossR)
+            .by(last.turning.omega.cross(r));
         let tip = line.define(Quantity::JointPointVelocity).by(last.c_dot + omega_cross_r);
         let velocity = line.define(Quantity::Velocity).by(back * tip + omega.cross(com));
         let linear = line.define(Quantity::LinearMomentum).by(velocity * mass);

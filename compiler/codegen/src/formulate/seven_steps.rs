@@ -4,29 +4,37 @@
 //!
 //! ```text
 //! ω, ω̇         angular velocity and acceleration of a link          e     axis of the joint, (0, 0, 1)
-//! ċ, c̈         velocity and acceleration of its centre of mass      d     from the joint to the centre of mass
-//! g            acceleration of gravity                              r_i   from the parent's centre of mass to joint i
+//! ċ, c̈         velocity and acceleration of its centre of mass      d     from J_i to the centre of mass of link i
+//! g            acceleration of gravity                              r_i   from the parent's centre of mass to J_i
 //! f, n         force and moment that accelerate the link            m, I  mass; inertia about the centre of mass
 //! f_{p,i}      force and moment that the parent link p exerts       R_i   turns components in the axes of link i into
-//! n_{p,i}      on link i                                                  components in the axes of its parent
+//! n_{p,i}      on link i, the moment about J_i                            components in the axes of its parent
 //! τ            torque (N m) or force (N) of the actuator
 //! ```
 //!
 //! Link i is the one that joint i moves. Link p is the one that carries joint i: its parent, or the base. In a chain p
-//! is i-1, and r_i is the lecture's r_{i-1}. The components of a vector of link i are along axes that are fixed to link
-//! i, with z along joint i; only r_i is along the axes of link p. These axes are called form P; they serve standard and
-//! modified Denavit-Hartenberg tables. f_{i,k} and n_{i,k} are f_{p,i} and n_{p,i} of a joint k that link i carries, or
+//! is i-1, and r_i is the lecture's r_{i-1}. f_{i,k} and n_{i,k} are f_{p,i} and n_{p,i} of a joint k that link i carries, or
 //! of a tip; in a chain there is one k, and it is i+1.
 //!
+//! J_i is a point on the axis of joint i, fixed to link p: O_i of the lecture where the table is standard, the foot of
+//! the common normal on axis i where it is modified.
+//!
+//! The components of a vector of link i are along axes that are fixed to link i, with z along joint i; only r_i is
+//! along the axes of link p. These axes are called form P; they serve standard and modified Denavit-Hartenberg tables.
+//! The lecture uses axes that are fixed to link i-1: a vector v here is Rz(θ_i) v there. The z elements are equal, so τ
+//! is the same.
+//!
 //! `line.define(name).by(formula)` computes a formula and gives the result its name in the generated code. The names of
-//! a `line` have the number of its joint (`w2_z`); numbers of joints count from 1 there, and 0 is the base. Operations
-//! within `by(…)` belong to this name. `'s` is the lifetime of the builder on which all formulas are written.
+//! a `line` have the number of its joint (`w2_z`); numbers of joints count from 1 there, and 0 is the base. Reports
+//! count the operations within `by(…)` under this name. `'s` is the lifetime of the builder on which all formulas are written.
 //!
-//! `back` is R_iᵀ. R_i and d_i are computed in [`super::joint`], r_i in [`super::arm`]. The methods of `joint` add the
-//! terms of a revolute or a prismatic joint to their argument, which is the value for a joint that does not move.
+//! `back` is R_iᵀ. R_i and d_i are computed in [`super::joint`], r_i in [`super::arm`]. The argument of
+//! `joint.velocity(…)` and its like is the part of the step that both kinds of joint have; the method adds the term that
+//! only a revolute or only a prismatic joint has.
 //!
-//! The lecture has a chain on a base that does not move. What trees, moving bases, rotors of motors and links without
-//! mass add is in [`super::carried`], [`super::base`], [`super::spin`] and [`super::first_moment`].
+//! The lecture has a chain on a base that does not move. The terms of trees, moving bases and rotors of motors are in
+//! [`super::carried`], [`super::base`] and [`super::spin`]; those of links with mass 0 and a first moment h (kg m), which
+//! identification of parameters gives, are in [`super::first_moment`].
 
 use crate::formulate::carried::{self, Load};
 use crate::formulate::first_moment::FirstMoment;
@@ -86,7 +94,7 @@ pub(crate) fn inverse_dynamics_of_floating_base<'s>(
     tip: &AtTip<'s>,
 ) -> (Option<Wrench<'s>>, Vec<JointLoad<'s>>) {
     let motions = forward(arm, states, base);
-    // a payload at the tip exerts a wrench that depends on the motion of its link
+    // the wrench that the last link exerts on a payload depends on the motion of that link
     backward(arm, states, (base, &motions), &tip.wrenches(arm, &motions))
 }
 
@@ -117,27 +125,28 @@ pub(crate) fn turning<'s>(joint: &Joint<'_, 's>, parent: &Turning<'s>) -> Turnin
 
 /// Steps 1 to 5: the motion of link i.
 fn motion<'s>(joint: &Joint<'_, 's>, parent: &Motion<'s>) -> Motion<'s> {
-    let (line, of_parent) = (joint.lines, joint.lines_of_parent().carrying(joint.link.mount.label));
+    // ω_p × r_i has the number of link p in its name, and a second number if p carries more than one joint
+    let (line, parent_line) = (joint.lines, joint.lines_of_parent().with_second_number(joint.link.mount.label));
     let Turning { omega: omega_p, omega_dot: omega_dot_p, .. } = parent.turning;
     let turning = turning(joint, &parent.turning);
     let Turning { rotation, omega, omega_dot } = turning;
     let (back, r, d) = (rotation.transpose(), joint.link.mount.r, joint.centre());
 
     // 3   ċ_i = R_iᵀ (ċ_p + ω_p × r_i) + ω_i × d_i                      prismatic: + q̇_i e
-    // named after link p; a label tells apart the joints that p carries
-    let omega_cross_r = of_parent.define(Quantity::OmegaCrossR).by(omega_p.cross(r));
+    let omega_cross_r = parent_line.define(Quantity::OmegaCrossR).by(omega_p.cross(r));
     let omega_cross_d = line.define(Quantity::OmegaCrossD).by(omega.cross(d));
-    let point_velocity = line.define(Quantity::JointPointVelocity).by(parent.c_dot + omega_cross_r);
-    let c_dot = line.define(Quantity::Velocity).by(joint.velocity(back * point_velocity + omega_cross_d));
+    // velocity of J_i, a point of link p
+    let velocity_of_j = line.define(Quantity::JointPointVelocity).by(parent.c_dot + omega_cross_r);
+    let c_dot = line.define(Quantity::Velocity).by(joint.velocity(back * velocity_of_j + omega_cross_d));
 
     // 4   c̈_i = R_iᵀ (c̈_p + ω̇_p × r_i + ω_p × (ω_p × r_i))
     //           + ω̇_i × d_i + ω_i × (ω_i × d_i)                         prismatic: + q̈_i e + 2 q̇_i ω_i × e
-    let point_acceleration = line
+    let acceleration_of_j = line
         .define(Quantity::JointPointAcceleration)
         .by(parent.c_ddot + omega_dot_p.cross(r) + omega_p.cross(omega_cross_r));
     let c_ddot = line
         .define(Quantity::Acceleration)
-        .by(joint.acceleration(back * point_acceleration + omega_dot.cross(d) + omega.cross(omega_cross_d), omega));
+        .by(joint.acceleration(back * acceleration_of_j + omega_dot.cross(d) + omega.cross(omega_cross_d), omega));
 
     // 5   g_i = R_iᵀ g_p
     let gravity = line.define(Quantity::Gravity).by(back * parent.gravity);
@@ -164,30 +173,32 @@ fn wrench<'s>(balance: &Balance<'_, 's>) -> Wrench<'s> {
     let Balance { body, motion, load, rotors, link, lines: [line, at_joint], names: [force_name, moment_name] } =
         *balance;
     let Motion { turning: Turning { omega, omega_dot, .. }, d, c_ddot, gravity, .. } = *motion;
+    // h_i, the first moment (kg m) of a link with mass 0; of other links the methods of h return their argument
     let h = FirstMoment::of(body, line, motion);
 
     // 6   f_i = m_i c̈_i
     // no formula below uses this result: it is written so that `rne show` and `rne explain` can print f_i
-    line.define(Quantity::InertiaForce).by(h.with_force(c_ddot * body.mass));
+    line.define(Quantity::InertiaForce).by(h.add_to_force(c_ddot * body.mass));
 
     //     n_i = I_i ω̇_i + ω_i × (I_i ω_i)
     let angular_momentum = line.define(Quantity::AngularMomentum).by(body.inertia * omega);
     let inertia_moment = line.define(Quantity::InertiaMoment).by({
         let moment = body.inertia * omega_dot + omega.cross(angular_momentum);
-        rotors.with_moment(link, omega, h.with_moment(moment))
+        rotors.add_to_moment(link, omega, h.add_to_moment(moment))
     });
 
     //     f_{p,i} = f_i - m_i g_i + Σ R_k f_{i,k}
     // f_i - m_i g_i is computed as m_i (c̈_i - g_i): one product instead of two
     let force = at_joint.define(force_name).by({
         let own = (c_ddot - gravity) * body.mass;
-        load.with_forces(h.with_force(own))
+        load.with_forces(h.add_to_force(own))
     });
 
     //     n_{p,i} = n_i + Σ R_k n_{i,k} + d_i × f_{p,i} + Σ r_k × R_k f_{i,k}
     let moment = at_joint.define(moment_name).by({
         let moment = load.with_moments(inertia_moment) + d.cross(force);
-        h.without_weight(load.with_levers(moment))
+        // - h_i × g_i, if the link has a first moment
+        h.subtract_weight(load.with_levers(moment))
     });
     Wrench { force, moment }
 }
@@ -201,7 +212,7 @@ fn backward<'s>(
     at_tips: &[Wrench<'s>],
 ) -> (Option<Wrench<'s>>, Vec<JointLoad<'s>>) {
     let rotors = Rotors::of(arm, states);
-    // the load of each link: first what its tips exert, then, in the loop, what its joints exert
+    // what each link exerts: first at its tips, then, added in the loop, on the links that its joints move
     let mut loads = carried::at_tips(arm, at_tips);
     let mut load_of_base = Load::default();
     let mut of_joints = Vec::with_capacity(motions.len());
@@ -219,10 +230,11 @@ fn backward<'s>(
         });
 
         // 7   τ_i = e · n_{p,i}                        prismatic: e · f_{p,i}
-        // rotors of motors add their part, also those that other links carry
-        let torque = line.define(arm.coordinates.torque(index).quantity).by({
+        // τ_i, or its part of the torque of a coordinate where joints are coupled; rotors of motors add their part, also
+        // those that other links carry
+        let torque = line.define(arm.coordinates.name_of_torque(index).quantity).by({
             let torque = joint.actuator(&wrench);
-            rotors.with_torque(&joint, (base, motions), torque)
+            rotors.add_to_torque(&joint, (base, motions), torque)
         });
         of_joints.push(JointLoad { wrench, torque });
 

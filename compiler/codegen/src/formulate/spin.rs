@@ -101,7 +101,7 @@ impl<'a, 's> Rotors<'a, 's> {
 
     /// Returns the moment n_c of a link with the angular velocity ω_c, or of the base (`None`), plus the moment of the
     /// rotors on it.
-    pub(crate) fn with_moment(&self, carrier: Option<usize>, omega: Vector<'s>, moment: Vector<'s>) -> Vector<'s> {
+    pub(crate) fn add_to_moment(&self, carrier: Option<usize>, omega: Vector<'s>, moment: Vector<'s>) -> Vector<'s> {
         let on_carrier = self.spins.iter().filter(|(spin, _)| spin.on == carrier);
         on_carrier.fold(moment, |moment, (spin, [rate, rate_dot])| {
             moment + (spin.momentum(*rate_dot) + omega.cross(spin.momentum(*rate)))
@@ -110,7 +110,7 @@ impl<'a, 's> Rotors<'a, 's> {
 
     /// Returns the torque of a joint plus that of the rotors: G² Jm q̈ of its own motor, if its rotor belongs to the
     /// arm, and the torques of the rotors of the list `motors`.
-    pub(crate) fn with_torque(
+    pub(crate) fn add_to_torque(
         &self,
         joint: &Joint<'_, 's>,
         (base, motions): (&Motion<'s>, &[Motion<'s>]),

@@ -468,13 +468,13 @@ impl<'s> JointLines<'s> {
 
     /// The same lines, for quantities of what a link carries, where it carries several: the number that tells them
     /// apart.
-    pub(crate) fn carrying(self, carried: usize) -> Self {
+    pub(crate) fn with_second_number(self, carried: usize) -> Self {
         Self { carried, ..self }
     }
 
     /// The same lines, for quantities between the link of the joint and its parent; `None` is the base.
     pub(crate) fn behind(self, parent: Option<usize>) -> Self {
-        self.carrying(Name::index_of_parent(self.named, parent.map_or(0, |parent| parent + 1)))
+        self.with_second_number(Name::index_of_parent(self.named, parent.map_or(0, |parent| parent + 1)))
     }
 
     /// A number of the table.

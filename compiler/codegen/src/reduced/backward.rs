@@ -114,7 +114,7 @@ pub(crate) fn inward<'s>(
         let more = [of_other_joints(arm, index), of_rotors].into_iter().flatten();
         let torque = more.fold(torque, |torque, more| torque + more);
         let torque = if rows[index].reversed { -torque } else { torque };
-        builder.name(arm.joint_frames.coordinates.torque(index), torque);
+        builder.name(arm.joint_frames.coordinates.name_of_torque(index), torque);
         found.push(Carried { torque, own, unturned });
         children.extend(next);
     }
@@ -391,7 +391,11 @@ fn name_turned<'s>(arm: &Arm<'_, 's>, index: usize, wrench: Wrench<'s>) {
     let rows = arm.rows();
     let parent = rows[index].parent;
     let is_first = rows[..index].iter().all(|row| row.parent != parent);
-    let line = arm.builder.joint(parent.map_or(0, |parent| parent + 1)).carrying(if is_first { 0 } else { index + 1 });
+    let line = arm.builder.joint(parent.map_or(0, |parent| parent + 1)).with_second_number(if is_first {
+        0
+    } else {
+        index + 1
+    });
     line.name_vector(Quantity::TurnedForce, wrench.force);
     line.name_vector(Quantity::TurnedMoment, wrench.moment);
 }

@@ -314,7 +314,7 @@ pub(crate) fn gravity_torques<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
             loads.put(parent, arm.is_grouped(index), arm.inward(index, carried));
         }
         torques[index] = torque.signed(row.reversed);
-        builder.name(arm.joint_frames.coordinates.torque(index), torques[index]);
+        builder.name(arm.joint_frames.coordinates.name_of_torque(index), torques[index]);
     }
     torques
 }

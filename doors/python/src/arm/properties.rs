@@ -1,4 +1,4 @@
-//! What an arm says of itself in Python.
+//! Properties of the class `Arm`.
 
 use std::collections::BTreeMap;
 

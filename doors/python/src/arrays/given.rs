@@ -1,4 +1,4 @@
-//! The arguments of a function as they are given.
+//! The arguments of a call from Python, before they are read.
 
 use numpy::{PyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -8,8 +8,8 @@ use pyo3::types::PyFloat;
 use super::memory::{has, is_array, is_arrow, refuse_masked, shape_of};
 use super::shape_in_words;
 
-/// An argument: its name, the arrays of three that it is made of if it is no array of its own, how many elements it has
-/// for a state, how they stand in an array, and what was given.
+/// An argument of a call: its name, its number of elements per state, its axes, and the value that was given. `parts`
+/// names the vectors of three elements that it consists of, if the compiled arm takes these instead.
 pub(crate) struct Given<'py> {
     pub(crate) name: &'static str,
     pub(crate) parts: &'static [&'static str],
@@ -19,24 +19,24 @@ pub(crate) struct Given<'py> {
 }
 
 impl<'py> Given<'py> {
-    /// Numbers side by side.
+    /// An argument that is a vector for each state.
     pub(crate) fn vector(name: &'static str, elements: usize, value: Bound<'py, PyAny>) -> Self {
         Self { name, parts: &[], elements, axes: Axes::Vector, value: Value::Of(value) }
     }
 
-    /// What stands for numbers side by side that were left out.
+    /// The vector of an argument that was left out, the same for all states.
     pub(crate) fn own(name: &'static str, numbers: Vec<f64>) -> Self {
         Self { name, parts: &[], elements: numbers.len(), axes: Axes::Vector, value: Value::Own(numbers) }
     }
 
-    /// A number, or an array of shape (N,).
+    /// An argument that is one number, or an array of shape (N,).
     pub(crate) fn number(name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Self> {
         let is_number = match value.cast::<PyUntypedArray>() {
             Ok(array) => array.ndim() == 0,
             Err(_) => value.is_instance_of::<PyFloat>() || value.len().is_err(),
         };
         refuse_masked(name, value)?;
-        // a number follows the precision of the arrays
+        // a single number is used in the precision of the arrays
         let number = if is_number { value.extract().ok() } else { None };
         let value = match number {
             Some(number) => Value::Own(vec![number]),
@@ -45,7 +45,7 @@ impl<'py> Given<'py> {
         Ok(Self { name, parts: &[], elements: 1, axes: Axes::Number, value })
     }
 
-    /// Rows of numbers; the refusal of another shape ends with what is `known`.
+    /// An argument that is a matrix for each state. The error for a wrong shape ends with the text of `known`.
     pub(crate) fn matrix(
         name: &'static str,
         axes: Axes,
@@ -68,7 +68,8 @@ impl<'py> Given<'py> {
     }
 }
 
-/// What has a type of numbers as an array; lists, which follow the arrays among the arguments, as they are.
+/// Converts a value with a type of numbers, `dtype`, to an array. Other values, such as lists, are returned unchanged:
+/// they are used in the precision of the arrays among the arguments.
 fn with_type<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     if is_array(value) || !has(value, "dtype") {
         return Ok(value.clone());
@@ -76,31 +77,31 @@ fn with_type<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     value.py().import("numpy")?.call_method1("asarray", (value,))
 }
 
-/// How the elements of a state stand in an array.
+/// The axes that an argument has for one state.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Axes {
-    /// Without an axis.
+    /// No axis.
     Number,
     Vector,
-    /// In rows of this length.
+    /// A matrix with rows of this length.
     Rows(usize),
-    /// As a homogeneous matrix.
+    /// A homogeneous matrix, of shape (4, 4).
     Pose,
 }
 
-/// What was given for an argument.
+/// The value of an argument.
 pub(crate) enum Value<'py> {
     Of(Bound<'py, PyAny>),
-    /// Numbers of one state, which follow the precision of the arrays: what stands for an argument that was left out.
+    /// Numbers of one state in the precision of the arrays, such as those for an argument that was left out.
     Own(Vec<f64>),
 }
 
-/// Whether all arrays among the arguments are of single precision; lists and numbers follow them.
+/// Whether there are arrays among the arguments and all of them have single precision. Lists and numbers do not count.
 pub(crate) fn are_single(given: &[Given<'_>]) -> bool {
     let mut is_found = false;
     for given in given {
         let Value::Of(value) = &given.value else { continue };
-        // columns have doubles
+        // columns of Polars and PyArrow are read in double precision
         let is_array = is_array(value);
         if !is_array && is_arrow(value) {
             return false;

@@ -1,4 +1,4 @@
-//! The memory of numpy's arrays: what is read, and room for what is written.
+//! The memory of numpy's arrays: arguments that are read, and arrays for results.
 
 use std::ops::Range;
 
@@ -15,13 +15,13 @@ pub(crate) fn is_array(value: &Bound<'_, PyAny>) -> bool {
     value.cast::<PyUntypedArray>().is_ok()
 }
 
-/// Whether there is this attribute: it takes a microsecond to look for it in vain, so lists and tuples are not asked.
+/// Whether a value has an attribute. Lists and tuples are not searched, because a search in vain takes a microsecond.
 pub(crate) fn has(value: &Bound<'_, PyAny>, attribute: &str) -> bool {
     let is_list = value.is_exact_instance_of::<PyList>() || value.is_exact_instance_of::<PyTuple>();
     !is_list && value.hasattr(attribute).unwrap_or(false)
 }
 
-/// The shape of an argument of real numbers; `None` for another kind of value, which is refused later.
+/// Returns the shape of an argument; `None` if it does not consist of real numbers, for which an error follows later.
 pub(crate) fn shape_of(value: &Bound<'_, PyAny>) -> PyResult<Option<Vec<usize>>> {
     let shape =
         |array: &Bound<'_, PyUntypedArray>| b"fiub".contains(&array.dtype().kind()).then(|| array.shape().to_vec());
@@ -32,12 +32,13 @@ pub(crate) fn shape_of(value: &Bound<'_, PyAny>) -> PyResult<Option<Vec<usize>>>
     Ok(array.ok().and_then(|array| shape(array.cast::<PyUntypedArray>().ok()?)))
 }
 
-/// Whether it may be a column or a table of Polars or PyArrow.
+/// Whether a value may be a column or a table of Polars or PyArrow.
 pub(super) fn is_arrow(value: &Bound<'_, PyAny>) -> bool {
     ["__arrow_c_stream__", "__arrow_c_array__", "collect_schema"].iter().any(|name| has(value, name))
 }
 
-/// The array that a caller gave, of any layout. If its numbers have the right type, its memory is used without a copy.
+/// Returns the array that a caller gave, of any layout. If its numbers have the right type, its memory is used without
+/// a copy.
 pub(crate) fn taken<'py, T: Element>(
     name: &'static str,
     value: &Bound<'py, PyAny>,
@@ -48,7 +49,8 @@ pub(crate) fn taken<'py, T: Element>(
         Ok(array) => array.clone(),
         Err(_) => converted(name, value)?,
     };
-    // numpy compares the owners of arrays, and one memory may have several: memoryviews, files, shared memory
+    // numpy's own check compares the owners of arrays, but the same memory can have several owners: memoryviews, mapped
+    // files, shared memory
     let read = if written.is_empty() { 0..0 } else { memory(&array) };
     if read.start < written.end && written.start < read.end {
         let message = format!("`out` and `{name}` share memory: give `out` memory of its own");
@@ -57,8 +59,8 @@ pub(crate) fn taken<'py, T: Element>(
     Ok(array)
 }
 
-/// The addresses from the first byte of an array to its last one, gaps between its numbers included; none of an empty
-/// array.
+/// Returns the addresses from the first byte of an array to its last one, including gaps between its numbers. An empty
+/// array has none.
 pub(crate) fn memory<T: Element>(array: &Bound<'_, PyArrayDyn<T>>) -> Range<usize> {
     if array.is_empty() {
         return 0..0;
@@ -76,9 +78,9 @@ pub(crate) fn memory<T: Element>(array: &Bound<'_, PyArrayDyn<T>>) -> Range<usiz
     start..end
 }
 
-/// Refuses an array of `numpy.ma` with masked numbers, because a masked number has no value.
+/// Returns an error for an array of `numpy.ma` with masked elements, because a masked element has no value.
 pub(crate) fn refuse_masked(name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-    // most arguments are plain arrays: nothing more is asked of them
+    // most arguments are plain arrays, which have no masked elements
     if value.is_exact_instance_of::<PyUntypedArray>() {
         return Ok(());
     }
@@ -113,7 +115,7 @@ fn is_masked(value: &Bound<'_, PyAny>) -> PyResult<bool> {
     py.import("numpy.ma")?.call_method1("is_masked", (value,))?.extract()
 }
 
-/// An array in C order and aligned: itself, or a copy.
+/// Returns the array itself if it is aligned and in C order, otherwise a copy that is.
 pub(crate) fn in_order<T: Element>(array: Bound<'_, PyArrayDyn<T>>) -> PyResult<Bound<'_, PyArrayDyn<T>>> {
     if array.is_c_contiguous() && array.is_aligned() {
         return Ok(array);
@@ -133,7 +135,7 @@ pub(crate) fn readable<'py, T: Element>(
     })
 }
 
-/// What numpy makes of lists, integers and other floats.
+/// Converts lists, integers and other floats to an array, as numpy does.
 fn converted<'py, T: Element>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
     let py = value.py();
     let keywords = PyDict::new(py);
@@ -153,7 +155,7 @@ fn converted<'py, T: Element>(name: &str, value: &Bound<'py, PyAny>) -> PyResult
     Ok(numpy.call_method("asarray", (value,), Some(&keywords))?.cast_into::<PyArrayDyn<T>>()?)
 }
 
-/// A new array of numbers of one state, or of many, each of this shape.
+/// Returns a new array with the numbers of one state, or of many, which have this shape each.
 pub(crate) fn array_of<'py, T: Element>(
     py: Python<'py>,
     states: &[usize],
@@ -163,7 +165,7 @@ pub(crate) fn array_of<'py, T: Element>(
     Ok(PyArray1::from_vec(py, numbers).reshape([states, shape].concat())?.into_any())
 }
 
-/// Room for results of a shape: `out`, if it is that, or a new array.
+/// Returns an array for results of a shape: `out` if it is given and suitable, otherwise a new array.
 pub(crate) fn room<'py, T: Element>(
     py: Python<'py>,
     out: Option<&Bound<'py, PyAny>>,
@@ -186,7 +188,7 @@ pub(crate) fn room<'py, T: Element>(
     Ok(array.clone())
 }
 
-/// The room as memory that nobody else reads or writes.
+/// Borrows the array for results exclusively, so that nobody else reads or writes it.
 pub(crate) fn writable<'py, T: Element>(room: &Bound<'py, PyArrayDyn<T>>) -> PyResult<PyReadwriteArrayDyn<'py, T>> {
     room.try_readwrite().map_err(|error| {
         PyValueError::new_err(match error {

@@ -1,4 +1,4 @@
-//! Steps with a floating base.
+//! Steps of the Runge-Kutta method with a floating base.
 
 use std::cell::RefCell;
 
@@ -45,7 +45,7 @@ impl<T: Element + Number> Rows<T> {
         PyTuple::new(py, arrays.collect::<PyResult<Vec<_>>>()?)
     }
 
-    /// The state after steps, and the model of all steps.
+    /// Returns the state after all steps, and their linear model if it is requested.
     fn moved(
         &self,
         arm: &CompiledArm,
@@ -77,7 +77,7 @@ impl<T: Element + Number> Rows<T> {
                 let found = of(Function::FloatingForwardDynamics, &arguments.omega(Array::Rows(&stage.omega)));
                 let base = BaseAcceleration { linear: three(&found), angular: three(&found[3..]) };
                 if is_derived {
-                    // the acceleration of the base is less gravity
+                    // the computed acceleration of the base already contains -g, so gravity is zero here
                     let arguments = arguments
                         .qdd(Array::Rows(&found[6..]))
                         .base_omega(Array::Rows(&stage.omega))
@@ -123,7 +123,7 @@ struct StageForces<T> {
 }
 
 impl<T: Number> StageForces<T> {
-    /// Those of a stage at which `of` computes functions.
+    /// Returns the derivatives and factors for a stage; `of` computes a function at its state.
     fn of(turning: Turning<T>, dof: usize, of: impl Fn(Function) -> Vec<T>) -> Self {
         let size = 6 + dof;
         let rows = |numbers: &[T], columns| -> Matrix<T> { numbers.chunks_exact(columns).map(<[T]>::to_vec).collect() };
@@ -138,7 +138,7 @@ impl<T: Number> StageForces<T> {
     }
 }
 
-/// A and B of one step.
+/// Returns the matrices A and B of the linear model of one step.
 fn model_of_step<T: Number>(
     orientations: [&Quaternion<T>; 2],
     twist: &BaseTwist<T>,

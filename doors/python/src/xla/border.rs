@@ -138,8 +138,9 @@ struct CallFrame {
     attributes: Attributes,
 }
 
-/// What XLA calls, as a capsule for `jax.ffi.register_ffi_target`, where XLA has this version of the interface. A call
-/// that asks for the version does not tell which one XLA has, and some XLA takes none but its own.
+/// Returns the function that XLA calls, as a capsule for `jax.ffi.register_ffi_target`, if XLA has this version of the
+/// interface. The version must be given, because a call in which XLA asks for the version does not tell which one XLA
+/// has, and some versions of XLA accept only their own.
 pub(super) fn capsule(py: Python<'_>, version: (c_int, c_int)) -> PyResult<Bound<'_, PyCapsule>> {
     const NAME: &CStr = c"xla._CUSTOM_CALL_TARGET";
     let (major, minor) = version;
@@ -153,14 +154,14 @@ pub(super) fn capsule(py: Python<'_>, version: (c_int, c_int)) -> PyResult<Bound
     MINOR.store(minor.min(KNOWN.1), Ordering::Relaxed);
     let handler: extern "C" fn(*mut CallFrame) -> *mut c_void = handle;
     let pointer = NonNull::new(handler as *mut c_void).unwrap_or(NonNull::dangling());
-    // SAFETY: the pointer is that of a function, which stays as long as the process, and has no destructor.
+    // SAFETY: the pointer is that of a function, which exists as long as the process and needs no destructor.
     unsafe { PyCapsule::new_with_pointer(py, pointer, NAME) }
 }
 
 /// Computes the function that the attributes name; NULL says that all is well.
 extern "C" fn handle(frame: *mut CallFrame) -> *mut c_void {
     let done = catch_unwind(AssertUnwindSafe(|| {
-        // SAFETY: XLA's promise of the frame.
+        // SAFETY: XLA promises that the frame is valid.
         unsafe { handled(frame) }
     }));
     let (code, message) = match done {
@@ -168,27 +169,27 @@ extern "C" fn handle(frame: *mut CallFrame) -> *mut c_void {
         Ok(Err(message)) => (INVALID_ARGUMENT, message),
         Err(_) => (INTERNAL, "a panic in the computation: this is a bug".to_owned()),
     };
-    // SAFETY: the same.
+    // SAFETY: XLA promises that the frame is valid.
     unsafe { error(frame, code, format!("rne: {message}")) }
 }
 
 /// # Safety
 /// `frame` is NULL, or a call frame of XLA.
 unsafe fn handled(frame: *mut CallFrame) -> Result<(), String> {
-    // SAFETY: XLA's promise; its size is read first.
+    // SAFETY: XLA promises that the frame is valid; its size is read first.
     let frame = unsafe { sized::<CallFrame>(frame, "the call frame")? };
     if !frame.extensions.is_null() {
-        // SAFETY: XLA's promise of an extension.
+        // SAFETY: XLA promises that an extension is valid.
         let extension = unsafe { sized::<Extension>(frame.extensions, "an extension")? };
         if extension.kind == METADATA {
-            // SAFETY: the kind says what the extension is.
+            // SAFETY: its kind says that this extension has metadata.
             return unsafe { tell_version(frame) };
         }
     }
     if frame.stage != EXECUTE {
         return Err(format!("stage {} of the call, but only stage {EXECUTE}, to execute, is known", frame.stage));
     }
-    // SAFETY: XLA's promise of the lists of the frame, and of what they list.
+    // SAFETY: XLA promises that the lists of the frame and their items are valid.
     unsafe {
         let arm = text(&frame.attributes, "arm")?;
         let function = text(&frame.attributes, "function")?;
@@ -223,17 +224,17 @@ unsafe fn handled(frame: *mut CallFrame) -> Result<(), String> {
     }
 }
 
-/// Answers the question for the version.
+/// Answers XLA's question which version of the interface this module has.
 ///
 /// # Safety
 /// The first extension of the frame is a struct of the kind [`METADATA`].
 unsafe fn tell_version(frame: &CallFrame) -> Result<(), String> {
     let extension = frame.extensions.cast::<MetadataExtension>();
-    // SAFETY: the promise of the caller; sizes are read first.
+    // SAFETY: promised by the caller; sizes are read first.
     unsafe {
         let extension = sized::<MetadataExtension>(extension, "the metadata")?;
         let metadata = extension.metadata;
-        // what comes behind is newer, and XLA's to fill
+        // fields after these are newer, and XLA fills them
         let known = offset_of!(Metadata, traits) + size_of::<u32>();
         sized_pointer(metadata, known, "the metadata")?;
         let (major, minor) = (KNOWN.0, MINOR.load(Ordering::Relaxed));
@@ -244,14 +245,15 @@ unsafe fn tell_version(frame: &CallFrame) -> Result<(), String> {
     Ok(())
 }
 
-/// An error of XLA's; NULL, which says that all is well, only where XLA gives no way to make one.
+/// Returns an error of XLA. If XLA offers no way to make one, it returns NULL, which means success.
 ///
 /// # Safety
 /// `frame` is NULL, or a call frame of XLA.
 unsafe fn error(frame: *mut CallFrame, code: u32, message: String) -> *mut c_void {
     let mut message = message.replace('\0', " ").into_bytes();
     message.push(0);
-    // SAFETY: XLA's promise of the frame; sizes are read first. The message outlives the call, which copies it.
+    // SAFETY: XLA promises that the frame is valid; sizes are read first. The message outlives the call, which copies
+    // it.
     unsafe {
         if sized_pointer(frame, offset_of!(CallFrame, context), "").is_err() {
             return ptr::null_mut();

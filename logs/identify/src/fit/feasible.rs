@@ -63,8 +63,7 @@ pub struct Certificate {
     pub misfit: f64,
     /// Half the sum of squares at the unconstrained minimum.
     pub least_misfit: f64,
-    /// Half the square of the Newton decrement: what another Newton step would gain, divided by γ where γ is less than
-    /// 1.
+    /// Half the square of the Newton decrement, which is what another Newton step would gain; divided by γ if γ < 1.
     pub decrement: f64,
     /// Σ tr(G P) + Σ g y: how far the objective without logarithms can be from its minimum.
     pub gap: f64,
@@ -214,7 +213,7 @@ impl Problem {
         value
     }
 
-    /// Takes one Newton step; returns half the square of the Newton decrement, divided by γ where γ is less than 1.
+    /// Takes one Newton step; returns half the square of the Newton decrement, divided by γ if γ < 1.
     fn step(&self, at: &mut DVector<f64>, regularization: f64) -> f64 {
         let design = &self.design * &self.map;
         let residual = &design * &*at - &self.target;

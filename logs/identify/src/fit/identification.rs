@@ -1,4 +1,4 @@
-//! From a geometry and logs to a robot: passes over the logs, the fit, the bodies, and the report on them.
+//! Identifies a robot from its geometry and logs: passes over the logs, the fit, feasible links, and a report.
 
 mod robot;
 
@@ -19,49 +19,50 @@ use crate::fit::steady::steady;
 use crate::fit::structure::{FRICTION, Options, Structure};
 use crate::replies::prediction::{JointError, Prediction};
 
-/// Passes over the logs: one to begin with, and two in which rows that are far off count less.
+/// Number of passes over the logs: a first one, and two in which rows with large residuals have less weight.
 const PASSES: usize = 3;
 
-/// A row that is off by more standard deviations does not count where the arm was pushed or touched during some
-/// segments.
+/// If some segments of time are outliers, as when the arm was pushed or touched, rows whose residual is above this
+/// number of standard deviations do not count.
 const OUTLIER_BOUND: f64 = 30.0;
 
-/// A base parameter is not excited where its deviation is larger than this part of what plausible links would give it.
+/// A base parameter is not excited if its standard deviation is larger than this part of its value for plausible links.
 pub(crate) const UNKNOWN: f64 = 0.5;
 
-/// A joint is not excited where more than this part of its effort is no torque of any model, root mean square.
+/// A joint is not excited if its residual is more than this part of its effort, root mean square.
 const NOISE: f64 = 0.5;
 
-/// The residual of a joint that no model explains, as a part of its effort; above this range the effort does not
-/// change.
+/// Range of the residual of a joint, as a part of its effort, that means that no model explains the effort. Above this
+/// range, the effort does not change.
 const UNEXPLAINED: Range<f64> = 0.9..10.0;
 
-/// Efforts that are all smaller than this, in N m or N, are not torques.
+/// Largest magnitude, N m or N, of efforts that count as zeros and not as torques.
 const LEAST_EFFORT: f64 = 1e-9;
 
-/// A robot that was identified, with the report on it.
+/// The result of an identification: the robot and a report on it.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Identification {
     /// The robot: the geometry that was given, links and motors that were identified.
     pub robot: Robot,
-    /// The columns.
+    /// The equations of the identification: their columns and unknowns.
     pub structure: Structure,
     /// The least-squares estimate, whether or not bodies can be so.
     pub least_squares: LeastSquares,
-    /// The estimate whose links are bodies.
+    /// The estimate whose links are physically possible.
     pub feasible: Feasible,
     /// Every base parameter, base to tip.
     pub bases: Vec<BaseReport>,
-    /// Every joint.
+    /// The result for every joint, base to tip.
     pub joints: Vec<JointReport>,
-    /// Delay of the torques against the positions, s, with its deviation.
+    /// Time by which the torques lag behind the positions, s, with its standard deviation; `None` if it was not asked
+    /// for.
     pub delay: Option<(f64, f64)>,
-    /// States that were read, and rows of each joint that were made of them.
+    /// Number of states that were read.
     pub states: u64,
-    /// Rows of each joint.
+    /// Number of rows of each joint that were made of the states.
     pub rows: u64,
-    /// s
+    /// Duration of the motions, s.
     pub duration: f64,
 }
 
@@ -69,25 +70,25 @@ pub struct Identification {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BaseReport {
-    /// `Jzz2`
+    /// Name of the parameter that represents the base parameter, such as `Jzz2`.
     pub name: String,
-    /// `Jzz2 + 0.3745 m3`
+    /// The linear combination, such as `Jzz2 + 0.3745 m3`.
     pub combination: String,
-    /// kg m², kg m or kg: by least squares alone.
+    /// Value by least squares alone, kg m², kg m or kg.
     pub value: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the value.
     pub deviation: f64,
-    /// Its value for the links of the file.
+    /// The value that the links of the identified robot file give.
     pub written: f64,
-    /// Half the width of its interval of 95 %, by Student's t of the segments of time.
+    /// Half the width of the 95 % confidence interval, by Student's t from the segments of time.
     pub half_interval: f64,
-    /// Its deviation over what plausible links would give it: below 0.5 it counts as excited. Infinite if the
-    /// logs do not move any joint whose torque depends on it: then no torque separates it from noise.
+    /// The standard deviation over the value for plausible links: below 0.5 the parameter counts as excited. Infinite
+    /// if the logs excite no joint whose torque depends on the parameter.
     pub uncertainty: f64,
 }
 
 impl BaseReport {
-    /// Whether the logs tell it; else the file's value is what was supposed before.
+    /// Whether the logs determine the base parameter. If not, the value in the file is the prior one.
     #[must_use]
     pub fn is_excited(&self) -> bool {
         self.uncertainty < UNKNOWN
@@ -98,57 +99,58 @@ impl BaseReport {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct JointReport {
-    /// Noise after the filter, N m or N.
+    /// Standard deviation of the noise after the filter, N m or N.
     pub noise: f64,
     /// Effort after the filter, root mean square, N m or N; at least 1e-6.
     pub effort: f64,
-    /// Rows so far from all others that they do not count: of a push, of a sensor that failed.
+    /// Rows whose residuals are so large that they do not count, as after a push or a sensor's failure.
     pub rejected: Option<Rejected>,
-    /// Over the logs that it was identified from.
+    /// Error of the predicted torques on the logs of the identification.
     pub error: JointError,
-    /// Viscous friction, N m s/rad, Coulomb friction forward and backward, N m, with deviations, at the joint.
+    /// Viscous friction, N m s/rad, and Coulomb friction forward and backward, N m, at the joint, each with its
+    /// standard deviation.
     pub friction: Option<[(f64, f64); FRICTION]>,
-    /// The deviation of Coulomb friction, half the sum of both directions, over the joint's effort, root mean square:
-    /// below 0.5 friction counts as excited. Infinite without friction.
+    /// The standard deviation of half the sum of Coulomb friction in both directions, over the joint's effort, root
+    /// mean square: below 0.5 friction counts as excited. Infinite without friction.
     pub friction_uncertainty: f64,
-    /// The part of its friction that the logs determine; the rest is that of the file.
+    /// The part of the joint's friction that the logs determine; the rest is that of the file.
     pub friction_excitation: FrictionExcitation,
     /// Transition of Coulomb friction between its two signs.
     pub transition: Option<FrictionTransition>,
-    /// An offset that least squares find to be larger than Coulomb friction, and the latter, N m or N: a spring, a
-    /// counterweight, a sensor. A robot file holds as much of it as there is Coulomb friction, and nothing of the rest.
+    /// Offset and Coulomb friction of the joint, N m or N, if least squares find a larger offset than Coulomb friction:
+    /// a spring, a counterweight, a faulty sensor. A robot file can contain an offset up to Coulomb friction only.
     pub offset: Option<(f64, f64)>,
-    /// kg m² or kg, at the joint.
+    /// Inertia of the rotor at the joint, kg m² or kg.
     pub rotor: Option<f64>,
 }
 
 impl JointReport {
-    /// Whether the logs tell its torque from noise.
+    /// Whether the logs distinguish the joint's torque from noise.
     #[must_use]
     pub fn is_excited(&self) -> bool {
         if self.rejected.is_none() && self.offset.is_none() {
             self.error.as_read < NOISE
         } else {
-            // errors are of what does not count, too
+            // the error is no measure here, because it includes outliers or an offset that the file cannot contain
             self.noise < NOISE * self.effort
         }
     }
 
-    /// Whether no model of the arm explains efforts that do change: they are noise, of another sign, or those of
-    /// another joint.
+    /// Whether no model of the arm explains the efforts although they change: they are noise, have the opposite sign,
+    /// or belong to another joint.
     #[must_use]
     pub fn is_unexplained(&self) -> bool {
         !self.is_excited() && UNEXPLAINED.contains(&self.error.as_read)
     }
 
-    /// Whether the logs tell its friction.
+    /// Whether the logs determine the joint's friction.
     #[must_use]
     pub fn is_friction_excited(&self) -> bool {
         self.friction_excitation != FrictionExcitation::None
     }
 
-    /// Whether the logs tell its friction, but not how much the two directions differ: that half of their difference
-    /// is an offset, which gravity hides if the joint moves little.
+    /// Whether the logs determine the joint's friction, but not how much the two directions differ. Half the difference
+    /// is an offset, which cannot be separated from gravity if the joint moves little.
     #[must_use]
     pub fn is_offset_unknown(&self) -> bool {
         self.friction_excitation == FrictionExcitation::WithoutOffset
@@ -156,7 +158,7 @@ impl JointReport {
 }
 
 impl Identification {
-    /// Whether the logs tell anything at all: a base parameter or the friction of a joint.
+    /// Whether the logs determine anything: a base parameter or the friction of a joint.
     #[must_use]
     pub fn is_anything_excited(&self) -> bool {
         self.bases.iter().any(BaseReport::is_excited) || self.joints.iter().any(JointReport::is_friction_excited)
@@ -170,12 +172,11 @@ pub(crate) struct OverLogs {
     pub(crate) least_squares: LeastSquares,
 }
 
-/// Identifies a robot. `pass` hands every motion of the logs to what it is given, each time it is called; the motions
-/// may be parts of logs. `regularization` is γ of [`Feasible`].
+/// Identifies a robot. `pass` is called several times and passes every motion of the logs to its argument each time;
+/// the motions may be parts of logs. `regularization` is γ of [`Feasible`].
 ///
-/// # Errors
-/// When a motion is of another robot; when all of them make fewer rows than deviations need, or have no efforts; when
-/// what is found is not finite; or what `pass` fails with.
+/// # Errors When a motion is of another robot; when all motions give fewer rows than standard deviations need, or have
+/// no efforts; when a result is not finite; or when `pass` fails.
 pub fn identify<E: From<MotionError>>(
     robot: &Robot,
     options: Options,
@@ -198,7 +199,7 @@ pub fn identify<E: From<MotionError>>(
             report.uncertainty = f64::INFINITY;
         }
     }
-    // what the last pass found beyond what its rows were shifted by
+    // the total delay: the shift of the last pass plus the rest that this pass found
     let delay = structure.options.delay.then(|| {
         let at = least_squares.solution.len() - 1;
         (least_squares.delay, least_squares.deviation(at))
@@ -217,8 +218,8 @@ pub fn identify<E: From<MotionError>>(
     })
 }
 
-/// Least squares over logs in several passes, by which noise, outliers and the delay settle; `doubts_rest` gives rows
-/// near rest less weight.
+/// Fits logs by least squares in several passes, in which noise, outliers and the delay converge; `doubts_rest` gives
+/// rows near rest less weight.
 pub(crate) fn over_logs<E: From<MotionError>>(
     structure: &Structure,
     doubts_rest: bool,
@@ -250,7 +251,7 @@ pub(crate) fn over_logs<E: From<MotionError>>(
     Ok(found)
 }
 
-/// The robot that fits gathered rows, all of which count alike.
+/// The robot that fits the rows in an [`Information`].
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Fit {
@@ -258,24 +259,26 @@ pub struct Fit {
     pub robot: Robot,
     /// The least-squares estimate, whether or not bodies can be so.
     pub least_squares: LeastSquares,
-    /// The estimate whose links are bodies, and whose friction is that of the file where the rows do not tell it.
+    /// The estimate whose links are physically possible, and whose friction is that of the file where the rows do not
+    /// determine it.
     pub feasible: Feasible,
     /// Every base parameter, base to tip.
     pub bases: Vec<BaseReport>,
-    /// Viscous friction, N m s/rad, Coulomb friction forward and backward, N m, with deviations, at each joint; without
-    /// friction none. Where the rows do not tell the offset, the deviations are for the offset of the file.
+    /// Viscous friction, N m s/rad, and Coulomb friction forward and backward, N m, at each joint, each with its
+    /// standard deviation; empty without friction. Where the rows do not determine the offset, the standard deviations
+    /// are for the offset of the file.
     pub friction: Vec<[(f64, f64); FRICTION]>,
     /// The part of the friction of each joint that the rows determine.
     pub friction_excitation: Vec<FrictionExcitation>,
-    /// The deviation of the Coulomb friction of each joint over its effort.
+    /// The standard deviation of the Coulomb friction of each joint over the joint's effort.
     friction_uncertainties: Vec<f64>,
     /// The root mean square of each joint's efforts, N m or N.
     pub efforts: Vec<f64>,
 }
 
 impl Fit {
-    /// Whether the rows tell the friction of a joint, with its offset or without. Viscous friction is told by the same
-    /// rows: in its own unit it has no effort to be held against.
+    /// Whether the rows determine the friction of a joint, with its offset or without. This is judged by Coulomb
+    /// friction alone: viscous friction has another unit than the effort, so the two cannot be compared.
     #[must_use]
     pub fn is_friction_excited(&self, joint: usize) -> bool {
         self.excitation(joint) != FrictionExcitation::None
@@ -285,7 +288,7 @@ impl Fit {
         self.friction_excitation.get(joint).copied().unwrap_or(FrictionExcitation::None)
     }
 
-    /// Fits what was gathered. `regularization` is γ of [`Feasible`].
+    /// Fits the gathered rows. `regularization` is γ of [`Feasible`].
     #[must_use]
     pub fn new(structure: &Structure, information: &Information, regularization: f64) -> Self {
         let scales = information.scales(structure);
@@ -312,7 +315,7 @@ impl Fit {
             friction_uncertainties: uncertainties.collect(),
             friction_excitation: held.holds.iter().map(|hold| hold.excitation).collect(),
             efforts: scales.friction.clone(),
-            // deviations without any hold: what is held has none
+            // the fit without fixed friction, because fixed friction has no standard deviation
             least_squares: fit,
             feasible,
         };

@@ -1,4 +1,5 @@
-//! The information of logs about the unknowns: triangles of weighted rows, in memory that does not grow with the logs.
+//! The information of logs about the unknowns: triangular QR factors of weighted rows, in memory that does not grow
+//! with the logs.
 
 mod instants;
 mod motion_error;
@@ -20,38 +21,38 @@ use crate::fit::prior::Scales;
 use crate::fit::r_factor::{RFactor, effort};
 use crate::fit::structure::Structure;
 
-/// States that are computed at once.
+/// Number of instants whose rows are computed at once.
 pub(crate) const WINDOW: usize = 2048;
 
-/// Segments of time that are kept apart, at most; beyond that neighbours merge.
+/// Largest number of segments of time that are kept apart; beyond it, neighbours are merged.
 const SEGMENTS: usize = 64;
 
-/// Shortest segment, in widths of the filter; without a filter, in states.
+/// Length of the shortest segment, in widths of the filter or, without a filter, in states.
 const LENGTH: f64 = 20.0;
 const STATES_UNFILTERED: u64 = 64;
 
-/// The length of the one segment of rows that have no order.
+/// Length that marks rows without an order in time, which form one segment.
 const UNORDERED: u64 = u64::MAX;
 
-/// The triangles of every joint's rows over a segment of time.
+/// For each joint, the triangular factor of its rows in a segment of time.
 pub(crate) type Segment = Vec<RFactor>;
 
-/// The information of logs about the unknowns: for each joint the triangle of its rows, in up to 64 segments of time,
-/// from which deviations are computed that know of dependent errors. Parts of logs may be taken in by several of these,
-/// that merge into one.
+/// The information of logs about the unknowns: for each joint the triangular factor of its rows, in up to 64 segments
+/// of time. The segments give standard deviations that allow for correlated errors. Parts of logs can be read into
+/// several of these, which are merged afterwards.
 #[derive(Clone, Debug)]
 pub struct Information {
     pub(crate) segments: Vec<Segment>,
-    /// Rows of a joint in each.
+    /// Number of rows of a joint in each segment.
     length: u64,
-    /// States read, and those that became rows.
+    /// Number of states that were read.
     pub(crate) states: u64,
     pub(crate) duration: f64,
-    /// s: how much later torques were taken.
+    /// Time by which torques were taken later than positions, s.
     pub(crate) shift: f64,
     /// The largest magnitude of the effort of each joint, N m or N.
     pub(crate) largest: Vec<f64>,
-    /// The rows of each joint that do not count.
+    /// For each joint, the rows that do not count because their residuals are too large.
     pub(crate) rejected: Vec<Option<Rejected>>,
 }
 
@@ -70,15 +71,15 @@ impl Information {
         Self { segments: Vec::new(), length, states: 0, duration: 0.0, shift: 0.0, largest, rejected }
     }
 
-    /// Empty information for rows without an order in time, such as those of a table: no segments are kept apart, so
-    /// that memory is one triangle a joint, and what is found depends on the order of rows and of merging by rounding
-    /// alone.
+    /// Empty information for rows without an order in time, such as those of a table. No segments are kept apart: the
+    /// memory is one triangular factor for each joint, and the order of rows and of merging changes results by rounding
+    /// only.
     #[must_use]
     pub fn unordered(structure: &Structure) -> Self {
         Self { length: UNORDERED, ..Self::new(structure) }
     }
 
-    /// Rows of each joint that are needed for deviations by leaving out segments: two of these.
+    /// Number of rows of each joint that standard deviations need: more than one segment has.
     pub(crate) fn needed(&self) -> u64 {
         self.length + 1
     }
@@ -108,16 +109,15 @@ impl Information {
         self.duration
     }
 
-    /// Number of numbers that are kept, whatever the length of the logs: memory is proportional to it.
+    /// Number of stored numbers, to which the memory is proportional. It does not grow with the logs.
     #[must_use]
     pub fn size(&self) -> usize {
         self.segments.iter().flatten().map(|factor| factor.columns() * factor.columns()).sum()
     }
 
-    /// Takes in a motion; its rows are weighted by what a fit before says of them.
+    /// Adds the rows of a motion. `weighting` weights them by their residuals in the previous fit.
     ///
-    /// # Errors
-    /// When the motion is of another robot, or has numbers that are not finite; nothing has been taken in then.
+    /// # Errors When the motion is of another robot, or has numbers that are not finite; nothing has been added then.
     pub fn absorb(
         &mut self,
         structure: &Structure,
@@ -145,7 +145,7 @@ impl Information {
         Ok(())
     }
 
-    /// Takes in everything that another has, of the same structure.
+    /// Adds all rows of other information with the same structure.
     pub fn merge(&mut self, other: Self) {
         self.length = self.length.max(other.length);
         self.states += other.states;
@@ -159,14 +159,14 @@ impl Information {
         self.compress();
     }
 
-    /// Magnitudes of the unknowns for efforts as large as in the logs.
+    /// Returns magnitudes of the unknowns for efforts as large as in the logs.
     #[must_use]
     pub fn scales(&self, structure: &Structure) -> Scales {
         let efforts: Vec<f64> = self.total(structure).iter().map(effort).collect();
         Scales::of(&structure.robot, &structure.parameters, &efforts)
     }
 
-    /// This information with the rows of each joint and segment weighted.
+    /// Returns this information with the rows of each joint and segment weighted.
     pub(crate) fn weighted(&self, weights: &[Vec<f64>]) -> Self {
         let mut weighted = self.clone();
         for (at, segment) in weighted.segments.iter_mut().enumerate() {
@@ -186,7 +186,7 @@ impl Information {
         }
     }
 
-    /// The triangle of all rows of each joint.
+    /// Returns the triangular factor of all rows of each joint.
     pub(crate) fn total(&self, structure: &Structure) -> Segment {
         let mut total: Segment = (0..structure.dof()).map(|joint| RFactor::new(structure.columns(joint))).collect();
         for segment in &self.segments {
@@ -202,7 +202,7 @@ impl Information {
         }
         if let Some(segment) = self.segments.last_mut() {
             for ((factor, rows), weight) in segment.iter_mut().zip(rows).zip(weights) {
-                // of as many columns as the factor was made with
+                // no error: the factor was made with this number of columns
                 let _ = factor.absorb_weighted(rows, weight);
             }
         }
@@ -238,7 +238,7 @@ fn rows_of(segment: &Segment) -> u64 {
 
 fn add(total: &mut Segment, segment: &Segment) {
     for (total, factor) in total.iter_mut().zip(segment) {
-        // of the same structure
+        // no error: both have the same number of columns
         let _ = total.merge(factor);
     }
 }

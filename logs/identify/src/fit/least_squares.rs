@@ -1,4 +1,4 @@
-//! Weighted least squares on the triangles: unknowns, noise, transitions of friction, and deviations.
+//! Weighted least squares on triangular factors: unknowns, noise, transitions of friction, and standard deviations.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -8,48 +8,48 @@ use crate::fit::prior::Scales;
 use crate::fit::r_factor::{RFactor, condition, effort, inverse, solved};
 use crate::fit::structure::Structure;
 
-/// Rounds in which noise and unknowns settle.
+/// Number of iterations for noise and unknowns.
 const ROUNDS: usize = 12;
-/// Rounds before the transitions of friction are chosen, and in which they are.
+/// Number of iterations before the transitions of friction are chosen, and number of iterations that choose them.
 const FIRST: usize = 3;
 const CHOOSING: usize = 2;
-/// N m or N: no joint's noise is less, so that efforts without any divide nothing by nothing.
+/// Smallest noise of a joint, N m or N, so that zero efforts do not cause a division of 0 by 0.
 const LEAST_NOISE: f64 = 1e-12;
-/// Efforts of which none is more than this part of the largest one of all joints are not measured: by their noise,
-/// which is as small, they would outweigh all other joints.
+/// Efforts of a joint count as not measured if none is more than this part of the largest effort of all joints.
+/// Otherwise their noise, which would be as small, would give them more weight than all other joints.
 const NOT_MEASURED: f64 = 1e-8;
 
-/// Rows of joints give deviations if there are this many times as many as unknowns.
+/// Standard deviations need at least this many times as many rows as unknowns.
 const ENOUGH: usize = 2;
 
-/// An offset counts if it exceeds Coulomb friction by this number of deviations, and by this part of the effort, root
-/// mean square.
+/// An offset counts as larger than Coulomb friction if it exceeds it by this number of standard deviations, and by this
+/// part of the effort, root mean square.
 const BEYOND: [f64; 2] = [4.0, 0.02];
 
 /// The least-squares estimate of the unknowns.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct LeastSquares {
-    /// Base parameters; viscous friction, Coulomb's and the offset of each joint; the delay. Of what logs do not excite
-    /// at all, 0.
+    /// Base parameters; viscous friction, Coulomb friction and the offset of each joint; the delay. Unknowns that the
+    /// logs do not excite at all are 0.
     pub solution: DVector<f64>,
-    /// Covariance of the unknowns: of errors that depend on each other over time, too. Not a number where too few rows
-    /// tell it.
+    /// Covariance of the unknowns, also for errors that are correlated in time. NaN if there are too few rows.
     pub covariance: DMatrix<f64>,
-    /// Deviation of each joint's noise, N m or N; infinite where efforts are no torques but zeros, so that they do not
-    /// count.
+    /// Standard deviation of each joint's noise, N m or N; infinite if the efforts of a joint are zeros, so that they
+    /// do not count.
     pub noise: Vec<f64>,
-    /// s: how much the torques lag behind the positions, as the rows were shifted and as is left.
+    /// Time by which the torques lag behind the positions, s: the shift of the rows plus the fitted rest.
     pub delay: f64,
-    /// How the friction of each joint changes its sign: which of [`Options::transitions`](crate::Options::transitions).
+    /// The transition of each joint's friction between its signs, as an index into
+    /// [`Options::transitions`](crate::Options::transitions).
     pub transitions: Vec<usize>,
-    /// Largest over smallest singular value of the weighted columns, each of length one.
+    /// Condition number: largest over smallest singular value of the weighted columns, each scaled to length one.
     pub condition: f64,
-    /// Segments of time that the deviations are from.
+    /// Number of segments of time from which the standard deviations are computed.
     pub segments: usize,
-    /// The triangle of all weighted rows, torque last.
+    /// The triangular factor of all weighted rows; the torque is the last column.
     pub(crate) triangle: RFactor,
-    /// Degrees of freedom of the deviations.
+    /// Degrees of freedom of the standard deviations.
     freedom: usize,
 }
 
@@ -64,7 +64,7 @@ impl LeastSquares {
         let mut state = State { structure, scales, noise, transitions, holds: Vec::new() };
         let largest = information.largest.iter().copied().fold(0.0, f64::max);
         for ((noise, factor), most) in state.noise.iter_mut().zip(&total).zip(&information.largest) {
-            // the torque itself, to begin with
+            // the first value of the noise is the torque itself
             let is_measured = *most > NOT_MEASURED * largest;
             *noise = if is_measured { effort(factor).max(LEAST_NOISE) } else { f64::INFINITY };
         }
@@ -77,8 +77,8 @@ impl LeastSquares {
         state.estimate(information, &total)
     }
 
-    /// The estimate from the same rows with the same noise and transitions, with friction of some joints held; also the
-    /// root mean square of what is left of each joint's rows, N m or N.
+    /// Repeats the estimate with the same rows, noise and transitions, but with friction of some joints fixed. Also
+    /// returns the root mean square of each joint's residual, N m or N.
     pub(crate) fn with_holds(
         &self,
         structure: &Structure,
@@ -98,13 +98,13 @@ impl LeastSquares {
         (estimate, left)
     }
 
-    /// The weighting of rows in the next pass.
+    /// Returns the weighting of rows for the next pass.
     #[must_use]
     pub fn weighting(&self, structure: &Structure) -> Weighting {
         Weighting::new(structure, &self.solution, &self.transitions, self.noise.clone(), self.delay)
     }
 
-    /// The slope of half the weighted sum of squares by the unknowns.
+    /// Returns the gradient of half the weighted sum of squares with respect to the unknowns.
     #[must_use]
     pub fn gradient(&self, unknowns: &DVector<f64>) -> DVector<f64> {
         let count = self.solution.len();
@@ -113,13 +113,14 @@ impl LeastSquares {
         design.tr_mul(&(design * unknowns - target.column(0)))
     }
 
-    /// The offset of a joint and its Coulomb friction, N m or N, where the former is larger: a spring, a counterweight,
-    /// a sensor. No robot file holds what is more. `effort` is of the joint, root mean square.
+    /// Returns the offset of a joint and its Coulomb friction, N m or N, if the offset is larger: a spring, a
+    /// counterweight, a faulty sensor. A robot file can contain an offset up to Coulomb friction only. `effort` is that
+    /// of the joint, root mean square.
     #[must_use]
     pub fn loose_offset(&self, structure: &Structure, joint: usize, effort: f64) -> Option<(f64, f64)> {
         let at = structure.friction_at(joint)?;
         let (coulomb, offset) = (self.solution[at + 1], self.solution[at + 2]);
-        // of the friction of the direction against which the offset goes
+        // standard deviation of the friction in the direction opposite to the offset
         let deviation = self.coulomb_deviation(at, -offset.signum());
         let beyond = offset.abs() - coulomb;
         let [deviations, part] = BEYOND;
@@ -127,17 +128,18 @@ impl LeastSquares {
         (coulomb > 0.0 && is_larger).then_some((offset, coulomb))
     }
 
-    /// The deviation of Coulomb friction forward (1) or backward (-1) of the joint whose friction is at these unknowns:
-    /// its odd part plus or minus the offset. What is no number stays none.
+    /// Returns the standard deviation of Coulomb friction forward (1) or backward (-1), which is the half sum of both
+    /// directions plus or minus the offset. `at` is the joint's first unknown of friction. NaN if the covariance is
+    /// NaN.
     pub(crate) fn coulomb_deviation(&self, at: usize, direction: f64) -> f64 {
         let covariance = |row: usize, column: usize| self.covariance[(at + row, at + column)];
         let variance = covariance(1, 1) + covariance(2, 2) + 2.0 * direction * covariance(1, 2);
         if variance < 0.0 { 0.0 } else { variance.sqrt() }
     }
 
-    /// Half the width of an unknown's interval of 95 %: its deviation times the quantile of Student's t with one degree
-    /// of freedom less than there are segments of time; of rows without an order, with the rows that are
-    /// more than unknowns.
+    /// Returns half the width of an unknown's 95 % confidence interval: its standard deviation times the quantile of
+    /// Student's t. The degrees of freedom are the segments of time minus one or, for rows without an order, the rows
+    /// minus the unknowns.
     #[must_use]
     pub fn half_interval(&self, unknown: usize) -> f64 {
         #[allow(clippy::cast_precision_loss)] // of many, z is left
@@ -145,20 +147,21 @@ impl LeastSquares {
         student(freedom) * self.deviation(unknown)
     }
 
-    /// The deviation of an unknown.
+    /// Returns the standard deviation of an unknown.
     #[must_use]
     pub fn deviation(&self, unknown: usize) -> f64 {
-        // what is not known stays so
+        // an unknown out of range has no known deviation
         self.covariance.get((unknown, unknown)).map_or(f64::NAN, |variance| variance.sqrt())
     }
 }
 
-/// Errors after the filter are correlated across the ends of segments, too: white noise after a Gaussian kernel of
-/// width σ has the correlation exp(-t²/4σ²), of which segments of n σ miss ∫|t| exp(-t²/4σ²) dt over n σ times ∫
-/// exp(-t²/4σ²) dt, that is 2/√π over n. A row stands for σ.
+/// Correction for errors that the filter correlates across the ends of segments: white noise after a Gaussian kernel of
+/// width σ has the correlation exp(-t²/4σ²). Segments of length n σ miss the part ∫|t| exp(-t²/4σ²) dt / (n σ ∫
+/// exp(-t²/4σ²) dt) of it, that is 2/√π over n. There is one row for every σ.
 const ACROSS: f64 = std::f64::consts::FRAC_2_SQRT_PI;
 
-/// The quantile 0.975 of Student's t, by Cornish and Fisher's expansion: to 0.002 from five degrees of freedom on.
+/// Returns the quantile 0.975 of Student's t by the Cornish-Fisher expansion. The error is below 0.002 from five
+/// degrees of freedom on.
 ///
 /// M. Abramowitz, I. Stegun, Handbook of Mathematical Functions, 26.7.5.
 #[must_use]
@@ -176,12 +179,12 @@ struct State<'a> {
     scales: &'a Scales,
     noise: Vec<f64>,
     transitions: Vec<usize>,
-    /// One entry for each joint, or none at all.
+    /// The fixed friction: one entry for each joint, or empty if none is fixed.
     holds: Vec<Hold>,
 }
 
 impl State<'_> {
-    /// The unknowns and their deviations, with noise and transitions as they are.
+    /// Computes the unknowns and their standard deviations with the current noise and transitions.
     fn estimate(&self, information: &Information, total: &Segment) -> LeastSquares {
         let structure = self.structure;
         let triangle = self.stacked(total);
@@ -195,7 +198,7 @@ impl State<'_> {
         };
         let measured = self.noise.iter().filter(|noise| noise.is_finite()).count();
         let equations = usize::try_from(information.rows()).unwrap_or(usize::MAX).saturating_mul(measured);
-        // what is left of so few is their number and no noise, and numbers overflow
+        // with so few rows, residuals do not show the noise; with overflow, nothing is known
         if equations < ENOUGH * solution.len() || solution.iter().any(|value| !value.is_finite()) {
             covariance.fill(f64::NAN);
         }
@@ -211,7 +214,7 @@ impl State<'_> {
         self.structure.count()
     }
 
-    /// A joint's triangle as rows of all unknowns and the torque, in units of its noise.
+    /// Returns a joint's triangular factor as rows of all unknowns and the torque, in units of its noise.
     fn rows(&self, joint: usize, transition: usize, factor: &RFactor) -> DMatrix<f64> {
         let selected = factor.selected(&self.structure.used(joint, transition));
         let mut columns = self.structure.unknowns(joint);
@@ -223,8 +226,8 @@ impl State<'_> {
         rows
     }
 
-    /// The ridge keeps unknowns finite that no log excites: a row for each, far weaker than anything that was measured.
-    /// The rows of friction that is held are far stronger.
+    /// Returns the rows that keep unknowns finite that no log excites: one row for each unknown, with far less weight
+    /// than measured rows. The rows of fixed friction have far more weight.
     fn ridge(&self) -> DMatrix<f64> {
         let count = self.count();
         let mut rows = DMatrix::zeros(count, count + 1);
@@ -252,7 +255,7 @@ impl State<'_> {
     fn stacked(&self, segment: &Segment) -> RFactor {
         let mut all = RFactor::new(self.count() + 1);
         let mut add = |rows| {
-            // of as many columns
+            // no error: all have this number of columns
             let _ = all.absorb_weighted(rows, 0.0);
         };
         add(self.ridge());
@@ -262,7 +265,8 @@ impl State<'_> {
         all
     }
 
-    /// The noise is what is left, with as many degrees of freedom as the unknowns leave to the joint.
+    /// Updates the noise of each joint from its residual and the degrees of freedom that the unknowns leave to its
+    /// rows.
     fn settle_noise(&mut self, total: &Segment) {
         let triangle = self.stacked(total);
         let solution = solved(&triangle, self.count());
@@ -279,13 +283,13 @@ impl State<'_> {
         }
     }
 
-    /// The sum of squares that a solution leaves of a joint's rows, in units of its noise.
+    /// Returns the sum of squared residuals of a joint's rows for a solution, in units of its noise.
     fn residual(&self, joint: usize, factor: &RFactor, solution: &DVector<f64>) -> f64 {
         let rows = self.rows(joint, self.transitions[joint], factor);
         (rows.column(self.count()) - rows.columns(0, self.count()) * solution).norm_squared()
     }
 
-    /// Joint by joint the transition that leaves the least.
+    /// Chooses for one joint after the other the transition with the smallest residual.
     fn choose_transitions(&mut self, total: &Segment) {
         for joint in 0..self.structure.dof() {
             let before = self.transitions[joint];
@@ -305,15 +309,15 @@ impl State<'_> {
         }
     }
 
-    /// The covariance of the unknowns where errors of rows do not depend on each other: (RᵀR)⁻¹, in units of the noise.
+    /// Returns the covariance of the unknowns for independent errors of the rows: (RᵀR)⁻¹, in units of the noise.
     fn independent(&self, triangle: &RFactor) -> DMatrix<f64> {
         let count = self.count();
         inverse(triangle, count)
             .map_or_else(|| DMatrix::from_element(count, count, f64::NAN), |inverse| &inverse * inverse.transpose())
     }
 
-    /// The covariance of the unknowns by leaving out one segment of time after the other: errors within a segment may
-    /// depend on each other as they like.
+    /// Returns the covariance of the unknowns by leaving out one segment of time after the other (jackknife): errors
+    /// within a segment may be correlated in any way.
     ///
     /// B. Efron, C. Stein, The jackknife estimate of variance, Annals of Statistics 9 (1981), 586-596.
     fn covariance(&self, segments: &[Segment], triangle: &RFactor, solution: &DVector<f64>) -> DMatrix<f64> {
@@ -322,7 +326,7 @@ impl State<'_> {
         let mut sum = DMatrix::zeros(count, count);
         let mut shifts: Vec<DVector<f64>> = Vec::with_capacity(segments.len());
         for segment in segments {
-            // in the coordinates in which all rows together are the unit matrix
+            // in coordinates in which the normal matrix of all rows is the unit matrix
             let mut share = DMatrix::identity(count, count);
             let mut slope = DVector::zeros(count);
             for (joint, factor) in segment.iter().enumerate() {
@@ -332,7 +336,7 @@ impl State<'_> {
                 slope += design.tr_mul(&residual);
                 share -= design.tr_mul(&design);
             }
-            // what only this segment tells has no finite deviation
+            // keeps the matrix positive definite if only this segment determines an unknown
             for at in 0..count {
                 share[(at, at)] += 1e-9;
             }
@@ -357,9 +361,9 @@ impl State<'_> {
         of_rows + self.of_ridge(&inverse)
     }
 
-    /// The covariance that the ridge adds: it draws unknowns to zero, and they may be as far from there as it supposes.
-    /// Of what the rows tell it is nothing beside their own covariance; what they do not tell is as unknown as before,
-    /// although it is zero whatever segment is left out.
+    /// Returns the covariance that the rows of [`ridge`](Self::ridge) add, because they pull unknowns to zero. It is
+    /// negligible for unknowns that the measured rows determine. The other unknowns keep the prior uncertainty,
+    /// although they are zero whichever segment is left out.
     fn of_ridge(&self, inverse: &DMatrix<f64>) -> DMatrix<f64> {
         let drawn = inverse * inverse.transpose() * self.ridge().columns(0, self.count()).transpose();
         &drawn * drawn.transpose()

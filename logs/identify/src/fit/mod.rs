@@ -1,4 +1,4 @@
-//! Parameters from the motions of logs: which of them torques can see, and their values with deviations.
+//! Parameters from the motions of logs: which of them the torques depend on, and their values with standard deviations.
 
 pub(crate) mod feasible;
 pub(crate) mod fitted_model;

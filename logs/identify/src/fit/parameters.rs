@@ -1,4 +1,4 @@
-//! The unknowns: base parameters of links and rotors, and how they are made of the links' own.
+//! The base parameters, as linear combinations of the parameters of links and rotors.
 
 use std::fmt::Write as _;
 
@@ -10,27 +10,27 @@ use rne_runtime::{DynArm, LinkParameter};
 use crate::fit::regressor::bare;
 use crate::motions::random::Random;
 
-/// Random states from which factors are computed that are no small whole numbers.
+/// Number of random states from which the factors that are no small whole numbers are computed.
 const STATES: usize = 60;
 
-/// A combination of parameters of links and rotors that the torques can see.
+/// A base parameter: a linear combination of parameters of links and rotors that the torques depend on.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Base {
-    /// The parameter that represents it.
+    /// The parameter that represents the combination, with factor 1.
     pub kept: Parameter,
-    /// The parameters that are regrouped into it, with factors.
+    /// The other parameters of the combination, with their factors.
     pub regrouped: Vec<(f64, Parameter)>,
 }
 
 impl Base {
-    /// The name of the parameter that represents it, joints counted from 1: `Jzz2`, `Jm3`.
+    /// Returns the name of the parameter that represents the combination, with joints counted from 1: `Jzz2`, `Jm3`.
     #[must_use]
     pub fn name(&self) -> String {
         name(self.kept)
     }
 
-    /// The combination in letters: `Jzz2 + 0.3745 m3 - mcx4`.
+    /// Returns the combination as text, such as `Jzz2 + 0.3745 m3 - mcx4`.
     #[must_use]
     pub fn combination(&self) -> String {
         let mut text = self.name();
@@ -56,7 +56,8 @@ pub struct Parameters {
 }
 
 impl Parameters {
-    /// The base parameters of a robot's geometry; the masses of its links do not matter. `rotors` includes rotors.
+    /// Finds the base parameters of a robot's geometry; the masses of its links have no influence. `rotors` includes
+    /// rotors.
     #[must_use]
     pub fn of(robot: &Robot, rotors: bool) -> Self {
         let Identifiability { parameters, .. } = Identifiability::of(robot, rotors);
@@ -81,7 +82,8 @@ impl Parameters {
         }
         for (parameter, visibility) in &parameters {
             let Visibility::Regrouped(parts) = visibility else { continue };
-            // which factors there are is exact; those that are no whole numbers are lengths and their products
+            // which factors are not zero is known exactly; the values of those that are no whole numbers are computed
+            // here
             let unknown: Vec<usize> = parts.iter().filter(|part| part.1.is_none()).map(|part| part.0).collect();
             let mut rest: DVector<f64> = stacked.column(place(*parameter)).clone_owned();
             for (at, whole) in parts {
@@ -90,7 +92,7 @@ impl Parameters {
                 }
             }
             let columns: Vec<usize> = unknown.iter().map(|&at| place(kept[at])).collect();
-            // no column has no factorisation
+            // a matrix without columns has no factorisation
             let found = if columns.is_empty() {
                 DVector::zeros(0)
             } else {
@@ -112,7 +114,8 @@ impl Parameters {
         self.bases.len()
     }
 
-    /// The parameters of links and rotors as [`regrouping`](Self::regrouping) counts them, of a robot.
+    /// Returns the parameters of a robot's links and rotors, in the order of the columns of
+    /// [`regrouping`](Self::regrouping).
     #[must_use]
     pub fn of_robot(&self, robot: &Robot) -> DVector<f64> {
         let arm = DynArm::from_robot(robot);
@@ -136,7 +139,7 @@ impl Parameters {
     }
 }
 
-/// Whether a coordinate moves a link, by its own joint or by one that follows it; both count from 0.
+/// Whether a coordinate moves a link, by its own joint or by a joint that depends on it; both indices count from 0.
 pub(crate) fn moves(robot: &Robot, coordinate: usize, link: usize) -> bool {
     let joint = robot.coordinates().nth(coordinate);
     let is_moved = |other: usize| match &robot.joints[other].coupling {
@@ -146,7 +149,7 @@ pub(crate) fn moves(robot: &Robot, coordinate: usize, link: usize) -> bool {
     std::iter::successors(Some(link), |&link| robot.parent(link)).any(is_moved)
 }
 
-/// The regressor with the columns of rotors at random states, one below the other.
+/// Returns the regressors at random states, with columns of rotors, stacked on each other.
 fn stacked(robot: &Robot, columns: usize) -> DMatrix<f64> {
     let (dof, links) = (robot.dof(), robot.joints.len());
     let arm = DynArm::from_robot(&bare(robot));

@@ -9,13 +9,13 @@
 //! G = Aᵀ N A    g = Aᵀ (b - N θ)    A = [S T  E]    (G + P) x = g + P x₀    covariance = (G + P)⁻¹
 //! ```
 //!
-//! E are the columns of friction and offsets. The file keeps them; here they are errors of the file with a deviation of
-//! their own in P, so that they do not pass for a payload. P also contains weak prior knowledge of the payload: its
-//! centre of mass lies about 0.1 m from the tip, and its inertia is about as large as its mass times 0.1 m
-//! squared. Numbers that the log does not determine keep these values, and do not spoil the mass.
+//! E are the columns of friction and offsets. The file's values are not changed; E stands for their errors, whose
+//! standard deviations are in P, so that they are not taken for a payload. P also contains weak prior knowledge of the
+//! payload: its centre of mass lies about 0.1 m from the tip, and its inertia is about as large as its mass times 0.1 m
+//! squared. Numbers that the log does not determine keep these values, and do not distort the mass.
 //!
-//! Deviations are those of least squares or, if larger, those by leaving out one segment of time after the other
-//! (jackknife: B. Efron, C. Stein, Ann. Stat. 9, 1981), and they contain the error of the model.
+//! Standard deviations are those of least squares or, if larger, those by leaving out one segment of time after the
+//! other (jackknife: B. Efron, C. Stein, Ann. Stat. 9, 1981), and they include the error of the model.
 
 mod equations;
 
@@ -34,32 +34,33 @@ use crate::fit::stretches::Stretches;
 use crate::fit::structure::{Options, Structure};
 use rne_model::PER_LINK;
 
-/// m: the distance of a payload's centre of mass from the tip, one deviation, and its radius of gyration.
+/// Standard deviation of the distance of a payload's centre of mass from the tip, and its radius of gyration, m.
 pub const PAYLOAD_REACH: f64 = 0.1;
 
-/// kg: from this mass on, first moments and inertia may be as large as `PAYLOAD_REACH` allows.
+/// Mass, kg, from which the prior of first moments and inertia is proportional to the mass; lighter payloads have the
+/// prior of this mass.
 pub const LIGHTEST_PAYLOAD: f64 = 0.05;
 
-/// The least Coulomb friction of a joint, as a part of its effort.
+/// Smallest Coulomb friction that is assumed for a joint, as a part of its effort.
 pub const LEAST_FRICTION: f64 = 0.02;
 
-/// rad/s or m/s: a slower joint does not determine viscous friction.
+/// Speed, rad/s or m/s, below which a joint does not determine viscous friction.
 pub const SLOWEST: f64 = 1e-3;
 
-/// s: no torque lags more.
+/// Longest time by which torques may lag, s.
 const LONGEST_DELAY: f64 = 0.05;
 
-/// kg: the error of the model as a mass at the last link; for an arm lighter than [`LIGHT_ARM`] in proportion to its
-/// mass.
+/// The error of the model as a mass at the last link, kg. For an arm lighter than [`LIGHT_ARM`], it is reduced in
+/// proportion to the mass of the arm.
 const MODEL_ERROR: f64 = 0.05;
 
-/// kg: for a lighter arm, the smallest payload and the error of the model are in proportion to the mass of the arm.
+/// Mass of an arm, kg, below which the smallest payload and the error of the model are proportional to the mass.
 pub const LIGHT_ARM: f64 = 4.0;
 
-/// A mass of this part of the arm's mass is small.
+/// Part of the arm's mass below which a payload's mass is small.
 const SMALL: f64 = 0.1;
 
-/// A mass counts as a payload if it is larger than this many deviations.
+/// A mass counts as a payload if it is larger than this many standard deviations.
 const DEVIATIONS: f64 = 2.0;
 
 /// A number of a payload.
@@ -77,7 +78,7 @@ pub struct PayloadNumber {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Payload {
-    /// kg; negative if the log shows less mass than the file has.
+    /// Mass, kg; negative if the log shows less mass than the file has.
     pub mass: PayloadNumber,
     /// Centre of mass from the origin of the tip frame, in its axes, m.
     pub com: [PayloadNumber; 3],
@@ -85,20 +86,19 @@ pub struct Payload {
     pub inertia: [PayloadNumber; 6],
     /// Time by which the torques lag behind the positions, s.
     pub delay: f64,
-    /// Rows of each joint.
+    /// Number of rows of each joint.
     pub rows: u64,
 }
 
 impl Payload {
-    /// The numbers of the inertia, in the order of [`inertia`](Self::inertia).
+    /// The names of the moments and products, in the order of [`inertia`](Self::inertia).
     pub const INERTIA: [&str; 6] = ["Jxx", "Jyy", "Jzz", "Jxy", "Jxz", "Jyz"];
 
-    /// Estimates the payload. `pass` hands every motion of the logs to what it is given, each time it is called. The
-    /// cut-off of the low-pass is in Hz.
+    /// Estimates the payload. `pass` is called several times and passes every motion of the logs to its argument each
+    /// time. `cutoff` is the cut-off of the low-pass filter, Hz.
     ///
-    /// # Errors
-    /// When a motion is of another robot; when all of them make fewer rows than deviations need, or have no efforts; or
-    /// what `pass` fails with.
+    /// # Errors When a motion is of another robot; when all motions give fewer rows than standard deviations need, or
+    /// have no efforts; or when `pass` fails.
     pub fn identify<E: From<MotionError>>(
         robot: &Robot,
         cutoff: f64,
@@ -110,7 +110,7 @@ impl Payload {
         let delay = if fit.delay.abs() < LONGEST_DELAY { fit.delay } else { 0.0 };
         let model = FittedModel { noise: fit.noise, delay, ..FittedModel::of_file(&structure, &transitions) };
         let mut stretches = Stretches::new(&structure, &model);
-        // the number of a run only separates stretches
+        // a new run number for each motion only keeps stretches of different motions apart
         let mut run = 0;
         pass(&mut |motion| {
             run += 1;
@@ -125,8 +125,8 @@ impl Payload {
         Ok(Self { delay, rows: stretches.rows(), ..found })
     }
 
-    /// The payload of an estimate; `moment` is the error of the model as a first moment and inertia, kg m and
-    /// kg m².
+    /// Makes the payload from an estimate; `moment` is the error of the model as a first moment, kg m, and as an
+    /// inertia, kg m².
     fn of(robot: &Robot, all: &Estimate, jackknife: &Numbers, moment: f64) -> Self {
         let arm: f64 = robot.joints.iter().map(|joint| joint.row.link.mass).sum();
         let error = if arm > 0.0 { MODEL_ERROR * (arm / LIGHT_ARM).min(1.0) } else { MODEL_ERROR };
@@ -160,14 +160,14 @@ impl Payload {
         self.mass.is_excited && self.mass.value.abs() > DEVIATIONS * self.mass.deviation
     }
 
-    /// The payload as an argument of functions, which is the one that [`added_to`](Self::added_to) adds. The inertia is
-    /// that of a body: products and moments that the log does not determine are made so that they are possible.
+    /// Returns the payload as functions of an arm take it; [`added_to`](Self::added_to) adds the same one. The inertia
+    /// is physically possible: numbers that the log does not determine are changed as needed.
     #[must_use]
     pub fn body(&self) -> rne_runtime::Payload<f64> {
         let mass = self.mass.value;
         let [xx, yy, zz, xy, xz, yz] = self.inertia.map(|number| number.value);
         let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-        // less than no mass has the inertia of a point
+        // a negative mass gets no inertia about its centre
         let tensor = if mass > 0.0 { of_body(&tensor) } else { Matrix3::zeros() };
         let j = |row, column| tensor[(row, column)];
         let inertia = Inertia { xx: j(0, 0), yy: j(1, 1), zz: j(2, 2), xy: j(0, 1), xz: j(0, 2), yz: j(1, 2) };
@@ -185,7 +185,8 @@ impl Payload {
         [mass, h.x, h.y, h.z, j(0, 0), j(0, 1), j(0, 2), j(1, 1), j(1, 2), j(2, 2)]
     }
 
-    /// The robot with the payload added to its link with the tip; `None` if this link would not have a positive mass.
+    /// Returns the robot with the payload added to the link with the tip; `None` if the mass of this link would not be
+    /// positive.
     #[must_use]
     pub fn added_to(&self, robot: &Robot) -> Option<Robot> {
         let mut robot = robot.clone();
@@ -202,8 +203,8 @@ impl Payload {
         Some(robot)
     }
 
-    /// The text of a robot file of `robot`, to which the payload was added or not; `logs` says in words from what the
-    /// payload was identified.
+    /// Returns the text of a robot file of `robot`, with notes on the payload. `is_added` says whether the payload is
+    /// already part of `robot`; `logs` describes the logs of the identification in words.
     #[must_use]
     pub fn robot_file(&self, robot: &Robot, is_added: bool, logs: &str) -> String {
         let mut robot = robot.clone();
@@ -223,8 +224,8 @@ impl Payload {
 }
 
 /// The matrix T from inertial parameters about the origin of the tip frame, in its axes, to those in the frame of the
-/// link that carries it: with R and t of the tip, m, R h + m t, and R J Rᵀ + 2 (R h · t) 1 - R h tᵀ - t (R h)ᵀ + m (t²
-/// 1
+/// link that carries the tip. With the rotation R and the translation t of the tip, and h = m c, it gives m, R h + m t,
+/// and `R J Rᵀ + 2 (R h · t) 1 - R h tᵀ - t (R h)ᵀ + m (t² 1 - t tᵀ)`.
 /// - t tᵀ).
 fn of_tip(robot: &Robot) -> DMatrix<f64> {
     let Transform { xyz, rpy } = robot.tip().placement;
@@ -252,7 +253,7 @@ fn of_tip(robot: &Robot) -> DMatrix<f64> {
     moved
 }
 
-/// Options with the transitions of the file's friction.
+/// Returns options of the identification with the transitions of friction in the file.
 fn options(robot: &Robot, cutoff: f64) -> Options {
     let mut options =
         Options { cutoff: Some(cutoff), widths: Vec::new(), displacements: Vec::new(), ..Options::default() };
@@ -268,7 +269,7 @@ fn options(robot: &Robot, cutoff: f64) -> Options {
     options
 }
 
-/// The transition of each joint's friction in the file, as an index.
+/// Returns the transition of each joint's friction in the file, as an index into the transitions of the options.
 fn transitions(structure: &Structure, fitted: &[usize]) -> Vec<usize> {
     let all = structure.options().transitions();
     let of_file = |joint| all.iter().position(|transition| *transition == FrictionTransition::of(joint));
@@ -276,15 +277,15 @@ fn transitions(structure: &Structure, fitted: &[usize]) -> Vec<usize> {
     joints.map(|(joint, fitted)| of_file(joint).unwrap_or(*fitted)).collect()
 }
 
-/// Places of the inertial parameters from the fifth on in the tensor of inertia.
+/// Rows and columns in the inertia tensor of the inertial parameters Jxx, Jxy, Jxz, Jyy, Jyz and Jzz.
 const TENSOR: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
-/// The inertia of a point mass about the origin.
+/// Returns the inertia of a point mass at `com` about the origin.
 fn shifted(mass: f64, com: &Vector3<f64>) -> Matrix3<f64> {
     (Matrix3::identity() * com.norm_squared() - com * com.transpose()) * mass
 }
 
-/// The nearest inertia of a body: its mass has no negative second moment in any direction.
+/// Returns the nearest inertia that is physically possible: its mass has no negative second moment in any direction.
 fn of_body(inertia: &Matrix3<f64>) -> Matrix3<f64> {
     let second = Matrix3::identity() * (0.5 * inertia.trace()) - inertia;
     let mut axes = SymmetricEigen::new(second);

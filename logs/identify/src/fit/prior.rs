@@ -8,33 +8,33 @@ use crate::fit::pseudo_inertia;
 use crate::fit::structure::{FRICTION, Structure};
 use rne_model::PER_LINK;
 
-/// kg: a link of which nothing is known.
+/// Mass of a link of which nothing is known, kg.
 const MASS: f64 = 3.0;
-/// m: as thick as links are.
+/// Typical radius of a link, m.
 const RADIUS: f64 = 0.06;
-/// Deviation of the prior knowledge that keeps unknowns finite, in multiples of their scale.
+/// Standard deviation of the prior that keeps unknowns finite, in multiples of their scale.
 const PRIOR_DEVIATIONS: f64 = 30.0;
-/// s: no torque lags more.
+/// Longest time by which torques may lag, s.
 const DELAY: f64 = 0.05;
 
-/// A link as it is supposed to be.
+/// A link as it is assumed before any log.
 #[derive(Clone, Debug)]
 pub struct PriorLink {
     /// The pseudo-inertia, 4 × 4.
     pub pseudo_inertia: Matrix4<f64>,
-    /// Whether it is the file's, and no guess.
+    /// Whether the link is that of the file, not a guess.
     pub is_of_file: bool,
 }
 
 impl PriorLink {
-    /// Magnitudes of the ten inertial parameters: products of the mass with powers of the radius of gyration.
+    /// Returns magnitudes of the ten inertial parameters: products of the mass with powers of the radius of gyration.
     pub(crate) fn scales(&self) -> [f64; PER_LINK] {
         let (size, mass) = (size(&self.pseudo_inertia), self.pseudo_inertia[(3, 3)]);
         [0, 1, 1, 1, 2, 2, 2, 2, 2, 2].map(|power| mass * size.powi(power))
     }
 }
 
-/// The links of a robot as they are supposed to be, all of them bodies.
+/// Returns the links of a robot as they are assumed before any log. All are physically possible.
 #[must_use]
 pub fn links(robot: &Robot) -> Vec<PriorLink> {
     let values = rne_runtime::DynArm::from_robot(robot).inertial_parameters();
@@ -49,7 +49,7 @@ pub fn links(robot: &Robot) -> Vec<PriorLink> {
             if !is_body(joint) {
                 return PriorLink { pseudo_inertia: guess, is_of_file: false };
             }
-            // thin rods and point masses have room to become bodies
+            // a little of the plausible rod makes thin rods and point masses positive definite
             let thick = written + guess * 1e-2;
             let is_positive = pseudo_inertia::margin(&thick) > 0.0;
             let pseudo_inertia = if is_positive { thick } else { guess };
@@ -58,7 +58,7 @@ pub fn links(robot: &Robot) -> Vec<PriorLink> {
         .collect()
 }
 
-/// A round rod from the link's own joint to the next one, or to the farthest of those that the link carries.
+/// Returns a round rod from the link's own joint to the next joint, or to the farthest of several next joints.
 fn plausible(robot: &Robot, joint: usize, mass: f64) -> Matrix4<f64> {
     let along = span(robot, joint);
     let centre = along * 0.5;
@@ -76,14 +76,14 @@ fn plausible(robot: &Robot, joint: usize, mass: f64) -> Matrix4<f64> {
     pseudo
 }
 
-/// In the axes of the link frame, from its origin to the other end of the link.
+/// Returns the vector from the origin of the link frame to the other end of the link, in axes of the link frame.
 fn span(robot: &Robot, joint: usize) -> Vector3<f64> {
     match robot.convention {
-        // frame i is at the far end; the near one is where the row came from
+        // frame i is at the distal end of the link, so the other end is the origin of the previous frame
         Convention::Standard => {
             let dh = &robot.joints[joint].row.dh;
             let (sin, cos) = (dh.alpha.sin, dh.alpha.cos);
-            // Rx(-alpha) of (a, 0, d), back
+            // the negative of Rx(-alpha) (a, 0, d)
             -Vector3::new(dh.a, sin * dh.d, cos * dh.d)
         }
         Convention::Modified => {
@@ -112,7 +112,7 @@ pub struct Scales {
 }
 
 impl Scales {
-    /// The scales of a robot whose efforts have these deviations.
+    /// Returns the scales of a robot whose efforts have these root mean squares, N m or N.
     #[must_use]
     pub fn of(robot: &Robot, parameters: &Parameters, efforts: &[f64]) -> Self {
         let links = links(robot);
@@ -122,7 +122,7 @@ impl Scales {
         }
         if parameters.rotors {
             for joint in 0..robot.dof() {
-                // rotors resist as links do
+                // a plausible rotor has as much inertia as the links that its joint moves
                 let behind = (0..links.len()).filter(|link| moves(robot, joint, *link));
                 let behind: f64 = behind.map(|link| values[link * PER_LINK + 9]).sum();
                 values[links.len() * PER_LINK + joint] = behind;
@@ -132,7 +132,7 @@ impl Scales {
         Self { bases: squares.map(f64::sqrt), friction: efforts.iter().map(|effort| effort.max(1e-6)).collect() }
     }
 
-    /// One over far more than each unknown can be.
+    /// Returns for each unknown the reciprocal of a value that is far larger than the unknown can be.
     pub(crate) fn ridge(&self, structure: &Structure) -> DVector<f64> {
         let rank = structure.parameters.rank();
         DVector::from_fn(structure.count(), |at, _| {
@@ -148,7 +148,7 @@ impl Scales {
     }
 }
 
-/// m: the radius of gyration about the origin of the frame.
+/// Returns the radius of gyration about the origin of the frame, m.
 fn size(pseudo: &Matrix4<f64>) -> f64 {
     ((pseudo[(0, 0)] + pseudo[(1, 1)] + pseudo[(2, 2)]) / pseudo[(3, 3)]).sqrt()
 }

@@ -1,13 +1,14 @@
-//! The pseudo-inertia of a link: ten parameters as a 4 × 4 matrix that is positive definite where a body has them.
+//! The pseudo-inertia of a link: its ten parameters as a 4 × 4 matrix, which is positive definite if a body can have
+//! them.
 //!
 //! ```text
 //! P = ⎡ Σ    m c ⎤      Σ = ½ tr(J) 1 - J = ∫ x xᵀ dm
 //!     ⎣ m cᵀ  m  ⎦
 //! ```
 //!
-//! P ⪰ 0 says all at once: the mass is positive, the inertia is positive definite and its moments obey the triangle
-//! inequality. P. M. Wensing, S. Kim, J.-J. E. Slotine, Linear matrix inequalities for physically consistent inertial
-//! parameter identification, IEEE RA-L 3(1), 2018.
+//! P ⪰ 0 states all conditions at once: the mass is positive, the inertia is positive definite and its moments obey the
+//! triangle inequality. P. M. Wensing, S. Kim, J.-J. E. Slotine, Linear matrix inequalities for physically consistent
+//! inertial parameter identification, IEEE RA-L 3(1), 2018.
 
 use nalgebra::{Matrix4, SymmetricEigen};
 
@@ -53,10 +54,10 @@ pub fn units() -> [Matrix4<f64>; PER_LINK] {
     std::array::from_fn(|index| of(&std::array::from_fn(|other| f64::from(u8::from(index == other)))))
 }
 
-/// The smallest eigenvalue over the largest: above zero for every body that is not flat.
+/// Returns the smallest eigenvalue over the largest: above zero for every body that is not flat.
 #[must_use]
 pub fn margin(pseudo: &Matrix4<f64>) -> f64 {
-    // of what is no number they would be looked for without end
+    // the eigenvalue iteration would not end for NaN
     if pseudo.iter().any(|x| !x.is_finite()) {
         return f64::NEG_INFINITY;
     }

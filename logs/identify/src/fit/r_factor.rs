@@ -1,35 +1,37 @@
-//! Least squares over rows that pass by: the triangle of a QR factorisation, updated by blocks of rows.
+//! Least squares for a stream of rows: the triangular factor of a QR factorisation, updated by blocks of rows.
 //!
-//! The triangle R with RᵀR = AᵀA of a matrix A with too many rows to keep is all that least squares need, and
-//! it has the size of one row squared. Householder reflections fold a block of new rows into it; the condition of A is
-//! not squared, as normal equations would. Triangles of parts of the rows merge into that of all, in any order.
+//! The triangular matrix R with RᵀR = AᵀA of a matrix A with too many rows to keep is all that least squares need, and
+//! its size does not depend on the number of rows. Householder reflections fold a block of new rows into it. The
+//! condition number of A is not squared, as normal equations would. The factors of parts of the rows can be merged into
+//! that of all rows, in any order.
 //!
 //! Å. Björck, Numerical Methods for Least Squares Problems, SIAM 1996, section 3.2.3.
 
 use nalgebra::{DMatrix, DVector};
 
-/// A square that counts as zero.
+/// Largest square that counts as zero.
 const SMALLEST: f64 = 1e-280;
 
-/// The triangle of a QR factorisation of rows that have been absorbed, and how many they were.
+/// The triangular factor R of a QR factorisation of the absorbed rows, and their number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RFactor {
-    /// Upper triangular; below it zeros.
+    /// R, upper triangular, with zeros below the diagonal.
     triangle: DMatrix<f64>,
-    /// Rows absorbed.
+    /// Number of absorbed rows.
     rows: u64,
-    /// Their weights, one each where no weight was given.
+    /// Sum of the weights of the rows; a row without a weight has weight 1.
     weight: f64,
 }
 
 impl RFactor {
-    /// The triangle of no rows.
+    /// Makes the factor of no rows.
     #[must_use]
     pub fn new(columns: usize) -> Self {
         Self { triangle: DMatrix::zeros(columns, columns), rows: 0, weight: 0.0 }
     }
 
-    /// Reads a triangle row by row from the diagonal on; `None` when the count of numbers does not fit `columns`.
+    /// Makes a factor from the upper triangle, row by row from the diagonal on; `None` if the number of values does not
+    /// fit `columns`.
     pub(crate) fn from_upper(columns: usize, rows: u64, weight: f64, upper: &[f64]) -> Option<Self> {
         if upper.len() != columns * (columns + 1) / 2 {
             return None;
@@ -44,7 +46,7 @@ impl RFactor {
         Some(Self { triangle, rows, weight })
     }
 
-    /// The triangle, row by row from the diagonal on.
+    /// Returns the upper triangle, row by row from the diagonal on.
     pub(crate) fn upper(&self) -> impl Iterator<Item = f64> {
         let columns = self.columns();
         (0..columns).flat_map(move |row| (row..columns).map(move |column| self.triangle[(row, column)]))
@@ -74,20 +76,19 @@ impl RFactor {
         &self.triangle
     }
 
-    /// Takes in a block of rows, of weight one each.
+    /// Adds a block of rows with weight 1 each.
     ///
-    /// # Errors
-    /// When the rows have another length; nothing has been taken in then.
+    /// # Errors When the rows have another length; nothing has been added then.
     pub fn absorb(&mut self, rows: DMatrix<f64>) -> Result<(), WrongColumns> {
         #[allow(clippy::cast_precision_loss)] // a block
         let weight = rows.nrows() as f64;
         self.absorb_weighted(rows, weight)
     }
 
-    /// Takes in a block of rows that have been multiplied with the roots of their weights, of this sum.
+    /// Adds a block of rows that have been multiplied by the square roots of their weights; `weight` is the sum of the
+    /// weights.
     ///
-    /// # Errors
-    /// When the rows have another length; nothing has been taken in then.
+    /// # Errors When the rows have another length; nothing has been added then.
     pub fn absorb_weighted(&mut self, rows: DMatrix<f64>, weight: f64) -> Result<(), WrongColumns> {
         self.fits(rows.ncols())?;
         self.rows += rows.nrows() as u64;
@@ -96,10 +97,9 @@ impl RFactor {
         Ok(())
     }
 
-    /// Takes in all rows of another.
+    /// Adds all rows of another factor.
     ///
-    /// # Errors
-    /// When its rows have another length; nothing has been taken in then.
+    /// # Errors When its rows have another length; nothing has been added then.
     pub fn merge(&mut self, other: &Self) -> Result<(), WrongColumns> {
         self.fits(other.columns())?;
         self.rows += other.rows;
@@ -108,7 +108,7 @@ impl RFactor {
         Ok(())
     }
 
-    /// The triangle of some of the columns, in this order.
+    /// Returns the factor of some of the columns, in this order.
     #[must_use]
     pub fn selected(&self, columns: &[usize]) -> Self {
         let chosen = DMatrix::from_fn(self.columns(), columns.len(), |row, column| {
@@ -129,17 +129,18 @@ impl RFactor {
         if found == expected { Ok(()) } else { Err(WrongColumns { expected, found }) }
     }
 
-    /// Reflects the rows into the triangle, column by column: of the triangle a reflection touches one row alone.
+    /// Reflects the rows into the triangular factor, column by column. Each reflection changes only one row of the
+    /// factor.
     fn fold(&mut self, mut block: DMatrix<f64>) {
         let columns = self.columns();
         for k in 0..columns {
             let below = block.column(k).norm_squared();
-            // squares that small are nothing, and their inverses no numbers
+            // counts as zero, because the reciprocal would overflow
             if below < SMALLEST {
                 continue;
             }
             let head = self.triangle[(k, k)];
-            // away from cancellation
+            // this sign avoids cancellation
             let length = -(head * head + below).sqrt().copysign(head);
             let pivot = head - length;
             let scale = 1.0 / (length * pivot);
@@ -155,7 +156,7 @@ impl RFactor {
     }
 }
 
-/// Rows that have another length.
+/// The error that rows have another length than those of the factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WrongColumns {
     /// Columns of the factor.
@@ -177,13 +178,13 @@ impl std::fmt::Display for WrongColumns {
 
 impl std::error::Error for WrongColumns {}
 
-/// The root mean square of the efforts of a joint's rows, N m or N.
+/// Returns the root mean square of the efforts of a joint's rows, N m or N.
 pub(crate) fn effort(factor: &RFactor) -> f64 {
     let power = factor.triangle().column(factor.columns() - 1).norm_squared();
     (power / factor.weight().max(1.0)).sqrt()
 }
 
-/// The unknowns of a triangle whose last column is the torque.
+/// Solves for the unknowns by a triangular factor whose last column is the torque.
 pub(crate) fn solved(triangle: &RFactor, count: usize) -> DVector<f64> {
     let square = triangle.triangle().view((0, 0), (count, count));
     let target = triangle.triangle().view((0, count), (count, 1));
@@ -192,19 +193,20 @@ pub(crate) fn solved(triangle: &RFactor, count: usize) -> DVector<f64> {
         .map_or_else(|| DVector::zeros(count), |solution| solution.column(0).clone_owned())
 }
 
-/// The inverse of a triangle without its last column, the torque.
+/// Returns the inverse of a triangular factor without its last column, the torque.
 pub(crate) fn inverse(triangle: &RFactor, count: usize) -> Option<DMatrix<f64>> {
     triangle.triangle().view((0, 0), (count, count)).solve_upper_triangular(&DMatrix::identity(count, count))
 }
 
-/// The condition number of the columns, each of length one; those that the ridge alone holds are left out.
+/// Returns the condition number of the columns, each scaled to length one. Columns that only the weak rows `ridge`
+/// determine are left out.
 pub(crate) fn condition(triangle: &RFactor, count: usize, ridge: &DVector<f64>) -> f64 {
     let square = triangle.triangle().view((0, 0), (count, count));
     let kept: Vec<usize> = (0..count).filter(|&at| square.column(at).norm() > 2.0 * ridge[at]).collect();
     if kept.is_empty() {
         return 1.0;
     }
-    // of what is no number the singular values would be looked for without end
+    // the singular value iteration would not end for NaN
     if square.iter().any(|x| !x.is_finite()) {
         return f64::INFINITY;
     }

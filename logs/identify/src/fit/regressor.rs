@@ -1,4 +1,5 @@
-//! The columns of the inertial parameters at the states of a motion, and the torques that no parameter changes.
+//! Computes the regressor columns of the inertial parameters at the states of a motion, and the torques that do not
+//! depend on these parameters.
 //!
 //! With the ratios of the couplings in the matrix G, the joints of a robot have G q, G q̇ and G q̈, and the torques
 //! that work on its coordinates are Gᵀ τ. So its regressor is Gᵀ Y of the robot whose joints all move freely, at those
@@ -13,18 +14,18 @@ use rne_model::{Link, PER_LINK, Robot};
 
 use crate::motions::design::run;
 
-/// The columns of a robot's geometry, and its known rotors.
+/// The regressor of a robot's geometry, and the torques of its known rotors.
 #[derive(Clone, Debug)]
 pub(crate) struct Regressor {
-    /// The geometry alone, every joint free.
+    /// The robot without its couplings: every joint moves independently. Only its geometry is used.
     arm: CompiledArm,
     /// Number of joints.
     joints: usize,
     /// Row by row of G: the coordinates that a joint moves with, counted from 0, and the ratio of each.
     follows: Vec<Vec<(usize, f64)>>,
-    /// Whether some joint follows others.
+    /// Whether some joint depends on others.
     is_coupled: bool,
-    /// The rotors of the list `motors` on links without mass.
+    /// The robot with the rotors of the list `motors`, on links without mass.
     rotors: Option<CompiledArm>,
 }
 
@@ -36,7 +37,7 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
-    /// The torques of a coordinate for one parameter of a link that is 1, state by state.
+    /// Returns the torques of a coordinate at each state if one parameter of a link is 1 and all others are 0.
     pub(crate) fn of(&self, coordinate: usize, link: usize, parameter: usize) -> &[f64] {
         let column = (coordinate * self.joints + link) * PER_LINK + parameter;
         &self.numbers[column * self.states..][..self.states]
@@ -62,13 +63,13 @@ impl Regressor {
         }
     }
 
-    /// With the same bits on every machine.
+    /// Returns the regressor in a form whose results have the same bits on every machine.
     pub(crate) fn in_seven_steps(mut self) -> Self {
         self.arm = self.arm.in_form(Form::SevenSteps);
         self
     }
 
-    /// The columns at some states of a motion.
+    /// Computes the columns at some states of a motion.
     pub(crate) fn columns(&self, motion: &Motion, range: Range<usize>) -> Result<Columns, EvaluationError> {
         let (states, joints) = (range.len(), self.joints);
         let coordinates = motion.q.len();
@@ -96,7 +97,7 @@ impl Regressor {
         Ok(Columns { numbers, states, joints })
     }
 
-    /// The torques of the rotors of the list `motors` at some states of a motion, coordinate by coordinate; `None`
+    /// Computes the torques of the rotors of the list `motors` for each coordinate at some states of a motion; `None`
     /// for a robot without such rotors.
     pub(crate) fn of_rotors(
         &self,
@@ -111,7 +112,8 @@ impl Regressor {
         Ok(Some(torques))
     }
 
-    /// The states of all joints; the offsets of the couplings are in the rows of the free robot.
+    /// Returns the states of all joints, without the offsets of the couplings, which are in the rows of the robot
+    /// without couplings.
     fn of_all_joints(&self, motion: &Motion, range: Range<usize>) -> Motion {
         let all = |lists: &[Vec<f64>]| -> Vec<Vec<f64>> {
             let of_joint = |follows: &Vec<(usize, f64)>| {
@@ -132,7 +134,7 @@ impl Regressor {
     }
 }
 
-/// The robot without links and without the rotors of its joints.
+/// Returns the robot with links without mass and without the rotors of its joints.
 pub(crate) fn bare(robot: &Robot) -> Robot {
     let mut bare = Robot { rotors: false, ..robot.clone() };
     for joint in &mut bare.joints {
@@ -141,7 +143,8 @@ pub(crate) fn bare(robot: &Robot) -> Robot {
     bare
 }
 
-/// The robot whose joints all move freely, each from where it is when those that it follows are at 0.
+/// Returns the robot without couplings. The zero of a dependent joint is its position when the joints that it depends
+/// on are at 0.
 fn free(mut robot: Robot) -> Robot {
     robot.drives.clear();
     for joint in &mut robot.joints {

@@ -1,13 +1,13 @@
-//! A low-pass of finite length and without delay: what passes on both sides of an equation leaves it an equation.
+//! A low-pass filter of finite length and without delay. Filtering both sides of an equation keeps it valid.
 //!
 //! Measured torques are noisy, and robots smooth them before anybody logs them; friction that changes its sign is
 //! sharp. So the torque and every column of the regressor pass the same filter: its kernel is Gaussian in time,
-//! symmetrical, and has unit sum at every instant, also where samples are not evenly spaced. The parameters stay what
-//! they are.
+//! symmetrical, and has unit sum at every instant, also where samples are not evenly spaced. The parameters do not
+//! change.
 //!
 //! M. Gautier, Dynamic identification of robots with power model, IEEE ICRA 1997 ("parallel filtering").
 
-/// Standard deviations after which the kernel ends: what is left out is 6e-5 of it.
+/// Number of standard deviations after which the kernel ends; 6e-5 of it is left out.
 const REACH: f64 = 4.0;
 
 /// A Gaussian kernel in time.
@@ -17,7 +17,8 @@ pub(crate) struct Kernel {
     width: f64,
 }
 
-/// A kernel about one instant: the first sample that it reaches, their weights, and those of the slope.
+/// A kernel around one instant: the index of the first sample in reach, the weights of the samples, and their weights
+/// for the slope.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Weights {
     pub(crate) start: usize,
@@ -31,17 +32,17 @@ impl Kernel {
         Self { width: std::f64::consts::LN_2.sqrt() / (std::f64::consts::TAU * cutoff) }
     }
 
-    /// s: instants closer than that tell nothing new.
+    /// Returns the width, s: instants that are closer than this give no new information.
     pub(crate) fn width(self) -> f64 {
         self.width
     }
 
-    /// How far it reaches, s.
+    /// Returns the time before and after an instant that the kernel covers, s.
     pub(crate) fn reach(self) -> f64 {
         REACH * self.width
     }
 
-    /// Its weights about an instant. The ends of the times cut it off.
+    /// Returns the weights around an instant. The kernel is cut off at the first and last time.
     pub(crate) fn about(self, time: &[f64], instant: f64) -> Weights {
         let start = time.partition_point(|time| *time < instant - self.reach());
         let end = time.partition_point(|time| *time <= instant + self.reach());
@@ -55,7 +56,8 @@ impl Kernel {
         for value in &mut values {
             *value /= sum;
         }
-        // the derivative of the weights by the instant, scaled so that a line has its slope, also where the kernel ends
+        // the derivative of the weights with respect to the instant, scaled so that a straight line gets its exact
+        // slope, also where the kernel is cut off
         let mean: f64 = taken.iter().zip(&values).map(|(time, value)| (time - instant) * value).sum();
         let mut slopes: Vec<f64> =
             taken.iter().zip(&values).map(|(time, value)| (time - instant - mean) * value).collect();

@@ -1,9 +1,9 @@
 //! A robust first fit: a few disturbed segments of time cannot spoil it.
 //!
-//! Rows are weighted by how far they are from the fit before, in deviations of its noise (P. J. Huber, Robust
-//! statistics, 1981). A push or a sensor's fault that lasts spoils that fit, and its noise so much that nothing seems
-//! to be far off any more. Segments of time are kept apart anyway: those that stand out from the others count less
-//! until the others agree, which takes no other pass over the logs. From there on rows are told from each other.
+//! Rows are weighted by their residuals in the previous fit, in standard deviations of its noise (P. J. Huber, Robust
+//! statistics, 1981). A long push or sensor fault increases that noise so much that no residual seems large any more.
+//! The equations are stored for segments of time. So the weight of segments with much larger residuals than the others
+//! is reduced, iteratively and without another pass over the logs. With this fit, single rows can be weighted.
 
 use rne_logs::median;
 
@@ -18,12 +18,12 @@ const SUSPECT: f64 = 7.0;
 /// A segment whose residual is above this many times the median counts less.
 const BEND: f64 = 2.0;
 const ROUNDS: usize = 10;
-/// Weights that change by less have settled.
+/// Weights that change by less than this part have converged.
 const SETTLED: f64 = 0.1;
 /// Residuals below this part of the effort (root mean square) count as rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// The fit of the segments that agree with each other, where others stand out from them; `None` where none does.
+/// Returns the fit of the segments that agree with each other; `None` if no segment is an outlier.
 pub(crate) fn steady(structure: &Structure, information: &Information, fit: &LeastSquares) -> Option<LeastSquares> {
     let before = residuals(structure, information, fit);
     let is_suspect = |of_joint: &Vec<f64>| of_joint.iter().any(|left| *left > SUSPECT * median(of_joint.clone()));
@@ -46,7 +46,7 @@ pub(crate) fn steady(structure: &Structure, information: &Information, fit: &Lea
     Some(found)
 }
 
-/// The root mean square of the residual of a fit for each joint and segment, N m or N.
+/// Returns the root mean square of the residual of a fit for each joint and segment, N m or N.
 fn residuals(structure: &Structure, information: &Information, fit: &LeastSquares) -> Vec<Vec<f64>> {
     let total = information.total(structure);
     let of_joint = |joint: usize| {

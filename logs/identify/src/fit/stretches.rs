@@ -1,4 +1,4 @@
-//! Normal equations of a log, kept apart for short stretches of time.
+//! Normal equations of a log for each short stretch of time.
 //!
 //! Sums over stretches answer every question of the kind "what if a parameter had changed from here to there" without
 //! another pass over the log. The memory does not grow with the log: neighbours merge.
@@ -10,10 +10,10 @@ use crate::fit::fitted_model::FittedModel;
 use crate::fit::information::{CORRELATED, MotionError, WINDOW, Walk, Weighting, checked, instants, rows};
 use crate::fit::structure::Structure;
 
-/// Stretches that are kept apart, at most.
+/// Largest number of stretches; beyond it, neighbours are merged.
 const MOST: usize = 256;
 
-/// The square of an effort that no sensor measures, over the variance of its noise.
+/// Largest sum of squared efforts, over the variance of the noise, that counts as a channel that measures nothing.
 const SILENT: f64 = 1e-12;
 
 /// The normal equations of a stretch of time.
@@ -27,7 +27,7 @@ pub struct Stretch {
     pub start: f64,
     /// The last instant, s.
     pub end: f64,
-    /// Rows of each joint.
+    /// Number of rows of each joint.
     pub rows: u64,
     /// For each joint the products of its used columns and of its torque, over the variance of its noise.
     products: Vec<DMatrix<f64>>,
@@ -39,14 +39,15 @@ pub struct Stretches {
     list: Vec<Stretch>,
     weighting: Weighting,
     used: Vec<Vec<usize>>,
-    /// Rows of a stretch.
+    /// Number of rows of each joint in a stretch.
     length: u64,
-    /// s, from the first to the last instant of each motion.
+    /// Sum of the times from the first to the last instant of each motion, s.
     duration: f64,
 }
 
 impl Stretches {
-    /// For logs that are compared with a model: every row counts, rows near rest count less.
+    /// Makes empty stretches for logs that are compared with a model: large residuals do not reduce the weight of a
+    /// row, but rows near rest have less weight.
     #[must_use]
     pub fn new(structure: &Structure, model: &FittedModel) -> Self {
         Self::with_weighting(structure, model, model.weighting(structure))
@@ -70,13 +71,13 @@ impl Stretches {
         self.duration
     }
 
-    /// Rows of each joint.
+    /// Returns the number of rows of each joint.
     #[must_use]
     pub fn rows(&self) -> u64 {
         self.list.iter().map(|stretch| stretch.rows).sum()
     }
 
-    /// Takes in a motion of a run.
+    /// Adds a motion of a run.
     ///
     /// # Errors
     /// When the motion is of another robot, or has numbers that are not finite.
@@ -124,7 +125,7 @@ impl Stretches {
         }
     }
 
-    /// The normal equations of all stretches: see [`Stretch::add_to`].
+    /// Returns the sum of the normal equations of all stretches; [`Stretch::add_to`] describes them.
     #[must_use]
     pub fn total(&self, structure: &Structure) -> DMatrix<f64> {
         let mut total = DMatrix::zeros(structure.count() + 1, structure.count() + 1);
@@ -142,11 +143,11 @@ impl Stretch {
         }
     }
 
-    /// Whether the effort of a joint is zero throughout, as that of a channel that measures nothing.
+    /// Whether the effort of a joint is always zero, as from a channel that measures nothing.
     #[must_use]
     pub fn is_silent(&self, joint: usize) -> bool {
         let products = &self.products[joint];
-        // over the variance of the noise: real sensors have noise
+        // the products are over the variance of the noise, so those of a real sensor are far larger
         products[(products.nrows() - 1, products.ncols() - 1)] <= SILENT
     }
 
@@ -155,12 +156,13 @@ impl Stretch {
         self.products[joint].fill(0.0);
     }
 
-    /// Adds the products of all unknowns and of the torque, which is last.
+    /// Adds the normal equations of this stretch to `total`: the products of all unknowns and of the torque, which is
+    /// last.
     pub fn add_to(&self, structure: &Structure, total: &mut DMatrix<f64>) {
         (0..self.products.len()).for_each(|joint| self.add_joint(structure, joint, total));
     }
 
-    /// Adds the products of the rows of one joint.
+    /// Adds the normal equations of the rows of one joint to `total`.
     pub fn add_joint(&self, structure: &Structure, joint: usize, total: &mut DMatrix<f64>) {
         let mut places = structure.unknowns(joint);
         places.push(structure.count());

@@ -1,4 +1,4 @@
-//! The unknowns and the filter of an identification: which parameters, which friction, which low-pass.
+//! The options and unknowns of an identification: which parameters, which friction, which low-pass filter.
 
 use crate::Parameter;
 use nalgebra::DMatrixView;
@@ -12,20 +12,19 @@ use crate::fit::smoothing::Kernel;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Options {
-    /// Viscous and Coulomb friction, the latter for each direction of its own. Without, the arm has none, whatever its
-    /// file says.
+    /// Whether viscous friction and Coulomb friction of each direction are unknowns. If not, the arm has no friction,
+    /// whatever its file says.
     pub friction: bool,
-    /// Inertia of rotors behind their gears. Without, the rotors of the file are known, and their torque is not that of
-    /// links.
+    /// Whether the inertias of rotors, at their joints, are unknowns. If not, those of the file are taken as known.
     pub rotors: bool,
     /// Whether the delay of the torques against the positions is an unknown.
     pub delay: bool,
-    /// Hz: what both sides of the equations of motion pass; `None`: nothing is filtered.
+    /// Cut-off of the low-pass filter of both sides of the equations of motion, Hz; `None` for no filter.
     pub cutoff: Option<f64>,
-    /// rad/s or m/s: speeds about which Coulomb friction may change its sign.
+    /// Candidate widths of the range of speed in which Coulomb friction changes its sign, rad/s or m/s.
     pub widths: Vec<f64>,
-    /// rad or m: displacements over which it may do so after a reversal. Of all speeds and displacements the data
-    /// choose one for each joint.
+    /// Candidate displacements after a reversal over which Coulomb friction changes its sign, rad or m. For each joint,
+    /// the widths or displacement that fits the data best is chosen.
     pub displacements: Vec<f64>,
 }
 
@@ -38,20 +37,20 @@ impl Default for Options {
 }
 
 impl Options {
-    /// How far the low-pass of both sides reaches before and behind an instant, s: there are no rows nearer to the ends
-    /// of a run. `cutoff` is in Hz.
+    /// Returns the time before and after an instant that the low-pass filter of both sides covers, s: there are no rows
+    /// nearer to the ends of a run. `cutoff` is in Hz.
     #[must_use]
     pub fn filter_reach(cutoff: f64) -> f64 {
         Kernel::of_cutoff(cutoff).reach()
     }
 
-    /// The time for which a row stands behind a low-pass, s. `cutoff` is in Hz.
+    /// Returns the time between rows after a low-pass filter, s. `cutoff` is in Hz.
     #[must_use]
     pub fn row(cutoff: f64) -> f64 {
         Kernel::of_cutoff(cutoff).width()
     }
 
-    /// The ways in which Coulomb friction may change its sign; a step, if no way was offered.
+    /// Returns the transitions by which Coulomb friction may change its sign; a step if the options give none.
     #[must_use]
     pub fn transitions(&self) -> Vec<FrictionTransition> {
         let widths = self.widths.iter().map(|width| FrictionTransition::Speed(*width));
@@ -61,25 +60,25 @@ impl Options {
     }
 }
 
-/// The equations of a robot: its columns, joint by joint.
+/// The form of a robot's equations: the columns and unknowns of each joint.
 #[derive(Clone, Debug)]
 pub struct Structure {
     pub(crate) options: Options,
     pub(crate) transitions: Vec<FrictionTransition>,
     pub(crate) parameters: Parameters,
     pub(crate) robot: Robot,
-    /// The columns of its geometry.
+    /// Computes the columns of the links' parameters.
     pub(crate) regressor: Regressor,
     /// The base parameters that the torque of each joint may depend on.
     pub(crate) felt: Vec<Vec<usize>>,
 }
 
-/// Unknowns of the friction of one joint: viscous, Coulomb's, and the offset.
+/// Number of unknowns of the friction of one joint: viscous friction, Coulomb friction, and the offset.
 pub(crate) const FRICTION: usize = 3;
 
 impl Structure {
-    /// Sets up the equations of a robot's geometry; its links count as prior knowledge alone. The inertia of rotors in
-    /// the list `motors` is known: a robot that has some has no [`Options::rotors`].
+    /// Sets up the equations of a robot's geometry; the parameters of its links are only prior knowledge. The inertia
+    /// of rotors in the list `motors` is known: a robot with such rotors ignores [`Options::rotors`].
     #[must_use]
     pub fn new(robot: &Robot, options: Options) -> Self {
         let options = Options { rotors: options.rotors && !robot.has_spinning_rotors(), ..options };
@@ -100,19 +99,19 @@ impl Structure {
         &self.parameters
     }
 
-    /// The options that it was made with.
+    /// The options with which the structure was made.
     #[must_use]
     pub fn options(&self) -> &Options {
         &self.options
     }
 
-    /// The robot whose geometry it is.
+    /// The robot with this geometry.
     #[must_use]
     pub fn robot(&self) -> &Robot {
         &self.robot
     }
 
-    /// The unit of a parameter: the rotor of a joint that slides resists as a mass does.
+    /// Returns the unit of a parameter: kg for the rotor of a prismatic joint.
     #[must_use]
     pub fn unit(&self, parameter: Parameter) -> &'static str {
         let slides =
@@ -125,23 +124,23 @@ impl Structure {
         }
     }
 
-    /// Number of coordinates: of the joints that follow no other. Joints of rows, of friction and of motions are
-    /// coordinates.
+    /// Returns the number of coordinates: the joints that depend on no other. Rows, friction and motions exist only for
+    /// these joints.
     #[must_use]
     pub fn dof(&self) -> usize {
         self.robot.dof()
     }
 
-    /// The columns of the regrouping for the first `count` of the ten parameters of the link with the tip: the changes
-    /// of the base parameters by a payload.
+    /// Returns the columns of the regrouping for the first `count` of the ten parameters of the link with the tip: the
+    /// changes of the base parameters by a payload.
     #[must_use]
     pub fn payload_columns(&self, count: usize) -> DMatrixView<'_, f64> {
         let link = self.robot.tip().on.unwrap_or_default();
         self.parameters.regrouping.columns(PER_LINK * link, count)
     }
 
-    /// Columns of the rows of a joint: base parameters; viscous friction, then Coulomb's and the offset by
-    /// each transition; the torque's slope; the torque.
+    /// Returns the number of columns of a joint's rows: base parameters; viscous friction, then Coulomb friction and
+    /// the offset for each transition; the slope of the torque; the torque.
     pub(crate) fn columns(&self, joint: usize) -> usize {
         self.felt[joint].len() + self.own_columns() + 1
     }
@@ -151,7 +150,7 @@ impl Structure {
         friction + usize::from(self.options.delay)
     }
 
-    /// The columns of a joint's rows that are used with the transition of this index.
+    /// Returns the columns of a joint's rows that are used with the transition of this index.
     pub(crate) fn used(&self, joint: usize, transition: usize) -> Vec<usize> {
         let felt = self.felt[joint].len();
         let mut used: Vec<usize> = (0..felt).collect();
@@ -165,7 +164,7 @@ impl Structure {
         used
     }
 
-    /// The unknowns that belong to the columns of [`used`](Self::used), but for the torque.
+    /// Returns the unknowns that belong to the columns of [`used`](Self::used), without the torque.
     pub(crate) fn unknowns(&self, joint: usize) -> Vec<usize> {
         let rank = self.parameters.rank();
         let mut unknowns = self.felt[joint].clone();
@@ -178,12 +177,13 @@ impl Structure {
         unknowns
     }
 
-    /// The first unknown of a joint's friction: viscous, then Coulomb's and the offset; none without friction.
+    /// Returns the index of the first unknown of a joint's friction (viscous friction, Coulomb friction, offset);
+    /// `None` without friction.
     pub(crate) fn friction_at(&self, joint: usize) -> Option<usize> {
         (self.options.friction && joint < self.dof()).then(|| self.parameters.rank() + FRICTION * joint)
     }
 
-    /// G² Jm of a joint, kg m² or kg, where the file has it and nobody asked for it: its torque is known.
+    /// Returns the known rotor inertia G² Jm of a joint, kg m² or kg: that of the file, or 0 if rotors are unknowns.
     pub(crate) fn known_rotor(&self, joint: usize) -> f64 {
         match self.robot.independent_joint(joint).and_then(|joint| joint.motor) {
             Some(motor) if !self.options.rotors => motor.gear_ratio * motor.gear_ratio * motor.inertia,

@@ -1,4 +1,5 @@
-//! The information in a motion: the regressor along it, its condition, and the deviations of the parameters.
+//! Computes how well a motion determines the parameters: the regressor along the motion, its condition number, and the
+//! standard deviations of the parameters.
 
 use std::ops::Range;
 
@@ -15,16 +16,16 @@ use crate::fit::structure::{FRICTION, Options, Structure};
 use crate::motions::fourier::{Fourier, Grid};
 use crate::motions::motion_limits::MotionLimits;
 
-/// Rows of a joint per harmonic of a period.
+/// Number of rows of a joint in a period, for each harmonic.
 const ROWS: usize = 20;
 
-/// rad/s or m/s, about which friction changes its sign.
+/// Width of the range of speed in which friction changes its sign, rad/s or m/s.
 const WIDTH: f64 = 0.025;
 
-/// Noise of torques: as a part of the effort limit, and of what moving takes where a file has no limits.
+/// Assumed noise of torques as a part of the effort limit or, if a file has no limits, of the torque for the motion.
 const NOISE_OF_LIMIT: f64 = 0.01;
 const NOISE_OF_EFFORT: f64 = 0.05;
-/// Squares of singular values that are less than this part of the largest one are rounding.
+/// Squares of singular values below this part of the largest one count as rounding errors.
 const ROUNDING: f64 = 1e-13;
 /// Smallest noise of a torque that is assumed, N m or N.
 const SMALLEST: f64 = 1e-6;
@@ -42,7 +43,7 @@ pub(crate) struct Design {
     scales: Scales,
 }
 
-/// The rows of each joint, one for every instant: base parameters that it feels, then friction.
+/// The rows of each joint, one for every instant: the base parameters that its torque depends on, then friction.
 type Rows = Vec<DMatrix<f64>>;
 
 impl Design {
@@ -51,7 +52,7 @@ impl Design {
         let options =
             Options { friction, rotors, delay: false, cutoff: None, widths: vec![WIDTH], displacements: Vec::new() };
         let mut structure = Structure::new(robot, options);
-        // with the same bits everywhere: a search goes other ways by the last one
+        // the results need the same bits on every machine, because the last bit can change the course of the search
         structure.regressor = structure.regressor.in_seven_steps();
         let efforts: Option<Vec<f64>> = robot.independent_joints().map(|joint| joint.limits.effort).collect();
         let efforts = efforts.filter(|efforts| efforts.len() == limits.len() && efforts.iter().all(|x| *x > 0.0));
@@ -76,7 +77,7 @@ impl Design {
         plain_columns(&self.structure, &states, 0..states.len(), &Walk::new(&self.structure))
     }
 
-    /// Computes the quality of a motion by products of columns: exact to half the digits.
+    /// Computes the quality of a motion from products of columns, which are exact to half the digits.
     pub(crate) fn quality(&self, motion: &Fourier) -> Result<Quality, EvaluationError> {
         let rows = self.rows(motion)?;
         let own: Vec<DMatrix<f64>> = rows.iter().map(|rows| rows.tr_mul(rows)).collect();
@@ -87,8 +88,9 @@ impl Design {
         Ok(Quality { condition, deviations: self.deviations(&own, &efforts) })
     }
 
-    /// The unknowns that a motion has to tell from each other: all, but for the offset of a joint that slides and has a
-    /// rotor. Along the vertical its mass has q̈ + g, the rotor q̈ and the offset 1, which no motion tells apart.
+    /// Returns the unknowns that a motion has to distinguish: all, except the offset of a prismatic joint with a rotor.
+    /// If the joint is vertical, its mass has the column q̈ + g, the rotor q̈ and the offset 1, and these are linearly
+    /// dependent for every motion.
     fn asked(&self) -> Vec<usize> {
         let Structure { options, parameters, robot, .. } = &self.structure;
         let slides = |joint: usize| robot.coordinate_kind(joint) == JointKind::Prismatic;
@@ -99,7 +101,7 @@ impl Design {
         (0..self.structure.count()).filter(is_asked).collect()
     }
 
-    /// Products of all columns, rows weighted by joint.
+    /// Returns the products of all columns, with rows weighted by joint.
     fn products(&self, own: &[DMatrix<f64>], weights: &[f64]) -> DMatrix<f64> {
         let count = self.structure.count();
         let mut products = DMatrix::<f64>::zeros(count, count);
@@ -114,7 +116,7 @@ impl Design {
         products
     }
 
-    /// The torque that plausible links take, root mean square.
+    /// Returns the torque for plausible links, root mean square.
     fn effort(&self, joint: usize, rows: &DMatrix<f64>) -> f64 {
         let felt = &self.structure.felt[joint];
         let values = DVector::from_iterator(felt.len(), felt.iter().map(|&base| self.plausible[base]));
@@ -123,8 +125,8 @@ impl Design {
         (rows.columns(0, felt.len()) * values).norm() / count.sqrt()
     }
 
-    /// The deviation of each base parameter that an identification would find if every row were a measurement with
-    /// noise of its own.
+    /// Returns the standard deviation of each base parameter that an identification would find if the noise of all rows
+    /// were independent.
     fn deviations(&self, own: &[DMatrix<f64>], efforts: &[f64]) -> Vec<f64> {
         let noise = |joint: usize| match self.weights[joint] {
             weight if self.has_efforts => NOISE_OF_LIMIT / weight,
@@ -149,7 +151,7 @@ impl Design {
         &self.scales.bases
     }
 
-    /// The condition as an identification computes it.
+    /// Returns the condition number as an identification computes it.
     pub(crate) fn condition(&self, motion: &Fourier) -> Result<f64, EvaluationError> {
         let count = self.structure.count();
         let mut triangle = RFactor::new(count + 1);
@@ -158,7 +160,7 @@ impl Design {
             for (column, &to) in self.structure.unknowns(joint).iter().enumerate() {
                 all.set_column(to, &(rows.column(column) * self.weights[joint]));
             }
-            // of as many columns
+            // no error: both have this number of columns
             let _ = triangle.absorb(all);
         }
         let mut left_out = DVector::from_element(count, f64::INFINITY);
@@ -170,13 +172,13 @@ impl Design {
 /// How well a motion determines the parameters.
 #[derive(Clone, Debug)]
 pub(crate) struct Quality {
-    /// Largest over smallest singular value of the weighted columns, each of length one.
+    /// Condition number: largest over smallest singular value of the weighted columns, each scaled to length one.
     pub(crate) condition: f64,
-    /// The deviation of each base parameter.
+    /// The standard deviation of each base parameter.
     pub(crate) deviations: Vec<f64>,
 }
 
-/// Makes the diagonal of products one; the lengths of the columns.
+/// Scales products of columns so that their diagonal is one; returns the lengths of the columns.
 fn normalised(products: &mut DMatrix<f64>) -> Vec<f64> {
     let lengths: Vec<f64> = products.diagonal().iter().map(|square| square.sqrt()).collect();
     for (row, one) in lengths.iter().enumerate() {
@@ -208,7 +210,7 @@ fn plausible(structure: &Structure) -> DVector<f64> {
     &parameters.regrouping * values
 }
 
-/// The states of a motion at the points of a grid, without torques.
+/// Returns the states of a motion at the points of a grid, without torques.
 pub(crate) fn states(motion: &Fourier, grid: &Grid) -> Motion {
     #[allow(clippy::cast_precision_loss)] // some hundreds
     let time = (0..grid.points()).map(|point| motion.period() * point as f64 / grid.points() as f64).collect();
@@ -222,7 +224,7 @@ pub(crate) fn states(motion: &Fourier, grid: &Grid) -> Motion {
     states
 }
 
-/// Torques of an arm at states, joint by joint.
+/// Computes the torques of each joint of an arm at some states.
 pub(crate) fn torques(arm: &CompiledArm, states: &Motion) -> Result<Vec<Vec<f64>>, EvaluationError> {
     let mut torques = vec![vec![0.0; states.len()]; arm.dof()];
     let columns = torques.iter_mut().map(Vec::as_mut_slice).collect();
@@ -230,7 +232,7 @@ pub(crate) fn torques(arm: &CompiledArm, states: &Motion) -> Result<Vec<Vec<f64>
     Ok(torques)
 }
 
-/// Runs a function of an arm at some states of a motion: each number of its result has a column.
+/// Runs a function of an arm at some states of a motion; each number of the result has a column.
 pub(crate) fn run(
     arm: &CompiledArm,
     function: Function,

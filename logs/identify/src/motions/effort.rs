@@ -1,4 +1,4 @@
-//! Torques that a motion is predicted to take, against effort limits.
+//! Predicts the torques of a motion, to compare them with effort limits.
 
 use rne_machine::{CompiledArm, EvaluationError, Form};
 use rne_model::{Joint, Robot};
@@ -7,20 +7,20 @@ use crate::motions::design::{states, torques};
 use crate::motions::fourier::{Fourier, Grid};
 use crate::motions::motion_limits::MotionLimits;
 
-/// Instants of a period per harmonic.
+/// Number of instants in a period, for each harmonic.
 const INSTANTS: usize = 64;
 
-/// The arm of the file, with its rotors and its friction.
+/// Predicts torques by the arm of the file, with its rotors and its friction.
 #[derive(Clone, Debug)]
 pub(crate) struct Effort {
     arm: CompiledArm,
-    /// The friction of each joint at its speed limit, in the worse direction.
+    /// The friction of each joint at its speed limit, in the direction with more friction.
     friction: Vec<f64>,
     grid: Grid,
 }
 
 impl Effort {
-    /// `None` where no joint has an effort limit.
+    /// Sets up the prediction; `None` if no joint has an effort limit.
     pub(crate) fn of(robot: &Robot, limits: &[MotionLimits], harmonics: usize) -> Option<Self> {
         limits.iter().any(|limits| limits.effort.is_some()).then(|| {
             let arm = CompiledArm::from_robot(&robot.clone().with_rotors()).in_form(Form::SevenSteps);
@@ -32,11 +32,11 @@ impl Effort {
         })
     }
 
-    /// The largest torque of each joint, N m or N: at the instants, by how much more it may be between them, and
-    /// friction as if at full speed.
+    /// Returns an upper bound of the torque of each joint, N m or N: the largest value at the instants, plus a bound of
+    /// the excess between them, plus friction at the speed limit.
     ///
-    /// Between samples that are h apart a curve leaves their larger one by h² |f''| / 8 at most; second differences are
-    /// h² f''. Twice that is taken, for f'' may be larger between the samples, too.
+    /// Between samples at a distance h, a curve exceeds the larger one by at most h² |f''| / 8; second differences
+    /// approximate h² f''. Twice this bound is taken, because f'' may be larger between the samples.
     pub(crate) fn largest(&self, motion: &Fourier) -> Result<Vec<f64>, EvaluationError> {
         let all = torques(&self.arm, &states(motion, &self.grid))?;
         let largest = |(torques, friction): (&Vec<f64>, &f64)| {

@@ -1,11 +1,11 @@
-//! A motion that excites an arm: of the Fourier series within the limits that were tried, the one whose regressor has
-//! the least condition number, unless it leaves more parameters unexcited than others do.
+//! Finds a motion that excites an arm. Of the Fourier series within the limits that were tried, it is the one whose
+//! regressor has the smallest condition number, unless it leaves more parameters unexcited than others do.
 //!
-//! It is looked for in rounds: random starts, then a (1+1) evolution strategy from the best of them (I. Rechenberg,
-//! Evolutionsstrategie, 1973). A change of all joints or of one is kept where it is no worse, and changes become larger
-//! where more than one of five is. Limits are no penalty: a series that leaves its box is made smaller about its
-//! centre, and its centre is moved, until it is inside. Effort limits are none of a box: what is beyond them is worse
-//! than all that is not.
+//! The search has rounds: random starts, then a (1+1) evolution strategy from the best of them (I. Rechenberg,
+//! Evolutionsstrategie, 1973). A change of all joints or of one joint is kept if the motion is not worse, and changes
+//! become larger if more than one of five is kept. Position, speed and acceleration limits are not a penalty: a series
+//! that exceeds them is scaled about its centre, and its centre is moved, until it is inside. Effort limits cannot be
+//! met in this way: a motion that exceeds them is worse than all motions that do not.
 
 use rne_machine::EvaluationError;
 use rne_model::{Robot, one_line};
@@ -18,17 +18,17 @@ use crate::motions::fourier::{Fourier, Grid, MotionBounds, Series, beyond, large
 use crate::motions::motion_limits::MotionLimits;
 use crate::motions::random::Random;
 
-/// Number of times that a search begins anew, with at least `ROUND` evaluations each.
+/// Number of rounds, each with new random starts and at least `ROUND` evaluations.
 const ROUNDS: u64 = 5;
 const ROUND: u64 = 500;
-/// One of this many evaluations is a random start.
+/// One of this many evaluations of a round is a random start.
 const STARTS: u64 = 10;
-/// Deviation of the first change, of coefficients of order one.
+/// Standard deviation of the first change of the coefficients, whose magnitude is about 1.
 const FIRST: f64 = 0.3;
-/// The change after a success and, four of which undo it, after a failure.
+/// Factors of the change after a success and after a failure; four failures undo one success.
 const GROWTH: f64 = 1.5;
 const DECAY: f64 = 0.903_602_003_6;
-/// Smallest change of a coefficient.
+/// Smallest standard deviation of the change of a coefficient.
 const SMALLEST: f64 = 1e-4;
 
 /// Options of the search for a motion.
@@ -37,7 +37,7 @@ const SMALLEST: f64 = 1e-4;
 pub struct ExcitationOptions {
     /// The period of the motion, s.
     pub period: f64,
-    /// Harmonics of each joint's series, 2 or more.
+    /// Number of harmonics of each joint's series, 2 or more.
     pub harmonics: usize,
     /// Number of motions that are tried.
     pub evaluations: u64,

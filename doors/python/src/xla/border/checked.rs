@@ -1,8 +1,8 @@
-//! What the pointers of XLA point to, after checks.
+//! Checks the pointers that XLA passes, and returns what they point to.
 
 use super::{AXES, Attributes, BUFFER, Buffer, Buffers, ByteSpan, F32, F64, STRING};
 
-/// The text of the attribute with the name `wanted`.
+/// Returns the text of the attribute with the name `wanted`.
 ///
 /// # Safety
 /// The attributes must come from XLA in this call: each list pointer is NULL or points to as many items as XLA says.
@@ -10,7 +10,7 @@ pub(super) unsafe fn text<'a>(attributes: &'a Attributes, wanted: &str) -> Resul
     if attributes.struct_size < size_of::<Attributes>() {
         return Err("the attributes are of an older version of XLA".to_owned());
     }
-    // SAFETY: XLA's promise: the lists have as many items as it says.
+    // SAFETY: XLA promises that the lists have as many items as it says.
     unsafe {
         let kinds = listed(attributes.kinds, attributes.count, "the attributes")?;
         let names = listed(attributes.names, attributes.count, "the attributes")?;
@@ -30,9 +30,9 @@ pub(super) unsafe fn text<'a>(attributes: &'a Attributes, wanted: &str) -> Resul
 }
 
 /// # Safety
-/// XLA's promise of the span.
+/// XLA must promise that the span is valid.
 pub(super) unsafe fn span<'a>(pointer: *const ByteSpan) -> Result<&'a [u8], String> {
-    // SAFETY: the promise of the caller.
+    // SAFETY: promised by the caller.
     unsafe {
         refuse_wrong(pointer, "an attribute")?;
         let span = &*pointer;
@@ -41,12 +41,12 @@ pub(super) unsafe fn span<'a>(pointer: *const ByteSpan) -> Result<&'a [u8], Stri
 }
 
 /// # Safety
-/// XLA's promise of the list.
+/// XLA must promise that the list is valid.
 pub(super) unsafe fn buffers<'a>(buffers: &'a Buffers, what: &str) -> Result<&'a [*const Buffer], String> {
     if buffers.struct_size < size_of::<Buffers>() {
         return Err(format!("{what} are of an older version of XLA"));
     }
-    // SAFETY: the promise of the caller: the lists have as many items as it says.
+    // SAFETY: the caller promises that the lists have as many items as they say.
     unsafe {
         let kinds = listed(buffers.kinds, buffers.count, what)?;
         if kinds.iter().any(|&kind| kind != BUFFER) {
@@ -56,15 +56,15 @@ pub(super) unsafe fn buffers<'a>(buffers: &'a Buffers, what: &str) -> Result<&'a
     }
 }
 
-/// The lengths of the axes of an array, and how many numbers it has.
+/// Returns the lengths of the axes of an array, and how many numbers it has.
 ///
 /// # Safety
-/// XLA's promise of the lengths.
+/// XLA must promise that the lengths are valid.
 pub(super) unsafe fn shape(buffer: &Buffer, what: &str) -> Result<(Vec<usize>, usize), String> {
     if usize::try_from(buffer.rank).map_or(true, |rank| rank > AXES) {
         return Err(format!("{what} has {} axes", buffer.rank));
     }
-    // SAFETY: the promise of the caller.
+    // SAFETY: promised by the caller.
     let lengths = unsafe { listed(buffer.dimensions, buffer.rank, what)? };
     let lengths: Option<Vec<usize>> = lengths.iter().map(|&length| usize::try_from(length).ok()).collect();
     let shape = lengths.ok_or_else(|| format!("{what} has an axis whose length is negative"))?;
@@ -72,7 +72,8 @@ pub(super) unsafe fn shape(buffer: &Buffer, what: &str) -> Result<(Vec<usize>, u
     Ok((shape, count.ok_or_else(|| format!("{what} is larger than memory"))?))
 }
 
-/// Whether the numbers of an array are of double precision, and their addresses, if they are numbers that can be used.
+/// Returns whether the numbers of an array are in double precision, and their addresses. Returns an error if they are
+/// of another type or cannot be used.
 pub(super) fn checked(buffer: &Buffer, count: usize, what: &str) -> Result<(bool, std::ops::Range<usize>), String> {
     let size = match buffer.dtype {
         F32 => size_of::<f32>(),
@@ -95,27 +96,27 @@ pub(super) fn checked(buffer: &Buffer, count: usize, what: &str) -> Result<(bool
 }
 
 /// # Safety
-/// [`checked`] has let it pass, and it points to as many numbers.
+/// [`checked`] has accepted it, and it points to as many numbers.
 pub(super) unsafe fn slice<'a, T>(start: *const T, count: usize) -> &'a [T] {
     if count == 0 {
         return &[];
     }
-    // SAFETY: it is not NULL, aligned, and no larger than memory; for the rest the promise of the caller.
+    // SAFETY: it is not NULL, aligned, and no larger than memory; the caller promises the rest.
     unsafe { std::slice::from_raw_parts(start, count) }
 }
 
 /// # Safety
-/// [`checked`] has let it pass, and it points to as many numbers, which nobody else uses. Whatever bytes are there are
-/// numbers; they are written to and not read.
+/// [`checked`] has accepted it, and it points to as many numbers, which nobody else uses. Any bytes there are valid
+/// numbers; they are written and not read.
 pub(super) unsafe fn slice_mut<'a, T>(start: *mut T, count: usize) -> &'a mut [T] {
     if count == 0 {
         return &mut [];
     }
-    // SAFETY: it is not NULL, aligned, and no larger than memory; for the rest the promise of the caller.
+    // SAFETY: it is not NULL, aligned, and no larger than memory; the caller promises the rest.
     unsafe { std::slice::from_raw_parts_mut(start, count) }
 }
 
-/// The items of a list; no pointer is needed for an empty one.
+/// Returns the items of a list; the pointer of an empty list may be NULL.
 ///
 /// # Safety
 /// `start` is NULL or points to as many items.
@@ -128,26 +129,26 @@ pub(super) unsafe fn listed<'a, T>(start: *const T, count: i64, what: &str) -> R
     if count.checked_mul(size_of::<T>()).is_none_or(|bytes| isize::try_from(bytes).is_err()) {
         return Err(format!("{what} are larger than memory"));
     }
-    // SAFETY: it is not NULL, aligned, and no larger than memory; for the rest the promise of the caller.
+    // SAFETY: it is not NULL, aligned, and no larger than memory; the caller promises the rest.
     Ok(unsafe { std::slice::from_raw_parts(start, count) })
 }
 
-/// A struct that begins with its size, where that says that it is all there.
+/// Returns a struct that begins with its size, if this size says that it has all fields.
 ///
 /// # Safety
 /// `pointer` is NULL or points to a struct that begins with its size.
 pub(super) unsafe fn sized<'a, T>(pointer: *const T, what: &str) -> Result<&'a T, String> {
-    // SAFETY: the promise of the caller; the size says that all fields are there.
+    // SAFETY: promised by the caller; the size says that all fields exist.
     unsafe {
         sized_pointer(pointer, size_of::<T>(), what)?;
         Ok(&*pointer)
     }
 }
 
-/// Refuses a struct whose size says that it has fewer than `known` bytes.
+/// Returns an error for a struct whose size says that it has fewer than `known` bytes.
 ///
 /// # Safety
-/// As of [`sized`].
+/// As for [`sized`].
 pub(super) unsafe fn sized_pointer<T>(pointer: *const T, known: usize, what: &str) -> Result<(), String> {
     refuse_wrong(pointer, what)?;
     // SAFETY: it is not NULL, and aligned; the struct begins with its size.

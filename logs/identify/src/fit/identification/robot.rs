@@ -1,4 +1,4 @@
-//! The robot of what was identified.
+//! Makes the robot from the identified parameters.
 
 use nalgebra::Matrix4;
 use rne_model::{Bodies, FrictionTransition, Inertia, InertiaReference, Joint, Link, Motor, PER_LINK, Robot};
@@ -7,10 +7,10 @@ use super::Fit;
 use crate::fit::pseudo_inertia;
 use crate::fit::structure::Structure;
 
-/// Digits of what is written.
+/// Significant digits of the numbers in the robot.
 const DIGITS: i32 = 8;
 
-/// The first joint of which a number is not finite.
+/// Returns the first joint that has a number that is not finite.
 pub(super) fn not_finite(robot: &Robot) -> Option<usize> {
     let is_finite = |joint: &Joint| {
         let Link { mass, com, inertia, .. } = joint.row.link;
@@ -24,18 +24,18 @@ pub(super) fn not_finite(robot: &Robot) -> Option<usize> {
     robot.joints.iter().position(|joint| !is_finite(joint))
 }
 
-/// The robot with these links and motors: its friction is what was identified, that of the file where the logs do not
-/// tell, and none where nobody asked for friction.
+/// Returns the robot with the fitted links and motors. Its friction is the identified one, that of the file where the
+/// logs do not determine it, and none if friction was not asked for.
 pub(super) fn robot_of(structure: &Structure, one: &Fit) -> Robot {
     let Fit { least_squares, feasible, .. } = one;
     let mut robot = structure.robot.clone();
-    // what is identified has the bodies in it
+    // the identified links include the payload and other bodies of the file
     robot.bodies = Bodies::default();
     let mut coordinate = 0;
     for (joint, of_link) in robot.joints.iter_mut().zip(&feasible.links) {
         joint.row.link = link(of_link);
         joint.written_inertia = (joint.row.link.inertia, InertiaReference::Com);
-        // a follower has no motor
+        // a dependent joint has no motor
         if joint.coupling.is_some() {
             continue;
         }
@@ -61,7 +61,7 @@ pub(super) fn robot_of(structure: &Structure, one: &Fit) -> Robot {
                 };
         }
         let is_nothing = motor.inertia == 0.0 && motor.viscous == 0.0 && motor.coulomb == [0.0; 2];
-        // a gear that the file has stays
+        // the gear ratio of the file is kept even without friction and rotor
         if joint.motor.is_some_and(|motor| motor.gear_ratio != 1.0) || !is_nothing {
             joint.motor = Some(motor);
         } else {
@@ -71,7 +71,7 @@ pub(super) fn robot_of(structure: &Structure, one: &Fit) -> Robot {
     robot
 }
 
-/// A link of a pseudo-inertia: mass, centre of mass, inertia about it.
+/// Converts a pseudo-inertia to a link: mass, centre of mass, and inertia about the centre of mass.
 pub(crate) fn link(pseudo: &Matrix4<f64>) -> Link {
     let [mass, hx, hy, hz, ..]: [f64; PER_LINK] = pseudo_inertia::parameters(pseudo);
     let com = [hx / mass, hy / mass, hz / mass];
@@ -93,7 +93,7 @@ pub(crate) fn link(pseudo: &Matrix4<f64>) -> Link {
     }
 }
 
-/// A number with as many digits as are written.
+/// Rounds a number to the digits that a robot file gets.
 fn rounded(value: f64) -> f64 {
     format!("{value:.*e}", usize::try_from(DIGITS - 1).unwrap_or_default()).parse().unwrap_or(value)
 }

@@ -1,11 +1,11 @@
-//! The instants at which rows are made, and the values of samples there.
+//! Chooses the instants at which rows are made, and interpolates samples there.
 
 use crate::fit::smoothing::Kernel;
 use crate::fit::structure::Structure;
 
-/// Where rows are made: at every state without filter, else as densely as what has passed it can tell apart, and where
-/// the whole kernel finds samples; where those are farther apart, at every state, too. None are so near to the ends
-/// that the torque that answers would be beyond.
+/// Returns the instants at which rows are made. Without a filter, these are all states; with a filter, there is one
+/// instant for every width of its kernel, or every state if states are farther apart. Near the ends, there are none
+/// where the kernel, shifted by the delay of the torques, would reach beyond the samples.
 pub(crate) fn instants(structure: &Structure, time: &[f64], delay: f64) -> Vec<f64> {
     let kernel = structure.options.cutoff.map(Kernel::of_cutoff);
     let (Some(first), Some(last)) = (time.first(), time.last()) else { return Vec::new() };
@@ -26,7 +26,7 @@ pub(crate) fn instants(structure: &Structure, time: &[f64], delay: f64) -> Vec<f
     (0..=count).map(|k| first + k as f64 * kernel.width()).collect()
 }
 
-/// Interpolates samples linearly at some time after one of them.
+/// Interpolates samples linearly at the time `behind` (s, may be negative) after sample `at`.
 pub(super) fn between(time: &[f64], at: usize, behind: f64, of: impl Fn(usize) -> f64) -> f64 {
     if behind == 0.0 {
         return of(at);
@@ -38,7 +38,7 @@ pub(super) fn between(time: &[f64], at: usize, behind: f64, of: impl Fn(usize) -
     (1.0 - part) * of(next - 1) + part * of(next)
 }
 
-/// The slope of samples about one of them.
+/// Returns the slope of the samples around sample `at`.
 pub(super) fn slope(time: &[f64], values: &[f64], at: usize) -> f64 {
     let (before, after) = (at.saturating_sub(1), (at + 1).min(values.len() - 1));
     let elapsed = time[after] - time[before];

@@ -1,4 +1,4 @@
-//! Motions that give no information on a robot.
+//! Errors of motions that give no information on a robot.
 
 use std::fmt;
 
@@ -9,31 +9,31 @@ use rne_machine::EvaluationError;
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum MotionError {
-    /// It is of another number of joints.
+    /// The motion has another number of joints than the robot.
     Joints {
         /// Joints of the robot.
         expected: usize,
         /// Joints of the motion.
         found: usize,
     },
-    /// A list has another length than the times.
+    /// A list of values has another length than the list of times.
     Lengths,
-    /// A number is not finite: the index of the state.
+    /// A number of the state with this index is not finite.
     NotFinite(usize),
     /// The regressor cannot be computed.
     Evaluation(EvaluationError),
-    /// All motions together make fewer rows than deviations need.
+    /// All motions together give fewer rows than standard deviations need.
     TooFew {
-        /// Rows of each joint.
+        /// Number of rows of each joint.
         rows: u64,
         /// The number of states that are needed.
         needed: u64,
-        /// s, of the motions together.
+        /// Duration of all motions together, s.
         duration: f64,
     },
     /// The efforts of all joints are zero throughout.
     NoEfforts,
-    /// An identified number of a joint is not finite: the index of the joint, from 0.
+    /// An identified number of the joint with this index, from 0, is not finite.
     NotANumber(usize),
 }
 

@@ -1,4 +1,4 @@
-//! Information as plain numbers, in which it travels between processes.
+//! Converts information to plain numbers and back, so that processes can exchange it.
 
 use std::fmt;
 
@@ -6,16 +6,16 @@ use super::{Information, SEGMENTS, Segment};
 use crate::fit::r_factor::RFactor;
 use crate::fit::structure::Structure;
 
-/// Numbers before those of the segments: rows of a segment, states, duration, shift, segments.
+/// Number of head values: rows of a segment, states, duration, shift, number of segments.
 const HEAD: usize = 5;
 
 /// Counts above this number are not exact as floating-point numbers.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
-/// Numbers that do not fit a structure.
+/// The error that numbers do not fit a structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WrongNumbers {
-    /// The number of numbers that were found.
+    /// How many numbers were given.
     pub found: usize,
 }
 
@@ -33,8 +33,8 @@ impl fmt::Display for WrongNumbers {
 impl std::error::Error for WrongNumbers {}
 
 impl Information {
-    /// Everything it has, as numbers: a head, the largest effort of each joint, then of each segment and joint the
-    /// rows, their weight and the triangle.
+    /// Returns all data as numbers: a head, the largest effort of each joint, then for each segment and joint the
+    /// number of rows, their weight and the triangular factor.
     #[must_use]
     #[allow(clippy::cast_precision_loss)] // counts below 2^53; one that has no end is infinite
     pub fn to_numbers(&self) -> Vec<f64> {
@@ -48,10 +48,9 @@ impl Information {
         numbers
     }
 
-    /// The information whose numbers these are, bit for bit.
+    /// Restores the information from [`to_numbers`](Self::to_numbers), bit for bit.
     ///
-    /// # Errors
-    /// When they are not of this structure.
+    /// # Errors When the numbers do not fit this structure.
     pub fn from_numbers(structure: &Structure, numbers: &[f64]) -> Result<Self, WrongNumbers> {
         Self::read(structure, numbers).ok_or(WrongNumbers { found: numbers.len() })
     }
@@ -85,7 +84,7 @@ impl Information {
     }
 }
 
-/// A number that counts something.
+/// Converts a number to a count; `None` if it is not a whole number that is exact.
 fn count(number: f64) -> Option<u64> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number in that range
     (number.fract() == 0.0 && (0.0..EXACT).contains(&number)).then_some(number as u64)

@@ -1,4 +1,5 @@
-//! The rows of a motion: what the torque of each joint says of the unknowns at some instants.
+//! Computes the rows of a motion: the linear equations for the unknowns that the torque of each joint gives at some
+//! instants.
 
 use nalgebra::{DMatrix, DVector};
 use rne_logs::Motion;
@@ -10,7 +11,8 @@ use super::{LENGTH, MotionError, Rejected, Weighting};
 use crate::fit::smoothing::{Kernel, Weights};
 use crate::fit::structure::Structure;
 
-/// The signs of friction of every joint by every transition, on their way through a motion: some remember.
+/// The sign of friction of every joint for every transition, updated state by state, because some transitions depend on
+/// earlier states.
 pub(crate) struct Walk {
     /// The state that comes next.
     at: usize,
@@ -24,7 +26,7 @@ impl Walk {
         Self { at: 0, signs: vec![signs; structure.dof()] }
     }
 
-    /// To a state that has not been passed.
+    /// Updates the signs up to state `to`.
     pub(crate) fn advance(&mut self, motion: &Motion, to: usize) {
         for (signs, (q, qd)) in self.signs.iter_mut().zip(motion.q.iter().zip(&motion.qd)) {
             for sign in signs {
@@ -37,14 +39,14 @@ impl Walk {
     }
 }
 
-/// The rows of every joint at some instants, multiplied with the roots of their weights, and the weights.
+/// The rows of every joint at some instants, multiplied by the square roots of their weights, and the weights.
 pub(crate) struct Rows {
     pub(crate) of_joints: Vec<DMatrix<f64>>,
     pub(crate) weights: Vec<Vec<f64>>,
 }
 
 impl Rows {
-    /// Rows multiplied with the roots of their weights.
+    /// Multiplies rows by the square roots of their weights.
     fn weighted(mut of_joints: Vec<DMatrix<f64>>, weighting: Option<&Weighting>) -> Self {
         let mut row_weights: Vec<Vec<f64>> = Vec::with_capacity(of_joints.len());
         for (joint, rows) in of_joints.iter_mut().enumerate() {
@@ -57,7 +59,7 @@ impl Rows {
         Self { of_joints, weights: row_weights }
     }
 
-    /// The rows in pieces of a segment's length, each with the sums of its weights.
+    /// Splits the rows into pieces as long as a segment, each with the sum of its weights for each joint.
     pub(super) fn pieces(&self, structure: &Structure) -> impl Iterator<Item = (Vec<DMatrix<f64>>, Vec<f64>)> {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let piece = if structure.options.cutoff.is_some() { LENGTH as usize } else { 64 };
@@ -70,7 +72,7 @@ impl Rows {
         })
     }
 
-    /// The rows of each joint that do not count.
+    /// Returns, for each joint, the rows that do not count because their weight is 0.
     pub(super) fn rejected(&self, instants: &[f64]) -> Vec<Option<Rejected>> {
         let of_joint = |weights: &Vec<f64>| {
             let mut none = weights.iter().zip(instants).filter(|(weight, _)| **weight == 0.0);
@@ -80,7 +82,7 @@ impl Rows {
     }
 }
 
-/// The rows of every joint at some instants, weighted.
+/// Returns the weighted rows of every joint at some instants.
 pub(crate) fn rows(
     structure: &Structure,
     motion: &Motion,
@@ -100,13 +102,13 @@ pub(crate) fn rows(
     walk.advance(motion, from);
     let plain = plain_columns(structure, motion, from..to, walk)?;
     let of_rotors = structure.regressor.of_rotors(motion, from..to)?;
-    // without filter instants are states, which follow each other
+    // without a filter, the instants are consecutive states
     let place = time.partition_point(|time| time < start);
     let weights: Vec<Weights> = match kernel {
         Some(kernel) => instants.iter().map(|instant| kernel.about(time, *instant)).collect(),
         None => Vec::new(),
     };
-    // the torques answer later by the delay
+    // the torques lag by the delay, so they are taken later
     let late: Vec<Weights> = match kernel {
         Some(kernel) if delay != 0.0 => instants.iter().map(|at| kernel.about(time, at + delay)).collect(),
         _ => Vec::new(),
@@ -138,7 +140,7 @@ pub(crate) fn rows(
     Ok(Rows::weighted((0..structure.dof()).map(of_joint).collect(), weighting))
 }
 
-/// The columns of every joint's rows at every state, but for those of the torque.
+/// Returns the columns of every joint's rows at every state, without those of the torque and its slope.
 pub(crate) fn plain_columns(
     structure: &Structure,
     motion: &Motion,

@@ -1,53 +1,54 @@
-//! Weights of rows, by their distance from the fit before.
+//! Weights of rows by their residuals in the previous fit.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::fit::structure::Structure;
 
-/// The bound of Huber's function, in standard deviations.
+/// Residual, in standard deviations, above which Huber's function reduces the weight of a row.
 const HUBER: f64 = 2.5;
 
-/// The deviation of the friction of a joint at rest, as a part of its Coulomb friction: a joint that stands or turns
-/// back is held by any torque between both directions.
+/// The standard deviation of the friction of a joint at rest, as a part of its Coulomb friction: at rest or at a
+/// reversal, friction has any value between those of both directions.
 const NEAR_REST: f64 = 0.25;
 
 /// The number of rows after the filter that count as one where errors before the filter are white: a Gaussian kernel
 /// of width σ leaves the correlation exp(-t²/4σ²), whose integral is 2√π σ, and there is a row for every σ.
 pub(crate) const CORRELATED: f64 = 3.544_907_701_811_032;
 
-/// The weights of rows, which follow from the residuals of the fit before.
+/// Computes the weights of rows from their residuals in the previous fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Weighting {
-    /// Unknowns of each joint's columns.
+    /// For each joint, the values of the unknowns of its columns.
     pub(crate) solutions: Vec<DVector<f64>>,
-    /// Columns of each joint that they belong to.
+    /// For each joint, the columns that these unknowns multiply; the torque is last.
     pub(crate) used: Vec<Vec<usize>>,
-    /// Deviation of each joint's noise, N m or N.
+    /// Standard deviation of each joint's noise, N m or N.
     pub(crate) noise: Vec<f64>,
-    /// Place of Coulomb friction among the unknowns of a joint, from behind; without friction none.
+    /// Index of Coulomb friction among the unknowns of a joint, counted from the end; `None` without friction.
     pub(crate) coulomb: Option<usize>,
-    /// s
+    /// Time by which the torques lag behind the positions, s.
     pub(crate) delay: f64,
-    /// A row that is off by more standard deviations does not count.
+    /// A row with a residual above this number of standard deviations does not count.
     pub(crate) outlier_bound: f64,
-    /// A row that is off by more standard deviations counts less: Huber's function.
+    /// A row with a residual above this number of standard deviations has less weight: Huber's function.
     pub(crate) huber: f64,
-    /// For each joint the column of its Coulomb friction and the deviation of this friction near rest, N m or N.
+    /// For each joint the column of its Coulomb friction and the standard deviation of this friction near rest, N m or
+    /// N.
     pub(crate) near_rest: Vec<Option<(usize, f64)>>,
 }
 
-/// Rows of a joint that do not count.
+/// The rows of a joint that do not count because their residuals are too large.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Rejected {
     /// Number of rows.
     pub rows: u64,
-    /// s: the first.
+    /// Time of the first such row, s.
     pub time: f64,
 }
 
 impl Weighting {
-    /// The weighting by a solution of all unknowns, with the transition and the noise of each joint; `delay` is the
+    /// Makes the weighting from a solution of all unknowns, the transition and the noise of each joint; `delay` is the
     /// time by which the torques lag, s.
     pub(crate) fn new(
         structure: &Structure,
@@ -61,7 +62,7 @@ impl Weighting {
             if structure.options().delay
                 && let Some(last) = values.last_mut()
             {
-                // the torques are taken later then
+                // no delay is left, because the torques are taken later by `delay`
                 *last = 0.0;
             }
             DVector::from_vec(values)
@@ -70,7 +71,7 @@ impl Weighting {
             solutions: (0..structure.dof()).map(of_joint).collect(),
             used: transitions.iter().enumerate().map(|(joint, of)| structure.used(joint, *of)).collect(),
             noise,
-            // viscous friction, Coulomb's, the offset, and the delay
+            // the last unknowns are viscous friction, Coulomb friction, the offset, and the delay
             coulomb: structure.options().friction.then(|| 2 + usize::from(structure.options().delay)),
             delay,
             outlier_bound: f64::INFINITY,
@@ -79,7 +80,7 @@ impl Weighting {
         }
     }
 
-    /// The weighting with less weight for rows near rest, where Coulomb friction has no definite value.
+    /// Returns the weighting with less weight for rows near rest, where Coulomb friction has no definite value.
     #[must_use]
     pub fn with_doubt_near_rest(mut self) -> Self {
         let friction = |(used, solution): (&Vec<usize>, &DVector<f64>)| {
@@ -91,13 +92,13 @@ impl Weighting {
         self
     }
 
-    /// The weighting without Huber's function: a row counts in full, however far off it is.
+    /// Returns the weighting without Huber's function: a large residual does not reduce the weight of a row.
     #[must_use]
     pub fn with_all_rows(self) -> Self {
         Self { huber: f64::INFINITY, outlier_bound: f64::INFINITY, ..self }
     }
 
-    /// Huber's weights of a joint's rows; none of what is too far off to be of the same motion.
+    /// Returns Huber's weights of a joint's rows; 0 for residuals above `outlier_bound`.
     pub(super) fn of(&self, joint: usize, rows: &DMatrix<f64>) -> Vec<f64> {
         let (used, solution) = (&self.used[joint], &self.solutions[joint]);
         let noise = self.noise[joint];
@@ -113,7 +114,7 @@ impl Weighting {
                     deviation * deviation * (1.0 - row[column] * row[column]).max(0.0)
                 });
                 let weight = 1.0 / (1.0 + doubt / (CORRELATED * noise * noise));
-                // what is no number counts as it is
+                // a residual that is NaN keeps its weight, because the comparisons are false
                 if off > self.outlier_bound {
                     0.0
                 } else if off > self.huber {

@@ -8,36 +8,37 @@ use crate::fit::fitted_model::{FittedModel, FrictionParameter, inverse_of_inform
 use crate::fit::stretches::Stretches;
 use crate::fit::structure::{FRICTION, Structure};
 
-/// kg: the deviation of the mass before any log.
+/// Standard deviation of the mass before any log, kg: so large that it has no effect.
 const MASS: f64 = 1e3;
 
-/// Rounds in which prior knowledge follows the mass, and the noise follows what is left.
+/// Number of iterations that adapt the prior to the estimated mass; half as many adapt the noise to the residuals.
 const ROUNDS: usize = 10;
 
-/// Rows of a segment that is left out at a time, and how many segments there are, at least and at most.
+/// Rows of a segment of the jackknife, and the smallest and largest number of segments.
 const ROWS: u64 = 20;
 const PARTS: [usize; 2] = [4, 32];
 
-/// The error of a file's friction on another motion, as parts of Coulomb friction: Coulomb friction, viscous friction
-/// at the joint's speed, and the offset of a joint that moves.
+/// Expected errors of a file's friction on another motion, as parts of Coulomb friction: of Coulomb friction, of
+/// viscous friction at the joint's speed, and of the offset of a moving joint.
 const COULOMB: f64 = 0.1;
 const VISCOUS: f64 = 0.15;
 const OFFSET: f64 = 0.25;
 
-/// The variance of the friction of a joint at rest, which has any value between both directions, over the square of
-/// Coulomb friction.
+/// The variance of the friction of a joint at rest over the square of Coulomb friction: any value between both
+/// directions is equally likely.
 const AT_REST: f64 = 1.0 / 3.0;
 
-/// m/s² or rad/s²: the acceleration by which an error of the model's torque becomes one of first moments and inertia.
+/// Typical acceleration, m/s² or rad/s², which converts a torque error of the model to an error of first moments and
+/// inertia.
 const ACCELERATION: f64 = 10.0;
 
-/// The joints next to the payload, which determine first moments and inertia.
+/// Number of joints next to the payload that determine first moments and inertia.
 const NEAR: usize = 3;
 
-/// The step of differences, in deviations.
+/// Step of numerical derivatives, in standard deviations.
 const STEP: f64 = 1e-4;
 
-/// Mass, centre of mass, inertia about it; or their variances.
+/// Mass, centre of mass, and inertia about the centre of mass, or their variances.
 pub(super) type Numbers = [f64; PER_LINK];
 
 /// An estimate with the variances of its numbers.
@@ -46,15 +47,15 @@ pub(super) struct Estimate {
     pub(super) variances: Numbers,
 }
 
-/// The normal equations of segments of time for the payload and the errors of the file, for each joint; what the file
-/// leaves of the torque is last.
+/// For each segment of time and joint, the normal equations for the payload and the errors of the file. The residual
+/// torque of the file is the last column.
 pub(super) struct Equations {
     pub(super) parts: Vec<Vec<DMatrix<f64>>>,
-    /// The deviations of the errors of the file.
+    /// The standard deviations of the errors of the file's friction.
     errors: Vec<f64>,
     /// The noise of each joint in the fit, N m or N.
     noise: Vec<f64>,
-    /// Factors by which the rows of each joint count less than by this noise.
+    /// Factors that reduce the weight of the rows of each joint below the weight from this noise.
     factors: Vec<f64>,
 }
 
@@ -94,8 +95,8 @@ impl Equations {
         equations
     }
 
-    /// The error of the model as a first moment, kg m, and as an inertia, kg m²: the offset by which friction of the
-    /// last joints is wrong, at a typical acceleration.
+    /// Returns the error of the model as a first moment, kg m, and as an inertia, kg m²: the error of the friction's
+    /// offset at the last joints, divided by a typical acceleration.
     pub(super) fn moment_error(&self, robot: &Robot) -> f64 {
         let coordinate = |link: usize| {
             let turns = robot.joints[link].row.kind == JointKind::Revolute;
@@ -106,7 +107,7 @@ impl Equations {
         OFFSET * near.map(coulomb).fold(0.0, f64::max) / ACCELERATION
     }
 
-    /// The sum over all segments but one.
+    /// Returns the sum of the normal equations over all segments, except `without`.
     fn total(&self, without: Option<usize>) -> DMatrix<f64> {
         let size = PER_LINK + self.errors.len() + 1;
         let mut total = DMatrix::zeros(size, size);
@@ -116,7 +117,7 @@ impl Equations {
         total
     }
 
-    /// Makes rows of a joint count less where the file with the payload leaves more than the noise.
+    /// Reduces the weight of a joint's rows if the residual of the file with the payload is larger than the noise.
     fn settle_noise(&mut self) {
         let size = PER_LINK + self.errors.len();
         for _ in 0..ROUNDS / 2 {
@@ -135,7 +136,8 @@ impl Equations {
         }
     }
 
-    /// The payload and the errors of the file by the sum of some segments, with their covariance.
+    /// Solves the normal equations `total` for the payload and the errors of the file; returns them with their
+    /// covariance.
     fn solution(&self, total: &DMatrix<f64>) -> Option<(DVector<f64>, DMatrix<f64>)> {
         let size = PER_LINK + self.errors.len();
         let slope = total.view((0, size), (size, 1)).column(0).clone_owned();
@@ -164,8 +166,8 @@ impl Equations {
         found
     }
 
-    /// The estimate without one of the segments, or with all of them. Without information it is nothing, of which
-    /// nothing is known.
+    /// Returns the estimate from all segments, except `without`. If the equations have no solution, it is zero with
+    /// infinite variances.
     pub(super) fn estimate(&self, without: Option<usize>) -> Estimate {
         let Some((solution, covariance)) = self.solution(&self.total(without)) else {
             return Estimate { numbers: [0.0; PER_LINK], variances: [f64::INFINITY; PER_LINK] };
@@ -190,7 +192,8 @@ impl Equations {
     }
 }
 
-/// The deviations of the errors of a file's friction at a joint, by the products of the joint's rows.
+/// Returns the standard deviations of the errors of a file's friction at a joint, from the normal equations of the
+/// joint.
 fn errors(structure: &Structure, model: &FittedModel, joint: usize, total: &DMatrix<f64>) -> [f64; FRICTION] {
     let at = structure.parameters().rank() + FRICTION * joint;
     let [viscous, coulomb, one] = std::array::from_fn(|k| total[(at + k, at + k)]);
@@ -202,15 +205,15 @@ fn errors(structure: &Structure, model: &FittedModel, joint: usize, total: &DMat
     [VISCOUS * size / mean(viscous).sqrt().max(SLOWEST), COULOMB * size, size * (OFFSET * OFFSET + rest).sqrt()]
 }
 
-/// Mass and centre of mass.
+/// Returns mass and centre of mass.
 fn centre(values: &DVector<f64>) -> (f64, Vector3<f64>) {
     let mass = values[0];
-    // a payload that is hardly there has no centre that is far away
+    // prevents a centre of mass that is far away if the mass is almost zero
     let size = if mass < 0.0 { mass.min(-LIGHTEST_PAYLOAD) } else { mass.max(LIGHTEST_PAYLOAD) };
     (mass, Vector3::new(values[1], values[2], values[3]) / size)
 }
 
-/// Mass, centre of mass and inertia about it, of parameters about the origin.
+/// Converts inertial parameters about the origin to mass, centre of mass, and inertia about the centre of mass.
 fn numbers(values: &DVector<f64>) -> Numbers {
     let (mass, com) = centre(values);
     let shift = shifted(mass, &com);
@@ -218,7 +221,7 @@ fn numbers(values: &DVector<f64>) -> Numbers {
     [mass, com.x, com.y, com.z, j(0), j(3), j(5), j(1), j(2), j(4)]
 }
 
-/// The variances of an estimate by estimates without one segment each.
+/// Returns the jackknife variances of an estimate from the estimates that leave out one segment each.
 pub(super) fn jackknife(parts: &[Numbers]) -> Numbers {
     #[allow(clippy::cast_precision_loss)] // at most 32
     let count = parts.len() as f64;
