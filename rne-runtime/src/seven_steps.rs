@@ -116,7 +116,8 @@ fn inertia_wrench<T: Scalar>(link: &LinkFrame<T>, this: &LinkMotion<T>) -> Force
     ForceMoment { force: add_force_of_h(link, this, force), moment: add_moment_of_h(link, this, moment) }
 }
 
-/// Step 6, the balance: force and moment from the parent link, the moment about J_i. The sums run over the joints k that link i carries, and the tip; in a chain there is one of them.
+/// Step 6, the balance: force and moment from the parent link, the moment about J_i. The sums run over the joints k
+/// that link i carries, and the tip; in a chain there is one of them.
 ///
 /// - f_{p,i} = f_i + Σ R_k f_{i,k} - m_i g_i
 /// - n_{p,i} = n_i + Σ R_k n_{i,k} + d_i × f_{p,i} + Σ r_k × R_k f_{i,k}

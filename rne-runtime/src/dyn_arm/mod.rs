@@ -291,7 +291,8 @@ impl<S: Constant> DynArm<S> {
         frame.on.is_none_or(|link| link < self.rows().len()).then_some(self)
     }
 
-    /// As [`FloatingRegressor::floating_regressor`](crate::FloatingRegressor::floating_regressor): 6 + n rows, the base and the links, parameter.
+    /// As [`FloatingRegressor::floating_regressor`](crate::FloatingRegressor::floating_regressor): 6 + n rows, the base
+    /// and the links, parameter.
     ///
     /// # Errors
     /// When an argument does not have one element per joint.

@@ -13,8 +13,8 @@
 //! ```
 //!
 //! Link i is the one that joint i moves. Link p is the one that carries joint i: its parent, or the base. In a chain p
-//! is i-1, and r_i is the lecture's r_{i-1}. f_{i,k} and n_{i,k} are f_{p,i} and n_{p,i} of a joint k that link i carries, or
-//! of a tip; in a chain there is one k, and it is i+1.
+//! is i-1, and r_i is the lecture's r_{i-1}. f_{i,k} and n_{i,k} are f_{p,i} and n_{p,i} of a joint k that link i
+//! carries, or of a tip; in a chain there is one k, and it is i+1.
 //!
 //! J_i is a point on the axis of joint i, fixed to link p: O_i of the lecture where the table is standard, the foot of
 //! the common normal on axis i where it is modified.
@@ -26,15 +26,16 @@
 //!
 //! `line.define(name).by(formula)` computes a formula and gives the result its name in the generated code. The names of
 //! a `line` have the number of its joint (`w2_z`); numbers of joints count from 1 there, and 0 is the base. Reports
-//! count the operations within `by(…)` under this name. `'s` is the lifetime of the builder on which all formulas are written.
+//! count the operations within `by(…)` under this name. `'s` is the lifetime of the builder on which all formulas are
+//! written.
 //!
 //! `back` is R_iᵀ. R_i and d_i are computed in [`super::joint`], r_i in [`super::arm`]. The argument of
-//! `joint.velocity(…)` and its like is the part of the step that both kinds of joint have; the method adds the term that
-//! only a revolute or only a prismatic joint has.
+//! `joint.velocity(…)` and its like is the part of the step that both kinds of joint have; the method adds the term
+//! that only a revolute or only a prismatic joint has.
 //!
 //! The lecture has a chain on a base that does not move. The terms of trees, moving bases and rotors of motors are in
-//! [`super::carried`], [`super::base`] and [`super::spin`]; those of links with mass 0 and a first moment h (kg m), which
-//! identification of parameters gives, are in [`super::first_moment`].
+//! [`super::carried`], [`super::base`] and [`super::spin`]; those of links with mass 0 and a first moment h (kg m),
+//! which identification of parameters gives, are in [`super::first_moment`].
 
 use crate::formulate::carried::{self, Load};
 use crate::formulate::first_moment::FirstMoment;
@@ -230,8 +231,8 @@ fn backward<'s>(
         });
 
         // 7   τ_i = e · n_{p,i}                        prismatic: e · f_{p,i}
-        // τ_i, or its part of the torque of a coordinate where joints are coupled; rotors of motors add their part, also
-        // those that other links carry
+        // of coupled joints it is a part of a torque, and has its own name; rotors of motors add their part, also those
+        // that other links carry
         let torque = line.define(arm.coordinates.name_of_torque(index).quantity).by({
             let torque = joint.actuator(&wrench);
             rotors.add_to_torque(&joint, (base, motions), torque)
