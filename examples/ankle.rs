@@ -20,7 +20,8 @@ fn main() {
     let tau = Ankle.inverse_dynamics_of_loops(&q, &passive, &qd, &qdd);
     println!("motors: {:.3} and {:.3} N m", tau[0], tau[1]);
 
-    // G: the rates of pitch and roll, and what a torque about pitch asks of the motors
+    // G, which maps the rates of the motors to those of pitch and roll; its transpose maps a torque about pitch to
+    // torques of the motors
     let map = Ankle.loop_map(&q, &passive);
     let [pitch, roll] = [0, 1].map(|joint| map[joint][0] * qd[0] + map[joint][1] * qd[1]);
     println!("the foot turns with {pitch:.3} rad/s in pitch and {roll:.3} rad/s in roll");

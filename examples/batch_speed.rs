@@ -17,7 +17,7 @@ struct Puma560;
 #[robot(path = "../robots/panda.yaml", form = "reduced")]
 struct Panda;
 
-/// States of a batch: what the first-level cache of most processors holds.
+/// Number of states of a batch; they fit in the first-level cache of most processors.
 const STATES: usize = 512;
 
 fn main() {
@@ -52,7 +52,7 @@ fn table<T: BatchScalar, const DOF: usize>(robot_name: &str, number: &str, robot
     }
 }
 
-/// The shortest of many runs, in nanoseconds per state.
+/// Runs a function many times and returns the shortest time, in nanoseconds per state.
 fn fastest(mut run: impl FnMut()) -> f64 {
     let times = (0..2000).map(|_| {
         let start = Instant::now();

@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 use rne::Scalar;
 use rne::model::{Angle, JointKind, Robot, Row};
 
-/// What the forward pass leaves of link i for the backward pass.
+/// Results of the forward pass for link i, which the backward pass needs.
 struct Link {
     is_revolute: bool,
     /// R_i turns components in the axes of link i into those of link p.
@@ -64,7 +64,8 @@ pub(crate) fn inverse_dynamics(robot: &Robot, q: &[f64], qd: &[f64], qdd: &[f64]
         (twist, r) = (rx(&dh.alpha), -com);
     }
 
-    // Backward, from the tip to the base. Step 6, the balance of link i with what joint i + 1 asks of it.
+    // Backward, from the tip to the base. Step 6, the balance of link i with the force and moment that it exerts on
+    // link i + 1.
     let mut torques = vec![0.0; links.len()];
     let (mut f, mut n, mut r_cross_f) = (zero, zero, zero);
     for (i, link) in links.iter().enumerate().rev() {

@@ -16,12 +16,12 @@ fn main() {
     let q = [0.0, 0.75, -1.5, 0.0, -0.75, 1.5, 0.0, 0.75, -1.5, 0.0, -0.75, 1.5];
     let (rest, omega) = ([0.0; 12], [0.0; 3]);
 
-    // what carries the robot in the air: the weight, and the torques of the legs that hang
+    // in the air, these carry the robot: the weight at the base, and the torques of the legs that hang
     let base = BaseMotion::fixed([0.0, 0.0, -9.81]);
     let hanging = Hyq.inverse_dynamics_of_floating_base(&q, &rest, &rest, &base, &[Wrench::default(); 4]);
     let weight = hanging.wrench.force[2]; // N
 
-    // the feet share it by the lever rule, so that the centre of mass stays over them
+    // the feet share the weight by the lever rule, so that the centre of mass stays above them
     let [lf, lh, rf, _] = Hyq.frame_poses(&q).map(|foot| foot.translation);
     let [x, y, _] = Hyq.centre_of_mass(&q);
     let (front, left) = ((x - lh[0]) / (lf[0] - lh[0]), (y - rf[1]) / (lf[1] - rf[1]));

@@ -37,15 +37,15 @@ joints:
 const SAMPLES: usize = 128;
 /// Steps that are planned ahead.
 const STEPS: usize = 30;
-/// s, duration of a step.
+/// Duration of a step, s.
 const STEP: f64 = 0.025;
-/// N m, the largest torques of the motors.
+/// The largest torques of the motors, N m.
 const EFFORT: [f64; 2] = [5.0, 4.0];
-/// N m, standard deviation of the largest variations of each torque.
+/// Standard deviation of the largest variations of each torque, N m.
 const DEVIATION: [f64; 2] = [2.5, 2.0];
-/// Steps that a variation lasts.
+/// Number of steps for which a variation stays constant.
 const HELD: usize = 6;
-/// What a variation costs more than the best one if its weight is 1/e of the best one's.
+/// The extra cost at which a variation has 1/e of the weight of the best one.
 const TEMPERATURE: f64 = 0.1;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -54,7 +54,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Returns when the arm has been upright for half a second, s, and where its joints are then, rad.
+/// Swings the arm up. Returns the time, s, when the arm has been upright for half a second, and the positions of its
+/// joints then, rad.
 fn swing_up(seed: u64) -> Result<(f64, [f64; 2]), Box<dyn std::error::Error>> {
     let arm = CompiledArm::from_yaml(ARM)?;
     let model = Rollout {
@@ -70,7 +71,7 @@ fn swing_up(seed: u64) -> Result<(f64, [f64; 2]), Box<dyn std::error::Error>> {
         // the first sample is the plan itself
         let mut tau = plan.repeat(SAMPLES);
         for (index, sample) in (0_u16..).zip(tau.chunks_mut(STEPS)).skip(1) {
-            // large variations swing the arm up, small ones balance it
+            // large variations find the swing, small ones are needed to balance the arm
             vary(&mut rng, sample, 0.96_f64.powi(index.into()));
         }
         let [mut positions, mut velocities] = [(); 2].map(|()| vec![0.0; SAMPLES * STEPS * 2]);
@@ -89,7 +90,7 @@ fn swing_up(seed: u64) -> Result<(f64, [f64; 2]), Box<dyn std::error::Error>> {
             });
         }
 
-        // the arm itself: one sample and one step
+        // the real arm: a rollout of one sample and one step
         let torques = plan[0];
         let start = Arguments::new().q(Array::Same(&q)).qd(Array::Same(&qd)).tau(Array::Same(&torques));
         let [mut next, mut speed] = [[0.0; 2]; 2];
@@ -107,7 +108,7 @@ fn swing_up(seed: u64) -> Result<(f64, [f64; 2]), Box<dyn std::error::Error>> {
     Err(format!("the arm is not upright after 400 cycles: {q:?} rad, {qd:?} rad/s").into())
 }
 
-/// Adds random variations to torques; the motors cannot do more than `EFFORT`.
+/// Adds random variations to torques, within the largest torques `EFFORT`.
 fn vary(rng: &mut Rng, torques: &mut [[f64; 2]], scale: f64) {
     for torques in torques.chunks_mut(HELD) {
         let variation = DEVIATION.map(|deviation| scale * deviation * normal(rng));
@@ -117,24 +118,24 @@ fn vary(rng: &mut Rng, torques: &mut [[f64; 2]], scale: f64) {
     }
 }
 
-/// A normal number (G. E. P. Box, M. E. Muller, 1958).
+/// Returns a random number of the normal distribution (G. E. P. Box, M. E. Muller, 1958).
 fn normal(rng: &mut Rng) -> f64 {
     let [a, b] = [(); 2].map(|()| 1.0 - rng.f64());
     (-2.0 * a.ln()).sqrt() * (std::f64::consts::TAU * b).cos()
 }
 
-/// The heights of both ends of the rods, 1 where the arm is upright, -1 where it hangs.
+/// Returns the height of the tip relative to the length of the arm: 1 if it is upright, -1 if it hangs.
 fn height(q: &[f64]) -> f64 {
     0.5 * (q[0].sin() + (q[0] + q[1]).sin())
 }
 
-/// What the states of a sample cost: height that is missing, and speed.
+/// Returns the cost of a sample's states: the missing height, and the speed.
 fn cost(positions: &[f64], velocities: &[f64]) -> f64 {
     let states = positions.chunks(2).zip(velocities.chunks(2));
     let of_state = |(q, qd): (&[f64], &[f64])| {
         let speed = qd[0] * qd[0] + qd[1] * qd[1];
         let missing = 1.0 - height(q);
-        // near the upright position the arm is to be slow
+        // near the upright position a high speed costs more
         4.0 * missing + 0.005 * speed + 0.05 * (1.0 - missing).max(0.0).powi(2) * speed
     };
     states.map(of_state).sum()

@@ -1,4 +1,4 @@
-//! Torques of a trajectory of any length: CSV in, CSV out, and how fast that went.
+//! Computes the torques of a trajectory of any length, from a CSV file to a CSV file, and measures the time.
 //!
 //! `cargo run --release --example trajectory -- --help`
 #![allow(clippy::cast_precision_loss)] // fewer than 2⁵² states
@@ -26,7 +26,7 @@ TRAJECTORY.csv  columns q1 .. q6 (rad), qd1 .. qd6 (rad/s), qdd1 .. qdd6 (rad/s�
                 without it, a million states are written to a temporary file and read from there
 TORQUES.csv     columns tau1 .. tau6 (N m); without it, a new file in the folder of temporary files";
 
-/// Numbers of one joint, one per state.
+/// The numbers of one joint, one per state.
 type Column = Vec<f64>;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{HELP}");
         return if matches!(arguments[0].as_str(), "--help" | "-h") { Ok(()) } else { Err("no such arguments".into()) };
     }
-    // of this process alone: nothing of anyone's is overwritten
+    // names of files of this process, so that no other file is overwritten
     let temporary = |name: &str| env::temp_dir().join(format!("rne-{}-{name}", std::process::id()));
     let (given, output) = (arguments.first().map(PathBuf::from), arguments.get(1).map(PathBuf::from));
     let input = given.clone().unwrap_or_else(|| temporary("trajectory.csv"));
@@ -74,7 +74,7 @@ fn report(what: &str, states: usize, time: Duration) {
     println!("{what:<9} {states} states in {:8.1} ms: {:10.0} states/s", seconds * 1e3, states / seconds);
 }
 
-/// Positions, velocities and accelerations, by the names of their columns.
+/// Reads positions, velocities and accelerations from the columns with their names.
 fn read(path: &Path) -> Result<[[Column; Puma560::DOF]; 3], Box<dyn Error>> {
     let file = File::open(path)?;
     let bar = progress("reading", file.metadata()?.len());
@@ -120,7 +120,7 @@ fn write(path: &Path, tau: &[Column; Puma560::DOF]) -> Result<(), Box<dyn Error>
     Ok(())
 }
 
-/// A trajectory of sines, a kilohertz.
+/// Writes a trajectory of sines, sampled at 1 kHz.
 fn generate(path: &Path, states: u32) -> Result<(), Box<dyn Error>> {
     let bar = progress("generating", states.into());
     let mut writer = csv::Writer::from_path(path)?;
@@ -143,12 +143,12 @@ fn generate(path: &Path, states: u32) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// `q1`, `q2` and so on.
+/// Returns names of columns: `q1`, `q2` and so on.
 fn names<const N: usize>(quantities: [&str; N]) -> Vec<String> {
     quantities.iter().flat_map(|name| (1..=Puma560::DOF).map(move |joint| format!("{name}{joint}"))).collect()
 }
 
-/// A bar on a terminal, nothing elsewhere.
+/// Creates a progress bar, which is shown on a terminal only.
 fn progress(what: &'static str, length: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg:<10} {wide_bar} {percent:>3} % {eta:>4}");
     ProgressBar::new(length).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())).with_message(what)

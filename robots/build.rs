@@ -1,4 +1,4 @@
-//! Lists the files of this folder and of `trees`: a robot is shipped because its file is here.
+//! Lists the robot files in this folder and in `trees`. To ship a robot, its file only has to be added here.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ fn main() {
     }
 }
 
-/// The list of the robot files in a folder and their plans.
+/// Returns Rust code of a list of the robot files in a folder, with their plans.
 fn texts(folder: &Path) -> String {
     let mut text = String::from("&[\n");
     for name in robots(folder) {
@@ -27,7 +27,7 @@ fn texts(folder: &Path) -> String {
     text + "]\n"
 }
 
-/// The names of the robot files, sorted; `NAME.plan.yaml` is none.
+/// Returns the names of the robot files in a folder, sorted. Plan files, `NAME.plan.yaml`, are not robot files.
 fn robots(folder: &Path) -> Vec<String> {
     let files = fs::read_dir(folder).expect("the folder of robots").map(|entry| entry.expect("an entry").path());
     let named = files.filter_map(|file| Some(file.file_name()?.to_str()?.strip_suffix(".yaml")?.to_owned()));

@@ -1,4 +1,4 @@
-//! The robot files that `rne` ships, as texts: what `#[robot(builtin = "puma560")]` and `rne example puma560` take.
+//! The robot files that `rne` ships, as texts. `#[robot(builtin = "puma560")]` and `rne example puma560` read them.
 //!
 //! ```
 //! let puma = rne_robots::find("puma560").expect("it is shipped");
@@ -13,19 +13,19 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct RobotFile {
-    /// What the robot is called: `puma560`.
+    /// Name of the robot, such as `puma560`.
     pub name: &'static str,
-    /// The robot file.
+    /// Text of the robot file.
     pub yaml: &'static str,
-    /// The plan of its reduced form.
+    /// Text of the plan file for its reduced form, if it has one.
     pub plan: Option<&'static str>,
 }
 
-/// Every shipped arm: a serial chain, which needs no more than `format: 1`. By the order of names.
-// A constant would be in every crate that names it, with all its texts.
+/// All shipped serial arms, which need no more than `format: 1`, sorted by name.
+// A static, because a constant would be copied, with all its texts, into every crate that uses it.
 pub static ROBOTS: &[RobotFile] = include!(concat!(env!("OUT_DIR"), "/robots.rs"));
 
-/// Every shipped robot with branches or with joints that follow others, in `format: 2`, by the order of names.
+/// All shipped robots with branches or with joints that follow others, in `format: 2`, sorted by name.
 pub static TREES: &[RobotFile] = include!(concat!(env!("OUT_DIR"), "/trees.rs"));
 
 /// All shipped robots: the arms, then the trees.
@@ -33,7 +33,7 @@ pub fn all() -> impl Iterator<Item = &'static RobotFile> {
     ROBOTS.iter().chain(TREES)
 }
 
-/// The shipped robot of a name; `None` when there is none.
+/// Returns the shipped robot with this name; `None` if there is none.
 #[must_use]
 pub fn find(name: &str) -> Option<&'static RobotFile> {
     all().find(|robot| robot.name == name)

@@ -13,7 +13,7 @@
 //! assert_eq!(Puma560::DOF, tau.len());
 //! ```
 //!
-//! `robots/puma560.yaml` holds the table of the arm and the mass, centre of mass and inertia of each link. The
+//! `robots/puma560.yaml` contains the table of the arm and the mass, centre of mass and inertia of each link. The
 //! [derive](derive@InverseDynamics) reads it at compile time, writes the seven steps of the recursion for each link,
 //! and removes the terms that vanish by this arm's right angles and zeros. A few hundred multiplications and additions
 //! remain, with names such as `w2_z`: no loop, no matrix, no allocation, no branch, no panic, no `unsafe`. The
@@ -162,7 +162,7 @@ pub mod robot_file {
     pub mod keys {}
 }
 
-/// Runs the example of states that are arrays.
+/// Runs the example of states that are arrays, in a document.
 #[cfg(all(doctest, feature = "compiled"))]
 #[doc = include_str!("../docs/control/run-time.md")]
 mod run_time {}

@@ -1,4 +1,4 @@
-//! Bodies: mass, first moment and second moments about one point, which add.
+//! Bodies described by mass, first moment and second moments about one point, so that two bodies add up.
 
 use std::ops::Add;
 
@@ -11,40 +11,41 @@ use crate::geometry::{Pose, Vector, decimal, rounded};
 pub(crate) struct Body {
     pub(crate) mass: Double,
     pub(crate) moment: Vector,
-    /// The tensor, by rows.
+    /// The inertia tensor, by rows.
     pub(crate) inertia: [Vector; 3],
 }
 
 impl Body {
     pub(crate) const NONE: Self = Self { mass: Double::new(0.0), moment: Vector::ZERO, inertia: [Vector::ZERO; 3] };
 
-    /// A body whose `inertia`, about its centre of mass, is given in the axes of `centre`, a frame there.
+    /// Makes a body from its mass and its inertia about the centre of mass, in the axes of the frame `centre` at this
+    /// point.
     pub(crate) fn at(mass: f64, centre: Pose, inertia: Inertia) -> Self {
         let own = Self { mass: decimal(mass), inertia: inertia.rows().map(Vector::decimal), ..Self::NONE };
         own.seen_from(centre)
     }
 
-    /// The link of a table.
+    /// Makes a body from a link of a table.
     pub(crate) fn of_link(link: &Link) -> Self {
         let mass = Self { mass: decimal(link.mass), inertia: link.inertia.rows().map(Vector::decimal), ..Self::NONE };
         let beside = Self { moment: Vector::decimal(link.first_moment), ..mass };
         beside.seen_from(Pose::new(link.com, [0.0; 3]))
     }
 
-    /// Whether there is a first moment without mass, which no body and no URDF has.
+    /// Returns whether the body has a first moment without mass, which no physical body and no URDF has.
     pub(crate) fn is_massless_moment(&self) -> bool {
         self.mass.high == 0.0 && self.moment != Vector::ZERO
     }
 
-    /// Moves the body to the origin of the frame in which this one's frame stands at `place`.
+    /// Converts the body from a frame that is placed at `place` in another frame to this other frame.
     pub(crate) fn seen_from(self, place: Pose) -> Self {
         let (r, t) = (place.rotation, place.translation);
         let turned_columns = self.inertia.map(|row| r * row);
-        // R I Rᵀ: rows of I turned are columns of (R I)ᵀ, for I is symmetric.
+        // R I Rᵀ: the rows of I, rotated by R, are the columns of R I, because I is symmetric.
         let [x, y, z] = turned_columns;
         let turned = [0, 1, 2].map(|i| r * Vector([x.0[i], y.0[i], z.0[i]]));
         let moment = r * self.moment;
-        // About the new origin: I + 2 (h·t) 1 - h tᵀ - t hᵀ + m (t² 1 - t tᵀ).
+        // The inertia about the new origin is I + 2 (h·t) 1 - h tᵀ - t hᵀ + m (t² 1 - t tᵀ).
         let along = Double::new(2.0) * moment.dot(t) + self.mass * t.dot(t);
         let inertia = [0, 1, 2].map(|i| {
             Vector([0, 1, 2].map(|j| {
@@ -56,13 +57,14 @@ impl Body {
         Self { mass: self.mass, moment: moment + t * self.mass, inertia }
     }
 
-    /// The centre of mass; the origin if there is no mass.
+    /// Returns the centre of mass; the origin if there is no mass.
     pub(crate) fn centre(&self) -> Vector {
         if self.mass.high == 0.0 { Vector::ZERO } else { self.moment * (Double::new(1.0) / self.mass) }
     }
 
-    /// The link of a table whose frame has this body's frame at `place`. Both ways may be long and end at the centre of
-    /// mass: what is left of a point's inertia then is rounding of what they added.
+    /// Converts the body to a link of a table; `place` is the placement of the body's frame in the link frame. Offsets
+    /// there and back to the centre of mass may be large and cancel: inertia that is small enough to be their rounding
+    /// error counts as zero.
     pub(crate) fn to_link_at(self, place: Pose) -> Link {
         let way = place.translation;
         let moved = self.mass.to_f64() * way.dot(way).to_f64();
@@ -70,12 +72,12 @@ impl Body {
         self.seen_from(place).link(size(&self.inertia).max(moved).max(turned))
     }
 
-    /// The link of a table: rounded once, what cancels exactly zero.
+    /// Converts the body to a link of a table: each number is rounded once, and numbers that cancel are exactly zero.
     pub(crate) fn to_link(self) -> Link {
         self.link(0.0)
     }
 
-    /// A number that is negligible beside `added` counts as zero.
+    /// Converts the body to a link; an element of the inertia that is negligible relative to `added` becomes zero.
     fn link(self, added: f64) -> Link {
         let centre = self.centre();
         let back = Self { moment: Vector::ZERO, ..self.about_centre(centre) };
@@ -104,7 +106,7 @@ impl Body {
     }
 }
 
-/// The largest component.
+/// Returns the largest magnitude of a component.
 fn length(vector: Vector) -> f64 {
     vector.to_f64().into_iter().map(f64::abs).fold(0.0, f64::max)
 }
@@ -144,7 +146,7 @@ mod tests {
         assert_eq!(back.to_link(), link);
     }
 
-    /// Its frame comes to stand at the point, after a long way: nothing is left, not even rounding.
+    /// A point mass keeps exactly zero inertia about itself, also after its frame was moved far away.
     #[test]
     fn a_point_has_no_inertia_of_its_own() {
         let link = Link { mass: 231.7, com: [17.3, -4.91, 8.37], ..Link::default() };
@@ -157,7 +159,7 @@ mod tests {
 
     #[test]
     fn two_halves_are_a_rod() {
-        // Halves of a thin rod of 6 kg and 2 m along x, each m l²/12 about its own centre.
+        // Two halves of a thin rod of 6 kg and 2 m along x, each with m l²/12 about its own centre.
         let half = |x: f64| Body::at(3.0, Pose::new([x, 0.0, 0.0], [0.0; 3]), inertia(0.0, 0.25, 0.25));
         let rod = (half(0.5) + half(-0.5)).to_link();
         assert_eq!(rod, Link { mass: 6.0, inertia: inertia(0.0, 2.0, 2.0), ..Link::default() });
@@ -168,7 +170,7 @@ mod tests {
         let turned =
             |yaw| Body::at(1.0, Pose::new([0.0; 3], [0.0, 0.0, yaw]), inertia(1.0, 3.0, 5.0)).to_link().inertia;
         assert_eq!(turned(FRAC_PI_2), inertia(3.0, 1.0, 5.0));
-        // At 45°, xy is (xx - yy)/2.
+        // After a turn by 45° about z, xy is (xx - yy)/2.
         assert_eq!(turned(FRAC_PI_4), Inertia { xy: -1.0, ..inertia(2.0, 2.0, 5.0) });
     }
 
@@ -176,7 +178,7 @@ mod tests {
     fn a_first_moment_without_mass_turns_and_moves_the_tensor() {
         let body = Body { moment: Vector::decimal([0.0, 2.0, 0.0]), ..Body::NONE };
         let moved = body.seen_from(Pose::new([0.0, 0.5, 0.0], [0.0; 3]));
-        // 2 h·t - 2 h t along y, 2 h·t across.
+        // Along y: 2 h·t - 2 h t = 0; across y: 2 h·t.
         assert_eq!(moved.inertia[0].to_f64(), [2.0, 0.0, 0.0]);
         assert_eq!(moved.inertia[1].to_f64(), [0.0, 0.0, 0.0]);
         assert_eq!(moved.moment.to_f64(), [0.0, 2.0, 0.0]);

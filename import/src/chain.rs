@@ -1,5 +1,5 @@
-//! From a tree of links to the chain between a base and a tip, or to all of it: what is fixed to a link is lumped into
-//! it.
+//! Turns a tree of links into the chain between a base and a tip, or into a whole tree of joints. All links that are
+//! fixed to a link are merged into it.
 
 mod follower;
 mod refusals;
@@ -19,32 +19,32 @@ use crate::selection::{End, Selection, link, path, tip};
 use crate::snap::Snapped;
 use crate::urdf::Urdf;
 
-/// More joints than a robot file may have.
+/// Largest number of joints that a robot file may have.
 const MAX_JOINTS: usize = 64;
 
 /// A serial arm, or a whole tree: joints with bodies between them.
 #[derive(Clone, Debug)]
 pub(crate) struct Chain {
-    /// World → base.
+    /// Placement of the base in the world.
     pub(crate) base: Pose,
     /// The acceleration of gravity in the axes of the base, m/s².
     pub(crate) gravity: Vector,
-    /// The floating base, if there is one, about the origin of its frame.
+    /// The floating base, if there is one: its mass and inertia about the origin of its frame.
     pub(crate) floating_base: Option<Body>,
     pub(crate) joints: Vec<ChainJoint>,
     /// The joint that moves the link of the tip, from 0.
     pub(crate) tip_on: usize,
-    /// Frame of the link of the tip → tip frame.
+    /// Placement of the tip frame in the frame of the link that carries it.
     pub(crate) tip: Pose,
-    /// Other frames that are fixed to its links, or to the base.
+    /// Other frames that are fixed to links of the chain, or to the base.
     pub(crate) frames: Vec<ChainFrame>,
-    /// The closed loops that its joints move.
+    /// The closed loops in which joints of the chain move.
     pub(crate) loops: Vec<ChainLoop>,
 }
 
 impl Chain {
-    /// Whether each link carries one joint, the last one the tip, no joint follows another and no loop is closed: a
-    /// table without branches has all of it.
+    /// Returns whether a table without branches can describe it: each link carries one joint, the last one carries the
+    /// tip, no joint follows another one, and no loop is closed.
     pub(crate) fn is_serial(&self) -> bool {
         let follows_the_last =
             |(index, joint): (usize, &ChainJoint)| joint.parent == index.checked_sub(1) && joint.coupling.is_none();
@@ -53,18 +53,20 @@ impl Chain {
             && self.loops.is_empty()
     }
 
-    /// Whether it is a serial arm on a base that stands still: a serial arm on a floating base keeps the frame of that.
+    /// Returns whether it is a serial arm on a fixed base. A serial arm on a floating base is not, because its table
+    /// must keep the frame of this base.
     pub(crate) fn is_arm(&self) -> bool {
         self.is_serial() && self.floating_base.is_none()
     }
 }
 
-/// A closed loop.
+/// A closed loop of a chain.
 #[derive(Clone, Debug)]
 pub(crate) struct ChainLoop {
-    /// Its place in the list of the URDF.
+    /// The index of the loop in the list of the URDF.
     pub(crate) index: usize,
-    /// The joints that move the two links, from 0, `None` for the base, and the places in the frames of these links.
+    /// Both ends: the joint that moves the link, from 0, or `None` for the base, and the place in the frame of this
+    /// link.
     pub(crate) ends: [(Option<usize>, Pose); 2],
 }
 
@@ -74,54 +76,54 @@ pub(crate) struct ChainFrame {
     pub(crate) name: String,
     /// The joint that moves the link, from 0; `None` for the base.
     pub(crate) on: Option<usize>,
-    /// Frame of the moved link, or of the base → this frame.
+    /// Placement of this frame in the frame of the link, or of the base.
     pub(crate) place: Pose,
 }
 
-/// A joint and the link that it moves, whose frame is at the joint.
+/// A joint and the link that it moves; the link's frame is at the joint.
 #[derive(Clone, Debug)]
 pub(crate) struct ChainJoint {
     pub(crate) name: String,
     pub(crate) is_prismatic: bool,
     /// The joint whose link carries this joint, from 0; `None` for the base.
     pub(crate) parent: Option<usize>,
-    /// Frame of the link that carries it, or of the base → frame of this one's link, at q = 0.
+    /// Placement of the moved link's frame at q = 0, in the frame of the link that carries the joint, or of the base.
     pub(crate) place: Pose,
     /// The unit vector of the axis, in the link's axes.
     pub(crate) axis: Vector,
-    /// About the origin of the link's frame.
+    /// Mass and inertia of the moved link, about the origin of its frame.
     pub(crate) body: Body,
     pub(crate) limits: Limits,
     pub(crate) motor: Option<Motor>,
-    /// How it follows another joint of the chain.
+    /// How the joint follows other joints of the chain; `None` for an independent joint.
     pub(crate) coupling: Option<Coupling>,
     pub(crate) coulomb_width: Option<f64>,
     pub(crate) coulomb_displacement: Option<f64>,
 }
 
-/// The record of a tree's way to a chain.
+/// What happened on the way from a tree to a chain.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Extracted {
     pub(crate) base: String,
     pub(crate) tip: String,
-    /// Per joint of the chain its place in the text.
+    /// For each joint of the chain, its place in the text.
     pub(crate) spans: Vec<Range<usize>>,
-    /// Per joint of the chain that of the URDF.
+    /// For each joint of the chain, the index of the joint in the URDF.
     pub(crate) moving: Vec<usize>,
-    /// Per joint of the chain the links that were lumped into the link it moves.
+    /// For each joint of the chain, the links that were merged into the link that it moves.
     pub(crate) lumped: Vec<Vec<String>>,
-    /// Joints that are held, and where.
+    /// Joints that are locked, and the position at which they are.
     pub(crate) held: Vec<(String, f64)>,
-    /// Movable joints on fixed links, which do not belong to the arm.
+    /// Movable joints on links that stand still, which do not belong to the arm.
     pub(crate) aside: Vec<String>,
     pub(crate) snapped: Vec<Snapped>,
-    /// Whether the link that floats in the file is a floating base here; `None` where none floats.
+    /// Whether the link that floats in the file became a floating base; `None` where none floats.
     pub(crate) floats: Option<bool>,
-    /// Links whose bodies are in the arm.
+    /// Links whose mass and inertia are in the arm.
     pub(crate) links: BTreeSet<usize>,
-    /// Joints of the chain, and those that are held.
+    /// Joints of the chain, and joints that are locked.
     pub(crate) joints: BTreeSet<usize>,
-    /// Notes for the reader of the robot file, in sentences.
+    /// Remarks for the reader of the robot file, in sentences.
     pub(crate) remarks: Remarks,
 }
 
@@ -153,7 +155,7 @@ pub(crate) fn extract(
     };
     walk.look_at_floating(floats.then_some(chain.base));
     if floats {
-        // it has no place in the world, and gravity is that of the world
+        // a floating base has no placement in the world, and gravity is given in the axes of the world
         chain.base = Pose::identity();
     }
     chain.gravity = chain.base.rotation.transpose() * chain.gravity;

@@ -1,4 +1,4 @@
-//! Closed loops of a description, and which joints follow from the others by them.
+//! Closed loops of a description, and the choice of the joints that depend on others because of them.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -15,23 +15,24 @@ use crate::table::Table;
 use crate::urdf::xml::Seen;
 use crate::urdf::{Joint, Kind, Link, Urdf, cut};
 
-/// Places of a loop that are not farther apart, m and rad, where the loops come nearest to closing, were meant to be
-/// one place: descriptions round their numbers.
+/// Distance, m and rad, up to which the two ends of a loop are taken for one place where the loops come nearest to
+/// closing, because descriptions round their numbers.
 const ROUNDING: f64 = 1e-6;
 
-/// A loop that a joint closes.
+/// A closed loop, and the cut joint that closes it.
 #[derive(Clone, Debug)]
 pub(crate) struct Loop {
     pub(crate) name: String,
-    /// The place of its tag.
+    /// The place of its tag in the text.
     pub(crate) span: Range<usize>,
     pub(crate) cut: Cut,
-    /// The two links, and the places on them, as [`ClosedLoop::between`] has them.
+    /// Both ends: a link, and the place on it, as in [`ClosedLoop::between`].
     pub(crate) ends: [(usize, Pose); 2],
 }
 
 impl Urdf {
-    /// The elements `loop` of URDF+ (arXiv 2411.19753). The axis of a revolute joint is in the axes of both origins.
+    /// Reads the elements `loop` of URDF+ (arXiv 2411.19753). The axis of a revolute cut joint has the same components
+    /// in the axes of both origins.
     pub(crate) fn take_loops(&mut self, loops: &[Seen]) -> Result<(), Report> {
         for (index, seen) in loops.iter().enumerate() {
             let error = |message: String, help: &str| Err(self.source.error(&seen.span, message, help));
@@ -71,7 +72,7 @@ impl Urdf {
         Ok(())
     }
 
-    /// Adds a loop of the text `source`, after its checks.
+    /// Adds a loop from the text `source`, after checking it.
     pub(crate) fn add_loop(&mut self, closed: Loop, source: &Source) -> Result<(), Report> {
         let error = |message: String, help: &str| Err(source.error(&closed.span, message, help));
         let name = quoted(&closed.name);
@@ -89,7 +90,7 @@ impl Urdf {
         Ok(())
     }
 
-    /// Makes three revolute joints of each spherical joint in a loop.
+    /// Replaces each spherical joint in a loop by three revolute joints.
     pub(crate) fn split_spherical_joints(&mut self, source: &Source) -> Result<(), Report> {
         let in_loops = self.loops.iter().flat_map(|closed| self.between(closed.ends.map(|(link, _)| link)));
         let is_spherical = |joint: &usize| self.joints[*joint].kind == Kind::Spherical;
@@ -108,7 +109,7 @@ impl Urdf {
         })
     }
 
-    /// Makes revolute joints of a joint, one after the other, about these axes of its frame (0 to 2 for x to z), with
+    /// Replaces a joint by revolute joints in series, about the given axes of its frame (0 to 2 for x to z), with
     /// massless links between them.
     pub(crate) fn split(
         &mut self,
@@ -148,7 +149,7 @@ impl Urdf {
         Ok(())
     }
 
-    /// The joints that move one of two links and not the other.
+    /// Returns the joints that move one of two links but not the other.
     pub(crate) fn between(&self, links: [usize; 2]) -> Vec<usize> {
         let [one, other] = links.map(|link| self.to_root(link));
         let of = |of: &[usize], than: &[usize]| -> Vec<usize> {
@@ -157,7 +158,7 @@ impl Urdf {
         [of(&one, &other), of(&other, &one)].concat()
     }
 
-    /// Gives a robot the loops of its chain, with the joints that are dependent, which have no motors.
+    /// Gives a robot the closed loops of its chain, and chooses the dependent joints, whose motors are removed.
     pub(crate) fn close(
         &self,
         (chain, told): (&Chain, &mut Extracted),
@@ -200,20 +201,20 @@ impl Urdf {
         }
     }
 
-    /// A loop as a robot file has it, without dependent joints.
+    /// Converts a loop to the form of robot files, without dependent joints.
     fn cut(&self, closed: &ChainLoop, ends: &[(Option<usize>, Pose); 2], table: &Table) -> ClosedLoop {
         let Loop { name, cut, .. } = &self.loops[closed.index];
         let between = ends.map(|(on, place)| {
             let link = on.map_or(table.start, |joint| table.frames[joint]);
             let placement = transform(link.inverse() * place);
-            // a spherical joint has no axes
+            // a spherical joint is the same in all axes
             let rpy = if *cut == Cut::Spherical { [0.0; 3].map(Angle::new) } else { placement.rpy };
             FixedFrame { on, placement: rne_model::Transform { rpy, ..placement } }
         });
         ClosedLoop { name: one_line(name), cut: *cut, between, dependent: Vec::new() }
     }
 
-    /// Whether a joint has a motor.
+    /// Returns whether a joint has a motor, as far as the file says it.
     fn actuation(&self, joint: usize) -> Actuation {
         match self.joints[joint].has_motor {
             Some(true) => Actuation::Motor,
@@ -222,7 +223,7 @@ impl Urdf {
         }
     }
 
-    /// Why the loops have no dependent joints.
+    /// Makes the error for loops for which no dependent joints exist.
     fn refuse_loops(&self, fault: &NoDependents, chain: &Chain) -> Report {
         let of = |index: &usize| &self.loops[chain.loops[*index].index];
         let (closed, message, help) = match fault {
@@ -253,7 +254,7 @@ impl Urdf {
     }
 }
 
-/// Says which joints are dependent, and why these.
+/// Adds remarks that say which joints are dependent, and why.
 fn tell(told: &mut Extracted, robot: &Robot, (loops, rest): (&[ClosedLoop], &[usize]), of: &[Actuation]) {
     let chosen: Vec<usize> = loops.iter().flat_map(|closed| closed.dependent.iter().copied()).collect();
     let named = |joints: &[usize]| names(joints.iter().map(|&joint| &robot.joints[joint].name));
@@ -302,7 +303,7 @@ fn tell(told: &mut Extracted, robot: &Robot, (loops, rest): (&[ClosedLoop], &[us
     }
 }
 
-/// Moves the second place of a loop, so that it closes at positions of all joints.
+/// Moves the second end of a loop onto the first one, so that the loop is closed at the given positions of all joints.
 fn fit(chain: &Chain, cut: Cut, ends: &mut [(Option<usize>, Pose); 2], positions: &[f64]) {
     let [one, other] =
         ends.map(|(on, place)| on.map_or(Pose::identity(), |joint| link(chain, joint, positions)) * place);
@@ -320,7 +321,7 @@ fn fit(chain: &Chain, cut: Cut, ends: &mut [(Option<usize>, Pose); 2], positions
     *place = carrier.inverse() * Pose { rotation, translation: one.translation };
 }
 
-/// Base → frame of the link that a joint moves.
+/// Returns the placement of a link, which a joint moves, in the frame of the base.
 fn link(chain: &Chain, joint: usize, positions: &[f64]) -> Pose {
     let of = &chain.joints[joint];
     let carrier = of.parent.map_or(Pose::identity(), |parent| link(chain, parent, positions));

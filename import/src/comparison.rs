@@ -1,4 +1,4 @@
-//! Differences between two arms, over many states.
+//! Compares two arms at many states.
 
 use nalgebra::{Matrix3, Vector3};
 use rne_model::{ClosedLoops, Frame, Robot};
@@ -6,11 +6,11 @@ use rne_runtime::{DynArm, Pose};
 
 use crate::dynamics::{Dynamics, State};
 
-/// States at which arms are compared.
+/// Number of states at which two arms are compared.
 pub(crate) const STATES: usize = 1000;
 
-/// The largest differences over 1,000 states within the limits, with speeds up to 2 and accelerations up to 5 (rad or
-/// m).
+/// The largest differences between two arms over 1,000 states within the position limits, with speeds up to 2 and
+/// accelerations up to 5 (in rad or m).
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Difference {
@@ -18,24 +18,24 @@ pub struct Difference {
     pub position: f64,
     /// The difference of the rotation of the tip or of a named frame, rad.
     pub rotation: f64,
-    /// The difference of a torque or force, relative to the largest of its state.
+    /// The difference of a torque or force, relative to the largest torque of the same state.
     pub torque: f64,
     /// The difference of a torque or force, N m or N.
     pub absolute_torque: f64,
-    /// The difference of an acceleration that the same torques cause, relative to the largest of its state; `None`
-    /// where the mass matrix is singular.
+    /// The difference of an acceleration for the same torques, relative to the largest acceleration of the same state;
+    /// `None` where the mass matrix is singular.
     pub acceleration: Option<f64>,
 }
 
 impl Difference {
-    /// Between two chains.
+    /// Compares two chains.
     pub(crate) fn of_chains(one: &Dynamics, other: &Dynamics) -> Self {
         let mut difference = Self { acceleration: Some(0.0), ..Self::default() };
         for State { q, qd, qdd } in one.states(STATES) {
             difference.tips(one.tip(&q), other.tip(&q));
             let torques = one.torques(&q, &qd, &qdd);
             difference.torques(&torques, &other.torques(&q, &qd, &qdd));
-            // The torques that cause q̈ in the one.
+            // The accelerations of the other chain under the torques that cause q̈ in the first one.
             let caused = other.accelerations(&q, &qd, &torques);
             difference.acceleration = difference
                 .acceleration
@@ -45,9 +45,9 @@ impl Difference {
         difference
     }
 
-    /// Between a chain and the table made of it, as the runtime of rne computes that.
+    /// Compares a chain with the table made of it, for which the rne runtime computes the values.
     pub(crate) fn of_table(chain: &Dynamics, robot: &Robot) -> Self {
-        // the chain knows no couplings and no loops: all joints move freely in both
+        // the dynamics of the chain ignore couplings and loops, so all joints move freely on both sides
         let mut robot = Robot { closed: ClosedLoops::default(), ..robot.clone() };
         robot.joints.iter_mut().for_each(|joint| joint.coupling = None);
         let arm = DynArm::from_robot(&robot);
@@ -72,7 +72,7 @@ impl Difference {
 
     fn tips(&mut self, (r, p): (Matrix3<f64>, Vector3<f64>), (rotation, position): (Matrix3<f64>, Vector3<f64>)) {
         self.position = self.position.max((p - position).norm());
-        // sin of half the angle, from the distance of the matrices: exact where the angle is small.
+        // Sine of half the angle from the distance of the two matrices, which is accurate for small angles.
         let half = ((r - rotation).norm() / 8.0_f64.sqrt()).min(1.0);
         self.rotation = self.rotation.max(2.0 * half.asin());
     }

@@ -1,4 +1,4 @@
-//! From one convention to the other: the same arm, the same frame 0 where its z axis lies on joint 1.
+//! Converts a table to the other convention: the same arm, and the same frame 0 if its z axis is the axis of joint 1.
 
 use rne_model::{Convention, Double, Frame, JointKind, Reader, Report, Robot, Row};
 
@@ -13,17 +13,17 @@ use crate::import::robot::robot as robot_of;
 use crate::robot_file;
 use crate::table::table;
 
-/// A robot in another convention.
+/// A robot whose table was converted to another convention.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Converted {
     /// The robot.
     pub robot: Robot,
-    /// Its robot file.
+    /// The robot as a robot file.
     pub text: String,
-    /// Between the two tables: rounding.
+    /// The differences between the two tables, which only rounding causes.
     pub rounding: Difference,
-    /// Remarks, in sentences.
+    /// Remarks on the conversion, in sentences.
     pub remarks: Vec<String>,
 }
 
@@ -49,11 +49,11 @@ pub fn convert(robot: &Robot, convention: Convention) -> Result<Converted, Repor
     Ok(Converted { remarks: remarks(&checked.robot, &table), robot: checked.robot, text, rounding })
 }
 
-/// The chain or the tree of a table: the frame of each link stands on its joint, z along the axis.
+/// Returns the chain or the tree of a table. The frame of each link is at its joint, with z along the axis.
 pub(crate) fn of_robot(robot: &Robot) -> Chain {
     let rows: Vec<&Row> = robot.rows().collect();
     let mut joints = Vec::with_capacity(rows.len());
-    // What a row leaves for the next joint: the end of its link.
+    // For each row, the placement of the end of its link, where the next row begins.
     let mut ends: Vec<Pose> = Vec::with_capacity(rows.len());
     for (index, (joint, row)) in robot.joints.iter().zip(&rows).enumerate() {
         let screw = screw_x(row);
@@ -98,12 +98,12 @@ pub(crate) fn placement(transform: &rne_model::Transform) -> Pose {
     Pose::new(transform.xyz, transform.rpy.map(|angle| angle.radians))
 }
 
-/// Tx(a) Rx(alpha), in either order.
+/// Returns Tx(a) Rx(alpha); the order of the two does not matter.
 fn screw_x(row: &Row) -> Pose {
     Pose { rotation: Rotation::x(row.dh.alpha.radians), translation: Vector::unit(0) * decimal(row.dh.a) }
 }
 
-/// Rz(theta) Tz(d), in either order.
+/// Returns Rz(theta) Tz(d); the order of the two does not matter.
 fn screw_z(row: &Row) -> Pose {
     let zero = Double::new(0.0);
     Pose { rotation: Rotation::z(row.dh.theta.radians), translation: Vector([zero, zero, decimal(row.dh.d)]) }

@@ -1,4 +1,5 @@
-//! Descriptions of arms by a path or a text: a shipped robot, a robot file or a URDF. Every door opens them here.
+//! Opens robot descriptions by a path or from a text: a shipped robot, a robot file or a URDF. Every interface of rne
+//! uses it.
 
 use std::error::Error;
 use std::fmt;
@@ -9,17 +10,17 @@ use std::path::{Path, PathBuf};
 use rne_model::{nearest_name, no_shipped_robot, open_file, read_limited, robot_of};
 use rne_robots::RobotFile;
 
-/// The largest URDF that is read, in bytes.
+/// Largest size of a URDF that is read, in bytes.
 const LONGEST_URDF: u64 = 16 << 20;
 
-/// The largest number of files of a folder that a message names.
+/// Largest number of files that a message about a folder lists.
 const NAMED: usize = 16;
 
 /// A description of an arm that has been opened.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Description {
-    /// A robot that rne ships.
+    /// A robot that rne includes.
     Shipped(&'static RobotFile),
     /// The bytes of a robot file.
     RobotFile(Vec<u8>),
@@ -31,20 +32,20 @@ pub enum Description {
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum OpenError {
-    /// The path is that of a plan file.
+    /// The path is that of a plan file, not of a robot.
     Plan {
         /// The path.
         path: PathBuf,
-        /// The robot file of the plan.
+        /// The path of the robot file to which the plan belongs.
         robot: PathBuf,
     },
-    /// There is no such file, and no shipped robot of this name.
+    /// There is neither such a file nor a shipped robot of this name.
     NotFound {
         /// The path.
         path: PathBuf,
-        /// A sentence with the name that was probably meant, where there is one.
+        /// A sentence with the name that was probably meant, if there is one.
         hint: Option<String>,
-        /// The words of the system.
+        /// The error of the operating system.
         error: io::Error,
     },
     /// The file is a scene in Universal Scene Description.
@@ -56,7 +57,7 @@ pub enum OpenError {
     Unreadable {
         /// The path.
         path: PathBuf,
-        /// The words of the system.
+        /// The error of the operating system.
         error: io::Error,
     },
 }
@@ -108,8 +109,8 @@ impl Description {
         Self::open_by(path, open_file)
     }
 
-    /// Opens the description at a path, whose file is opened by `file`: [`Description::open`] for callers that read
-    /// pipes, too.
+    /// Opens the description at a path with `file` as the function that opens the file: for callers of
+    /// [`Description::open`] that also read pipes.
     ///
     /// # Errors
     /// As [`Description::open`].
@@ -145,7 +146,7 @@ impl Description {
         }
     }
 
-    /// The description that a text is.
+    /// Returns the description that a text is: a URDF if it begins as XML does, else a robot file.
     #[must_use]
     pub fn of_text(text: String) -> Self {
         let bytes = text.into_bytes();
@@ -153,24 +154,24 @@ impl Description {
     }
 }
 
-/// Whether a text begins as XML does. `<<` is a key of YAML.
+/// Returns whether a text begins as XML does. `<<` does not count, because it is a key of YAML.
 fn is_xml(bytes: &[u8]) -> bool {
     let bytes = bytes.strip_prefix("\u{FEFF}".as_bytes()).unwrap_or(bytes).trim_ascii_start();
     bytes.starts_with(b"<") && !bytes.starts_with(b"<<")
 }
 
-/// Whether a path has the extension of a URDF.
+/// Returns whether a path has the extension of a URDF.
 fn is_named_urdf(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("urdf"))
 }
 
-/// The shipped robot whose name a path is, where there is no such file.
+/// Returns the shipped robot whose name the path is, if there is no such file.
 #[must_use]
 pub fn shipped_at(path: &Path) -> Option<&'static RobotFile> {
     rne_robots::find(path.to_str()?).filter(|_| !path.exists())
 }
 
-/// The shipped robot of a name.
+/// Returns the shipped robot of a name.
 ///
 /// # Errors
 /// When there is none: the message has the name that was probably meant, and all names.
@@ -182,7 +183,7 @@ fn names() -> Vec<&'static str> {
     rne_robots::all().map(|robot| robot.name).collect()
 }
 
-/// A sentence with the file or the robot that was probably meant by a path without a file.
+/// Returns a sentence with the file or the robot that was probably meant by a path at which there is no file.
 fn hint(path: &Path) -> Option<String> {
     let folder = path.parent().filter(|folder| folder.is_dir() && !folder.as_os_str().is_empty());
     if let Some(probably) = candidates(path).into_iter().find(|candidate| candidate.is_file()) {
@@ -197,14 +198,14 @@ fn hint(path: &Path) -> Option<String> {
     Some(format!("{} has {shown}{more}", path.with_file_name("").display()))
 }
 
-/// The places at which the file may be instead: with its extension, or in `robots/`.
+/// Returns other paths at which the file may be: with an extension, or in `robots/`.
 fn candidates(path: &Path) -> Vec<PathBuf> {
     let Some(name) = path.file_name() else { return Vec::new() };
     let shipped = |folder: &str| Path::new(folder).join(name).with_extension("yaml");
     vec![path.with_extension("yaml"), shipped("robots"), shipped("robots/trees")]
 }
 
-/// The names of the robot files of a folder, sorted, without plan files.
+/// Returns the names of the robot files in a folder, sorted, without plan files.
 fn robots_in(folder: &Path) -> Vec<String> {
     let paths = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
     let is_robot =
@@ -244,7 +245,7 @@ mod tests {
             assert_eq!(opened(&file(name, text)), expected, "{name}");
             assert_eq!(Description::of_text(text.to_owned()), expected, "{name}");
         }
-        // a URDF may be longer than a robot file
+        // this text is longer than a robot file may be, but not too long for a URDF
         let long = format!("<robot>{}</robot>", " ".repeat(3 << 20));
         assert_eq!(opened(&file("long.urdf", &long)), Description::Urdf(long.into_bytes()));
         let yaml = format!("format: 1{}", " ".repeat(3 << 20));

@@ -1,7 +1,7 @@
-//! The dynamics of a chain or a tree in the frames of its links, with which a table is compared.
+//! Computes the dynamics of a chain or a tree in the frames of its links, for comparison with a table.
 //!
-//! Newton-Euler about the origin of each link's frame. It knows no Denavit-Hartenberg frames and shares no formula with
-//! the recursion of rne.
+//! It uses Newton-Euler recursion about the origin of each link's frame, without Denavit-Hartenberg frames, and shares
+//! no formula with the recursion of the rne runtime.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Unit, Vector3};
 use rne_model::Limits;
@@ -9,17 +9,17 @@ use rne_model::Limits;
 use crate::chain::Chain;
 use crate::geometry::{Pose, Vector};
 
-/// A rotation and a translation.
+/// A rotation and a translation: the placement of a frame.
 type Place = (Matrix3<f64>, Vector3<f64>);
 
-/// A chain or a tree in numbers of single length.
+/// A chain or a tree with `f64` numbers.
 pub(crate) struct Dynamics {
     base: (Matrix3<f64>, Vector3<f64>),
     gravity: Vector3<f64>,
     joints: Vec<Joint>,
-    /// The joint that moves the tip frame, and the place of that.
+    /// The joint that moves the tip frame, and the placement of this frame on the moved link.
     tip: (Option<usize>, Place),
-    /// Each named frame, and the joint that moves it.
+    /// For each named frame, the joint that moves it and its placement on the moved link.
     frames: Vec<(Option<usize>, Place)>,
 }
 
@@ -30,7 +30,7 @@ struct Joint {
     translation: Vector3<f64>,
     axis: Vector3<f64>,
     mass: f64,
-    /// First moment and inertia about the origin of the link's frame.
+    /// First moment and inertia of the link about the origin of its frame.
     moment: Vector3<f64>,
     inertia: Matrix3<f64>,
     limits: Limits,
@@ -68,7 +68,8 @@ impl Dynamics {
         }
     }
 
-    /// States within the limits of position, with speeds up to 2 and accelerations up to 5; always the same.
+    /// Returns random states within the position limits, with speeds up to 2 and accelerations up to 5; the same in
+    /// every run.
     pub(crate) fn states(&self, number: usize) -> Vec<State> {
         let mut random = fastrand::Rng::with_seed(1);
         let mut between = |(low, high): (f64, f64)| low + (high - low) * random.f64();
@@ -87,7 +88,7 @@ impl Dynamics {
         (0..number).map(|_| state()).collect()
     }
 
-    /// The placement of a link in the one before, at `q`.
+    /// Returns the placement of a link in the frame of the link before it, at the joint position `q`.
     fn place(joint: &Joint, q: f64) -> (Matrix3<f64>, Vector3<f64>) {
         if joint.is_prismatic {
             return (joint.rotation, joint.translation + joint.rotation * joint.axis * q);
@@ -96,17 +97,17 @@ impl Dynamics {
         (joint.rotation * turned.matrix(), joint.translation)
     }
 
-    /// Rotation and translation of the tip frame in the world.
+    /// Returns the placement of the tip frame in the world.
     pub(crate) fn tip(&self, q: &[f64]) -> Place {
         self.carried(self.tip, q)
     }
 
-    /// The named frames in the world, as [`Self::tip`].
+    /// Returns the placements of the named frames in the world.
     pub(crate) fn frames(&self, q: &[f64]) -> Vec<Place> {
         self.frames.iter().map(|frame| self.carried(*frame, q)).collect()
     }
 
-    /// A place in the world that a joint moves.
+    /// Returns the placement in the world of a frame that a joint moves.
     fn carried(&self, (on, place): (Option<usize>, Place), q: &[f64]) -> Place {
         let mut joints: Vec<usize> = std::iter::successors(on, |&joint| self.joints[joint].parent).collect();
         joints.reverse();
@@ -114,14 +115,15 @@ impl Dynamics {
         places.fold(self.base, |(r, p), (rotation, translation)| (r * rotation, r * translation + p))
     }
 
-    /// Torques, N m or N.
+    /// Returns the torques, N m or N.
     pub(crate) fn torques(&self, q: &[f64], qd: &[f64], qdd: &[f64]) -> Vec<f64> {
         self.newton_euler(q, qd, qdd, self.gravity)
     }
 
     fn newton_euler(&self, q: &[f64], qd: &[f64], qdd: &[f64], gravity: Vector3<f64>) -> Vec<f64> {
         let zero = Vector3::zeros();
-        // Of the origin of each link's frame, in its own axes.
+        // Angular velocity, angular acceleration and acceleration of the origin of each link's frame, in the axes of
+        // this frame.
         let mut motions: Vec<[Vector3<f64>; 3]> = Vec::with_capacity(self.joints.len());
         let mut wrenches = Vec::with_capacity(self.joints.len());
         for (i, joint) in self.joints.iter().enumerate() {
@@ -159,7 +161,7 @@ impl Dynamics {
         torques
     }
 
-    /// The mass matrix, by columns of unit accelerations.
+    /// Returns the mass matrix; each column is the torques of a unit acceleration.
     pub(crate) fn mass_matrix(&self, q: &[f64]) -> DMatrix<f64> {
         let n = self.joints.len();
         let still = vec![0.0; n];
@@ -172,7 +174,7 @@ impl Dynamics {
         DMatrix::from_columns(&columns)
     }
 
-    /// The accelerations that `torques` cause; `None` where the mass matrix is singular.
+    /// Returns the accelerations that `torques` cause; `None` where the mass matrix is singular.
     pub(crate) fn accelerations(&self, q: &[f64], qd: &[f64], torques: &[f64]) -> Option<Vec<f64>> {
         let still = vec![0.0; self.joints.len()];
         let bias = self.torques(q, qd, &still);

@@ -1,4 +1,4 @@
-//! From a table to a URDF, so that any reader of URDF can be compared with rne.
+//! Converts a table to a URDF, so that other programs that read URDF can be compared with rne.
 
 mod elements;
 mod friction;
@@ -21,15 +21,15 @@ use crate::urdf::xml::LARGEST;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Exported {
-    /// The URDF.
+    /// The text of the URDF.
     pub text: String,
-    /// The acceleration of gravity in the axes of its root link, m/s²: a URDF cannot say it.
+    /// The acceleration of gravity in the axes of the root link, m/s², which a URDF cannot contain.
     pub gravity: [f64; 3],
-    /// Losses of the URDF, in sentences.
+    /// What the URDF cannot express of the robot, in sentences.
     pub remarks: Vec<String>,
 }
 
-/// The reason why a robot has no URDF.
+/// The reason why a robot cannot be written as a URDF.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum NoUrdf {
@@ -47,9 +47,9 @@ pub enum NoUrdf {
         /// The joints that it follows.
         leaders: Vec<String>,
     },
-    /// A number is larger than an import takes.
+    /// A number is larger than an import accepts.
     TooLarge {
-        /// The quantity of the number.
+        /// The name of the quantity, in words.
         what: String,
         /// The number.
         number: f64,
@@ -82,18 +82,18 @@ impl fmt::Display for NoUrdf {
 
 impl Error for NoUrdf {}
 
-/// The URDF of a robot, an arm or a tree. Its root link `world` carries the link `base`, which is frame 0. A floating
-/// base is the root link instead, by its own name. Joint i moves the link `link_i`, whose frame stands on the axis of
-/// the joint; the link `tip` stands at the end of the tool. Named frames and bodies are links, which fixed joints
-/// attach. A joint that follows another one has a `mimic`.
+/// Converts a robot, an arm or a tree, to a URDF. Its root link `world` carries the link `base`, which is frame 0; a
+/// floating base is the root link itself, with its own name. Joint i moves the link `link_i`, whose frame is on the
+/// axis of the joint; the frame of the link `tip` is the tip frame. Named frames and bodies become links with fixed
+/// joints. A joint that follows another one gets a `mimic`.
 ///
-/// The friction of a motor is written as that of its joint: `damping` is G² B and `friction` is |G| Tc, of the mean of
+/// The friction of a motor becomes that of its joint: `damping` is G² B, and `friction` is |G| Tc with the mean Tc of
 /// both directions.
 ///
 /// # Errors
 ///
 /// When a link has a first moment and no mass, when a joint follows several others, or when a number is larger than an
-/// import takes.
+/// import accepts.
 pub fn export(robot: &Robot) -> Result<Exported, NoUrdf> {
     if let Some(index) = robot.rows().position(|row| row.link.has_first_moment()) {
         return Err(NoUrdf::NoMass { link: index + 1, joint: robot.joints[index].name.clone() });
@@ -101,7 +101,7 @@ pub fn export(robot: &Robot) -> Result<Exported, NoUrdf> {
     let bare = &without_bodies(robot);
     let chain = of_robot(bare);
     refuse_too_large(&chain)?;
-    // Gravity in frame 0 is rounded: what that leaves in the axes of the world is nothing.
+    // Gravity in frame 0 is rounded, so components below 1e-14 in the axes of the world are rounding errors of zero.
     let gravity = (chain.base.rotation * chain.gravity).to_f64().map(|g| if g.abs() < 1e-14 { 0.0 } else { g });
     let base = name_of_base(bare);
     let root = if chain.floating_base.is_some() { base } else { "world" };
@@ -143,7 +143,7 @@ pub fn export(robot: &Robot) -> Result<Exported, NoUrdf> {
     Ok(Exported { text, gravity, remarks })
 }
 
-/// The robot with links that have no bodies, whose frames follow its own ones.
+/// Returns the robot with links without their bodies; each body becomes a frame after the named frames.
 fn without_bodies(robot: &Robot) -> Robot {
     let names: Vec<&str> = robot.bodies.list.iter().map(|body| body.name.as_str()).collect();
     let mut bare = robot.without_bodies(&names).unwrap_or_else(|_| robot.clone());
@@ -151,7 +151,7 @@ fn without_bodies(robot: &Robot) -> Robot {
     bare
 }
 
-/// The element by which a joint follows another one; empty where it follows none.
+/// Returns the element `mimic` of a joint that follows another one; an empty text for other joints.
 fn mimic(joint: &ChainJoint, chain: &Chain, names: &[String]) -> Result<String, NoUrdf> {
     let Some(Coupling { follows, offset }) = &joint.coupling else { return Ok(String::new()) };
     let [(leader, ratio)] = follows[..] else {
@@ -163,19 +163,19 @@ fn mimic(joint: &ChainJoint, chain: &Chain, names: &[String]) -> Result<String, 
     Ok(format!("    <mimic joint=\"{leader}\" multiplier=\"{ratio}\" offset=\"{offset}\"/>\n"))
 }
 
-/// The name of the link that is frame 0: that of a floating base, if no other link has it.
+/// Returns the name of the link that is frame 0: that of a floating base if no other link has it, else `base`.
 fn name_of_base(robot: &Robot) -> &str {
     let name = robot.floating_base.as_ref().map_or("base", |base| base.name.as_str());
     if is_taken(name, robot) { "base" } else { name }
 }
 
-/// Whether a link of the URDF that is no named frame and no base has this name.
+/// Returns whether a link other than the base and the named frames has this name in the URDF.
 fn is_taken(name: &str, robot: &Robot) -> bool {
     let number = name.strip_prefix("link_").and_then(|number| number.parse::<usize>().ok());
     matches!(name, "world" | "tip") || number.is_some_and(|number| (1..=robot.joints.len()).contains(&number))
 }
 
-/// The named frames as links, whose names differ from those of the other links.
+/// Returns the named frames as links of the URDF, with names that no other link has.
 fn as_links(chain: &Chain, robot: &Robot) -> Vec<ChainFrame> {
     let named = |frame: &ChainFrame| {
         let mut name = frame.name.clone();

@@ -1,5 +1,5 @@
-//! The closed loops of an "Extended URDF", as in Gepetto/example-parallel-robots (arXiv 2504.04767): a YAML file beside
-//! the URDF says which frames of it are one place, which joints have motors, and which joints are really spherical or
+//! Closed loops of an "Extended URDF", as in Gepetto/example-parallel-robots (arXiv 2504.04767): a YAML file beside the
+//! URDF says which pairs of its frames coincide, which joints have motors, and which joints are really spherical or
 //! universal.
 
 use std::io::Read as _;
@@ -14,13 +14,14 @@ use crate::geometry::Pose;
 use crate::source::{file_name, names, quoted};
 use crate::urdf::Urdf;
 
-/// The key that tells this file from other YAML.
+/// The key by which this file is told from other YAML files.
 const LOOPS: &str = "closed_loop";
 
-/// The keys that are read. Others describe viewers and solvers.
+/// The keys that are read; others are for viewers and solvers.
 const KEYS: [&str; 5] = [LOOPS, "type", "name_mot", "joint_name", "joint_type"];
 
-/// The name and the text of the file beside a URDF: `robot.yaml` beside `robot.urdf`, if it has the key `closed_loop`.
+/// Reads the file beside a URDF, `robot.yaml` beside `robot.urdf`, if it has the key `closed_loop`. Returns its path
+/// and text.
 pub(crate) fn beside(urdf: &str) -> Option<(String, String)> {
     let path = Path::new(urdf);
     if urdf.starts_with('<') || !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("urdf")) {
@@ -41,11 +42,11 @@ struct Word {
 }
 
 impl Urdf {
-    /// Takes the loops of the file `name`, whose text is `text`.
+    /// Adds the loops of the file `name`, whose text is `text`.
     pub(crate) fn extend(&mut self, name: &str, text: &str) -> Result<(), Report> {
         let kind = document::Kind { name: "a list of closed loops", format: 1 };
         let root = document::read(name, text, kind)?;
-        // the text of the URDF is before it, so that its places are found
+        // the text is appended to that of the URDF, so that error places count in both
         let start = self.source.text.len();
         self.source.text.push_str(text);
         self.source.included.push((start, name.to_owned()));
@@ -64,7 +65,7 @@ impl Urdf {
         self.equally_long((LOOPS, pairs.len()), ("type", types.len()), &span_of(&types, &whole))?;
         self.equally_long(("joint_name", changed.len()), ("joint_type", changes.len()), &span_of(&changes, &whole))?;
 
-        // the types of joints first: the ends of loops may be links that these joints move
+        // the types of joints first, because a loop may end at a link that such a joint moves
         self.change_types(&changed, &changes)?;
         self.choose_motors(&motors)?;
         for (index, (ends, kind)) in pairs.iter().zip(&types).enumerate() {
@@ -74,7 +75,7 @@ impl Urdf {
         Ok(())
     }
 
-    /// Refuses a key that looks like a slip of one that is read.
+    /// Refuses a key that is probably a misspelling of one that is read.
     fn refuse_slips(&self, root: &Node, start: usize) -> Result<(), Report> {
         let Content::Mapping(entries) = &root.content else { return Ok(()) };
         for entry in entries.iter().filter(|entry| !KEYS.contains(&entry.key.as_str())) {
@@ -87,7 +88,7 @@ impl Urdf {
         Ok(())
     }
 
-    /// Makes revolute joints of joints that are really spherical or universal, as their types say.
+    /// Replaces joints that are really spherical or universal by revolute joints, as their types in the file say.
     fn change_types(&mut self, joints: &[Word], types: &[Word]) -> Result<(), Report> {
         for (joint, kind) in joints.iter().zip(types) {
             let axes = self.axes(kind)?;
@@ -110,7 +111,7 @@ impl Urdf {
         Ok(())
     }
 
-    /// Says of every joint whether it has a motor, where the file names motors.
+    /// Sets for every joint whether it has a motor, if the file names the motors.
     fn choose_motors(&mut self, motors: &[Word]) -> Result<(), Report> {
         let with_motors: Vec<usize> = motors.iter().map(|motor| self.named_joint(motor)).collect::<Result<_, _>>()?;
         if !motors.is_empty() {
@@ -121,7 +122,7 @@ impl Urdf {
         Ok(())
     }
 
-    /// Closes a loop between two links, each of which is named by itself or by the joint that moves it.
+    /// Adds a loop between two links; a link is named by its own name or by that of the joint that moves it.
     fn close_loop(&mut self, name: String, [one, other]: &[Word; 2], kind: &Word) -> Result<(), Report> {
         let cut = match kind.text.to_ascii_lowercase().as_str() {
             "6d" => Cut::Weld,
@@ -159,7 +160,7 @@ impl Urdf {
         Err(self.source.error(span, message, format!("write an entry of `{other}` for each entry of `{one}`")))
     }
 
-    /// The list of words of a key; one word alone is a list of it.
+    /// Reads the words in the list under a key; a single word counts as a list of one.
     fn words(&self, node: &Node, start: usize, key: &str) -> Result<Vec<Word>, Report> {
         match &node.content {
             Content::Sequence(items) => items.iter().map(|item| self.word(item, start, key)).collect(),
@@ -205,7 +206,7 @@ impl Urdf {
         })
     }
 
-    /// The axes, by their numbers, of a type of joint: `SPHERICAL`, or `UJOINT_XY` and such.
+    /// Returns the axes of a type of joint, such as `SPHERICAL` or `UJOINT_XY`, as numbers 0 to 2 for x to z.
     fn axes(&self, kind: &Word) -> Result<Vec<usize>, Report> {
         let axis = |letter: char| "XYZ".find(letter);
         if kind.text == "SPHERICAL" {
@@ -224,7 +225,7 @@ impl Urdf {
     }
 }
 
-/// The place of the first of some words, or `other` for an empty list.
+/// Returns the place of the first of some words, or `other` if there is none.
 fn span_of(words: &[Word], other: &Range<usize>) -> Range<usize> {
     words.first().map_or(other.clone(), |word| word.span.clone())
 }

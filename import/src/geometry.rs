@@ -1,41 +1,41 @@
 //! Vectors, rotations and poses of twice the precision.
 //!
-//! A conversion turns numbers many times and rounds once, at the end. What is equal on paper, a sum of decimals or a
-//! product of rotations that is the identity, is then equal to 1e-30, and rounding gives the number that a person would
-//! write.
+//! A conversion rotates numbers many times and rounds once, at the end. Numbers that are equal on paper, such as a sum
+//! of decimals or a product of rotations that is the identity, then agree to 1e-30, and rounding gives the number that
+//! a person would write.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
 use rne_model::{Angle, Double, QuarterTurns};
 
-/// Cancelling numbers leave less than this part of them: far below an `f64`'s last place, far above that of a
-/// [`Double`].
+/// When numbers cancel, a rest below this part of them counts as zero: far below the last place of an `f64`, far above
+/// that of a [`Double`].
 const CANCELLED: f64 = 1e-26;
 
-/// A number as its text has it: 0.1 is a tenth.
+/// Returns the number that the decimal text of `value` means: 0.1 is exactly a tenth.
 pub(crate) fn decimal(value: f64) -> Double {
     Double::decimal(value)
 }
 
-/// The nearest `f64`, where what is left of a cancellation of numbers of size `scale` is zero.
+/// Rounds to the nearest `f64`; returns zero for a rest that is left when numbers of size `scale` cancel.
 pub(crate) fn rounded(value: Double, scale: f64) -> f64 {
     let value = value.to_f64();
     if value.abs() <= CANCELLED * scale { 0.0 } else { value }
 }
 
-/// A vector.
+/// A vector with components of twice the precision.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(crate) struct Vector(pub(crate) [Double; 3]);
 
 impl Vector {
     pub(crate) const ZERO: Self = Self([Double::new(0.0); 3]);
 
-    /// The numbers as their texts have them.
+    /// Makes a vector of the numbers that the decimal texts of `numbers` mean.
     pub(crate) fn decimal(numbers: [f64; 3]) -> Self {
         Self(numbers.map(decimal))
     }
 
-    /// The unit vector along an axis of the frame.
+    /// Returns the unit vector along an axis of the frame.
     pub(crate) fn unit(axis: usize) -> Self {
         let mut vector = Self::ZERO;
         vector.0[axis] = Double::new(1.0);
@@ -58,9 +58,9 @@ impl Vector {
         self.dot(self).sqrt()
     }
 
-    /// The unit vector; `None` if the vector is zero.
+    /// Returns the vector scaled to length 1; `None` if it is zero.
     pub(crate) fn direction(self) -> Option<Self> {
-        // Scaled first, so that no square vanishes.
+        // Scaled first, so that no square underflows.
         let largest = self.to_f64().into_iter().map(f64::abs).fold(0.0, f64::max);
         if largest == 0.0 {
             return None;
@@ -69,7 +69,7 @@ impl Vector {
         Some(scaled * (Double::new(1.0) / scaled.norm()))
     }
 
-    /// The part of it that is perpendicular to the unit vector `axis`.
+    /// Returns the part of the vector that is perpendicular to the unit vector `axis`.
     pub(crate) fn across(self, axis: Self) -> Self {
         self - axis * self.dot(axis)
     }
@@ -78,7 +78,8 @@ impl Vector {
         self.0.map(Double::to_f64)
     }
 
-    /// The nearest `f64`; what is left of a cancellation of numbers of size `scale` is zero.
+    /// Rounds each component to the nearest `f64`; a rest that is left when numbers of size `scale` cancel becomes
+    /// zero.
     pub(crate) fn rounded(self, scale: f64) -> [f64; 3] {
         self.0.map(|x| rounded(x, scale))
     }
@@ -116,8 +117,8 @@ impl Mul<Double> for Vector {
     }
 }
 
-/// The sine and cosine of an angle. Right angles are exact, as everywhere in rne; so are, to the precision of a
-/// [`Double`], the multiples of pi/12 that a text can only round.
+/// Returns the sine and the cosine of an angle. Right angles are exact, as everywhere in rne; other multiples of pi/12
+/// are exact to the precision of a [`Double`], although a decimal text can only round them.
 pub(crate) fn sin_cos(radians: f64) -> (Double, Double) {
     if let Some(right) = Angle::new(radians).right {
         return exact(right);
@@ -134,14 +135,16 @@ fn exact(right: QuarterTurns) -> (Double, Double) {
     (Double::new(sin), Double::new(cos))
 }
 
-/// The multiple of pi/12 that an angle is, within 4 units in the last place: then no text could say it better.
+/// Returns which multiple of pi/12 an angle is, within 4 units in the last place; a text cannot express it more
+/// accurately.
 pub(crate) fn twelfths_of_pi(radians: f64) -> Option<f64> {
     let twelfths = (radians * 12.0 / std::f64::consts::PI).round();
     let nearest = twelfths * std::f64::consts::PI / 12.0;
     ((radians - nearest).abs() <= 4.0 * f64::EPSILON * nearest.abs()).then_some(twelfths)
 }
 
-/// The angle of the point (cos, sin), in (-pi, pi]: -pi is written as pi. Right angles come out as the nearest `f64`.
+/// Returns the angle of the point (cos, sin), in (-pi, pi]; -pi becomes pi. Right angles are rounded to the nearest
+/// `f64`.
 pub(crate) fn atan2(sin: Double, cos: Double) -> f64 {
     use std::f64::consts::{FRAC_PI_2, PI};
     let size = (sin * sin + cos * cos).sqrt();
@@ -153,16 +156,16 @@ pub(crate) fn atan2(sin: Double, cos: Double) -> f64 {
         _ => {}
     }
     let first = sin.to_f64().atan2(cos.to_f64());
-    // One step of Newton from the rounded angle: what is left is its own sine.
+    // One step of Newton's method from the rounded angle: the small remaining angle equals its own sine.
     let (s, c) = Double::new(first).sin_cos();
     let angle = (Double::new(first) + (sin * c - cos * s) / size).to_f64();
     if angle == -PI { PI } else { angle }
 }
 
-/// A rotation: components in the turned frame into components in the frame that it is turned against.
+/// A rotation matrix: it converts components in the rotated frame to components in the frame around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rotation {
-    /// The axes of the turned frame.
+    /// The axes of the rotated frame.
     pub(crate) columns: [Vector; 3],
 }
 
@@ -171,33 +174,33 @@ impl Rotation {
         Self { columns: [0, 1, 2].map(Vector::unit) }
     }
 
-    /// About x.
+    /// Makes a rotation about x.
     pub(crate) fn x(radians: f64) -> Self {
         let (s, c) = sin_cos(radians);
         let zero = Double::new(0.0);
         Self { columns: [Vector::unit(0), Vector([zero, c, s]), Vector([zero, -s, c])] }
     }
 
-    /// About y.
+    /// Makes a rotation about y.
     pub(crate) fn y(radians: f64) -> Self {
         let (s, c) = sin_cos(radians);
         let zero = Double::new(0.0);
         Self { columns: [Vector([c, zero, -s]), Vector::unit(1), Vector([s, zero, c])] }
     }
 
-    /// About z.
+    /// Makes a rotation about z.
     pub(crate) fn z(radians: f64) -> Self {
         let (s, c) = sin_cos(radians);
         let zero = Double::new(0.0);
         Self { columns: [Vector([c, s, zero]), Vector([-s, c, zero]), Vector::unit(2)] }
     }
 
-    /// Fixed-axis roll, pitch, yaw as in URDF: Rz(yaw) Ry(pitch) Rx(roll).
+    /// Makes a rotation of fixed-axis roll, pitch, yaw as in URDF: Rz(yaw) Ry(pitch) Rx(roll).
     pub(crate) fn rpy([roll, pitch, yaw]: [f64; 3]) -> Self {
         Self::z(yaw) * Self::y(pitch) * Self::x(roll)
     }
 
-    /// About a unit vector (Rodrigues).
+    /// Makes a rotation about a unit vector, by Rodrigues' formula.
     pub(crate) fn about(axis: Vector, radians: f64) -> Self {
         let (s, c) = sin_cos(radians);
         let rest = Double::new(1.0) - c;
@@ -205,12 +208,12 @@ impl Rotation {
         Self { columns: [0, 1, 2].map(|i| turned(Vector::unit(i))) }
     }
 
-    /// About an axis of any length, which is not zero.
+    /// Makes a rotation about an axis of any length; `None` if the axis is zero.
     pub(crate) fn about_axis(axis: [f64; 3], radians: f64) -> Option<Self> {
         Some(Self::about(Vector::decimal(axis).direction()?, radians))
     }
 
-    /// The rotation of a quaternion (w, x, y, z) of any length, which is not zero.
+    /// Makes the rotation of a quaternion (w, x, y, z) of any length; `None` if the quaternion is zero.
     pub(crate) fn quaternion(quaternion: [f64; 4]) -> Option<Self> {
         let [w, x, y, z] = quaternion.map(decimal);
         let square = w * w + x * x + y * y + z * z;
@@ -228,14 +231,14 @@ impl Rotation {
         })
     }
 
-    /// The frame whose x axis is `x` and whose y axis is the part of `y` across it.
+    /// Makes the rotation of the frame whose x axis is `x` and whose y axis is the part of `y` perpendicular to it.
     pub(crate) fn of_xy(x: [f64; 3], y: [f64; 3]) -> Option<Self> {
         let x = Vector::decimal(x).direction()?;
         let y = Vector::decimal(y).direction()?.across(x).direction()?;
         Some(Self { columns: [x, y, x.cross(y)] })
     }
 
-    /// The smallest turn of z to a direction; half a turn is about x.
+    /// Makes the smallest rotation that turns z to a direction; a half turn is about x.
     pub(crate) fn to_z(direction: [f64; 3]) -> Option<Self> {
         let (z, direction) = (Vector::unit(2), Vector::decimal(direction).direction()?);
         let cross = z.cross(direction);
@@ -243,7 +246,7 @@ impl Rotation {
         Some(Self::about(axis, atan2(cross.norm(), z.dot(direction))))
     }
 
-    /// The frame whose z axis is `z` and whose x axis is `x`, both of length 1 and perpendicular.
+    /// Makes the rotation of the frame with the z axis `z` and the x axis `x`, both of length 1 and perpendicular.
     pub(crate) fn of_axes(x: Vector, z: Vector) -> Self {
         Self { columns: [x, z.cross(x), z] }
     }
@@ -253,9 +256,9 @@ impl Rotation {
         Self { columns: [0, 1, 2].map(|i| Vector([x.0[i], y.0[i], z.0[i]])) }
     }
 
-    /// Roll, pitch and yaw. Near a pitch of ±90° only the difference, or the sum, of roll and yaw is well defined: roll
-    /// is computed first and rounded, and yaw is what is then left of the rotation, so that their rounding does not
-    /// turn it.
+    /// Returns roll, pitch and yaw. Near a pitch of ±90° only the difference, or the sum, of roll and yaw is well
+    /// defined. So roll is computed first and rounded, and yaw is computed from the rest of the rotation; rounding then
+    /// does not change the rotation.
     pub(crate) fn to_rpy(self) -> [f64; 3] {
         let [x, y, z] = self.columns;
         let level = (x.0[0] * x.0[0] + x.0[1] * x.0[1]).sqrt();
@@ -283,7 +286,7 @@ impl Mul<Vector> for Rotation {
     }
 }
 
-/// A placement of one frame in another.
+/// The placement of a frame in another frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pose {
     pub(crate) rotation: Rotation,
@@ -295,7 +298,7 @@ impl Pose {
         Self { rotation: Rotation::identity(), translation: Vector::ZERO }
     }
 
-    /// A translation and fixed-axis roll, pitch, yaw.
+    /// Makes a pose from a translation and fixed-axis roll, pitch, yaw.
     pub(crate) fn new(xyz: [f64; 3], rpy: [f64; 3]) -> Self {
         Self { rotation: Rotation::rpy(rpy), translation: Vector::decimal(xyz) }
     }
@@ -305,7 +308,7 @@ impl Pose {
         Self { rotation, translation: -(rotation * self.translation) }
     }
 
-    /// A point given in this frame, in the frame around it.
+    /// Converts a point from this frame to the frame around it.
     pub(crate) fn point(self, point: Vector) -> Vector {
         self.rotation * point + self.translation
     }
@@ -351,7 +354,7 @@ mod tests {
         assert_eq!((a.inverse() * a).translation.rounded(1.0), [0.0; 3]);
     }
 
-    /// The usual way, asin or atan2 for each angle by itself, loses 1.5e-11 here.
+    /// Computing each angle separately by asin or atan2, as is usual, has an error of 1.5e-11 here.
     #[test]
     fn roll_pitch_yaw_near_the_pole() {
         for off in [0.0, 1e-16, 1e-13, 1e-12, -1e-10, 1e-9, -1e-8, 1e-6, 1e-3] {

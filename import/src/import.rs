@@ -1,4 +1,4 @@
-//! From a URDF to a robot file, with an account of what was done.
+//! Converts a URDF to a robot file, with a record of what was done.
 
 pub(crate) mod remarks;
 pub(crate) mod robot;
@@ -24,23 +24,23 @@ use crate::urdf::Urdf;
 /// Options of the conversion from a URDF to a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// The chain that is taken out of the tree.
+    /// Which chain is taken out of the tree.
     pub selection: Selection,
-    /// Links of a whole robot that carry wrenches, beside the tip. They become frames, and the robot file lists the tip
-    /// and them in `tips`.
+    /// Further links of a whole robot on which wrenches act, in addition to the tip. They become frames, and the robot
+    /// file lists the tip and them in `tips`.
     pub more_tips: Vec<String>,
-    /// The rows of the table.
+    /// The convention of the rows of the table.
     pub convention: Convention,
-    /// Whether angles within 2e-4 rad of a multiple of pi/12 are taken for it.
+    /// Whether an angle within 2e-4 rad of a multiple of pi/12 is replaced by this multiple.
     pub snap: bool,
-    /// Whether bodies are kept whose inertia is not positive semidefinite.
+    /// Whether a body is kept although its inertia is not positive semidefinite.
     pub keep_unphysical: bool,
-    /// The acceleration of gravity in the axes of the root link, m/s². An MJCF file says its own, which is taken
-    /// instead.
+    /// The acceleration of gravity in the axes of the root link, m/s². If the file is an MJCF file, its own gravity is
+    /// used instead.
     pub gravity: [f64; 3],
     /// Whether the links of the chain, and the links that are fixed to them, become named frames.
     pub frames: bool,
-    /// The name of the robot, `[a-z][a-z0-9_]*` [default: made of that of the URDF].
+    /// The name of the robot, `[a-z][a-z0-9_]*` [default: made from the name in the URDF].
     pub name: Option<String>,
 }
 
@@ -59,66 +59,68 @@ impl Default for Options {
     }
 }
 
-/// A robot made of a URDF.
+/// The result of importing a URDF.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Imported {
     /// The robot.
     pub robot: Robot,
-    /// Its robot file: reading it gives the robot, bit for bit.
+    /// The robot file of the robot; reading it gives the same robot, bit for bit.
     pub text: String,
-    /// The steps of the import.
+    /// A record of what the import did.
     pub account: Account,
 }
 
-/// The record of an import.
+/// A record of what an import did.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Account {
-    /// The links at the ends of the chain.
+    /// The link at the base of the chain.
     pub base: String,
     /// The link at the end of the chain.
     pub tip: String,
-    /// Whether the link that floats in the file became the floating base, or is fixed; `None` where none floats.
+    /// Whether the link that floats in the file became the floating base; `false` if it was fixed, `None` where none
+    /// floats.
     pub floats: Option<bool>,
-    /// Joints that are held, and where, rad or m.
+    /// Joints that are locked, with their positions, rad or m.
     pub held: Vec<(String, f64)>,
-    /// Movable joints on fixed links, which do not belong to the arm.
+    /// Movable joints on links that stand still, which do not belong to the arm.
     pub aside: Vec<String>,
-    /// Links that are frames of the robot file, or that could be, each with its name there.
+    /// Links that are frames of the robot file, or could be, each with its name as a frame.
     pub frames: Vec<(String, String)>,
-    /// Per joint the links with mass that were lumped into one body.
+    /// For each joint, the links with mass that were merged into the link that it moves.
     pub lumped: Vec<(String, Vec<String>)>,
-    /// Angles and axes that were taken for what they round.
+    /// Angles and axes that were replaced by the exact values that they probably round.
     pub snapped: Vec<Snapped>,
-    /// The change by snapping; `None` where nothing was snapped.
+    /// The differences that this snapping causes; `None` where nothing was snapped.
     pub change: Option<Difference>,
-    /// Between the chain and the table as rne computes it: the rounding of the conversion.
+    /// The differences between the chain and the table, as rne computes it: the rounding of the conversion.
     pub rounding: Difference,
-    /// Remarks on parts that the import leaves out or assumes, and probable mistakes of the file: limits that it
+    /// Remarks on parts that the import leaves out or assumes, and on probable mistakes in the file: limits that it
     /// ignores, numbers in other units.
     pub remarks: Vec<Remark>,
-    /// Whether the file is an MJCF file.
+    /// Whether the file is an MJCF file and not a URDF.
     pub is_mjcf: bool,
-    /// The lints of the robot file.
+    /// The warnings and notes about the robot file.
     pub lints: Report,
 }
 
 impl Account {
-    /// The remarks as sentences.
+    /// Returns the remarks as sentences.
     #[must_use]
     pub fn sentences(&self) -> Vec<String> {
         self.remarks.iter().map(ToString::to_string).collect()
     }
 
-    /// How many angles were snapped, and how far this moves torques and tip; `None` where none was snapped.
+    /// Returns a sentence on how many angles were snapped, and how much this changes torques and tip; `None` where none
+    /// was.
     #[must_use]
     pub fn snapping(&self) -> Option<String> {
         self.change.as_ref().map(|change| snapping(&self.snapped, change))
     }
 }
 
-/// The note on snapped angles in the notes of a robot file that was imported; `None` where no angle was snapped.
+/// Finds the note on snapped angles in the notes of an imported robot file; `None` where no angle was snapped.
 #[must_use]
 pub fn snapping_in(notes: &str) -> Option<&str> {
     let items = notes.lines().filter_map(|line| line.trim().strip_prefix("- "));
@@ -206,7 +208,7 @@ impl Urdf {
         Ok(Imported { robot: checked.robot, text, account })
     }
 
-    /// The table of a chain. Only the modified convention has rows for a tree.
+    /// Makes the table of a chain or of a tree. Only the modified convention has rows for a tree.
     fn table(&self, options: &Options, chain: &Chain) -> Result<Table, Report> {
         if chain.is_arm() {
             return Ok(table(chain, options.convention));
@@ -219,7 +221,7 @@ impl Urdf {
         Ok(tree_table(chain))
     }
 
-    /// Gives the robot its name, its title and its source, and its floating base a name that no joint has.
+    /// Sets the name, the title and the source of the robot, and gives its floating base a name that no joint has.
     fn name_robot(&self, robot: &mut Robot, options: &Options, told: &Extracted) {
         robot.name = options.name.clone().unwrap_or_else(|| identifier(&self.name));
         robot.title = title(&self.name);
@@ -236,15 +238,16 @@ impl Urdf {
         robot.source = format!("{file}, {links}; imported by rne {version}");
     }
 
-    /// The error for a joint with the name of frame 0, which other rows and frames of a robot file refer to.
+    /// Returns the error for a joint named `base`: in a robot file this is the name of frame 0, to which other rows and
+    /// frames refer.
     fn joint_called_base(&self) -> Option<Report> {
         let joint = self.joints.iter().find(|joint| joint.name == "base")?;
         let message = "the joint `base` has the name that a robot file gives to frame 0";
         Some(self.source.error(&joint.span, message, "rename the joint, for instance `base_joint`"))
     }
 
-    /// Gives the robot its named frames and its tips, and leaves the chain those that the robot has. Returns the links
-    /// and their names as frames.
+    /// Gives the robot its named frames and its tips, and removes from the chain the frames that the robot does not
+    /// have. Returns the links, each with its name as a frame.
     fn take_frames(
         &self,
         (chain, told): (&mut Chain, &mut Extracted),
@@ -262,7 +265,7 @@ impl Urdf {
             let place = |name: &String| robot.frames.iter().position(|frame| frame.name == *name);
             robot.tips = tips.iter().filter_map(place).collect();
             self.refuse_tips_on_base(robot)?;
-            // those that the robot has are compared
+            // only frames of the robot are compared between chain and table
             chain.frames.retain(|frame| robot.frames.iter().any(|kept| kept.name == frame.name));
         } else if options.frames {
             robot.frames = all;
@@ -273,7 +276,8 @@ impl Urdf {
         Ok(frames)
     }
 
-    /// The frames of the tip `first` and of the other tips; `frames` has the links and their names as frames.
+    /// Returns the names of the frames of the tip `first` and of the other tips; `frames` has the links with their
+    /// names as frames.
     fn tips(&self, options: &Options, first: &str, frames: &[(String, String)]) -> Result<Vec<String>, Report> {
         if !options.selection.whole {
             let message = "several tips are of a whole robot, and this is one arm";
@@ -296,7 +300,7 @@ impl Urdf {
         Ok(tips)
     }
 
-    /// A tip must be on a link that a joint moves.
+    /// Refuses a tip on the base, because a joint must move each tip.
     fn refuse_tips_on_base(&self, robot: &Robot) -> Result<(), Report> {
         match robot.tips.iter().map(|&tip| &robot.frames[tip]).find(|frame| frame.fixed.on.is_none()) {
             Some(frame) => {
@@ -307,7 +311,8 @@ impl Urdf {
         }
     }
 
-    /// Bodies of which the inertia has a negative eigenvalue, by more than the digits of the file explain.
+    /// Refuses bodies whose inertia has a negative principal moment that the rounding of the digits in the file does
+    /// not explain.
     fn refuse_unphysical(&self, robot: &Robot, told: &Extracted) -> Result<(), Report> {
         if let Some(FloatingBase { link, .. }) = &robot.floating_base {
             let name = format!("the base {}", quoted(&told.base));
@@ -320,7 +325,8 @@ impl Urdf {
         Ok(())
     }
 
-    /// Refuses a link that is made of the links `lumped`, at the inertia of the worst of them.
+    /// Refuses a link with a negative principal moment. It is merged from the links `lumped`; the error is at the one
+    /// with the smallest moment.
     fn refuse_negative(&self, joint: &Range<usize>, name: &str, link: &Link, lumped: &[String]) -> Result<(), Report> {
         let least = |inertia: &Inertia| inertia.principal_moments().map_or(f64::NAN, |moments| moments[0]);
         let parts = || self.links.iter().filter(|link| lumped.contains(&link.name));

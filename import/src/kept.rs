@@ -1,4 +1,4 @@
-//! Imports that were made before: a URDF that is read again costs no second conversion.
+//! Keeps finished imports, so that reading the same URDF again needs no second conversion.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -10,34 +10,35 @@ use crate::import::{Imported, Options};
 use crate::selection::Selection;
 use crate::urdf::Urdf;
 
-/// Imports, the latest last, by what they were made of.
+/// Finished imports with what they were made from, the latest last.
 static KEPT: Mutex<VecDeque<(Content, Arc<Imported>)>> = Mutex::new(VecDeque::new());
 
 /// Largest number of imports that are kept.
 const MOST: usize = 32;
 
-/// Largest number of bytes of URDFs that are kept with them: two of the largest that are read.
+/// Largest total size of the URDFs of kept imports, bytes: that of two URDFs of the largest size.
 const MOST_BYTES: usize = 32 << 20;
 
-/// All that decides an import. Meshes and other files that a URDF names are never opened, and a document type, by which
-/// XML includes others, is refused: a text and that of the closed loops beside it are all of it. What includes others
-/// is not kept.
+/// Everything on which the result of an import depends. Meshes and other files that a URDF names are never opened, and
+/// a document type, by which XML can include files, is refused: so the text and that of the closed loops beside it are
+/// enough. An import that reads further files is not kept.
 #[derive(Debug, PartialEq, Eq)]
 struct Content {
     /// The name of the file, which is written into the robot file and into reports.
     file: String,
     text: String,
-    /// The file with the closed loops beside it, and its text.
+    /// The file beside the URDF that has its closed loops, and its text.
     loops: Option<(String, String)>,
-    /// As `Debug` writes them, which tells -0.0 from 0.0 and has every field, later ones too.
+    /// The options as `Debug` writes them, which distinguishes -0.0 from 0.0 and includes every field, also future
+    /// ones.
     options: String,
 }
 
-/// [`Urdf::read`] and [`Urdf::import`] at once, or what they gave this process for the same file name, text and
-/// options.
+/// Calls [`Urdf::read`] and [`Urdf::import`], or returns the kept result if this process has already imported the same
+/// file name, text and options.
 ///
 /// # Errors
-/// As those two; a refusal is not kept.
+/// As those two; an import that fails is not kept.
 pub fn import(file: &str, text: &str, options: &Options) -> Result<Arc<Imported>, Report> {
     let loops = beside(file);
     let content = Content { file: file.to_owned(), text: text.to_owned(), loops, options: format!("{options:?}") };
@@ -54,7 +55,7 @@ pub fn import(file: &str, text: &str, options: &Options) -> Result<Arc<Imported>
         return Ok(imported);
     }
     let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-    // another thread may have made it meanwhile: one for all
+    // another thread may have finished the same import meanwhile; then all share that result
     if let Some(imported) = known(&kept) {
         return Ok(imported);
     }
@@ -65,8 +66,8 @@ pub fn import(file: &str, text: &str, options: &Options) -> Result<Arc<Imported>
     Ok(imported)
 }
 
-/// The arm of the bytes of a URDF, as the libraries open it: with the angles of `rne import` ([`Options::snap`]), so
-/// that every interface has the same arm, and with its links as named frames.
+/// Imports an arm from the bytes of a URDF, in the way in which the libraries open one: angles are snapped as by `rne
+/// import` ([`Options::snap`]), so that every interface has the same arm, and links become named frames.
 ///
 /// # Errors
 /// As [`import`], and when the bytes are not UTF-8.
@@ -138,7 +139,7 @@ mod tests {
         for index in 0..2 * MOST {
             import(&format!("{index}.urdf"), ROD, &Options::default()).expect("an arm");
         }
-        // a comment makes it as long as it may be
+        // a comment makes the file nearly as long as is allowed
         let long = format!("<!--{}-->{ROD}", " ".repeat(12 << 20));
         for index in 0..4 {
             import(&format!("long{index}.urdf"), &long, &Options::default()).expect("an arm");

@@ -1,13 +1,13 @@
-//! Other descriptions of an arm into a Denavit-Hartenberg table, and back.
+//! Converts other descriptions of an arm to a Denavit-Hartenberg table, and back.
 //!
-//! Strings in, data out: nothing here prints, and only [`Description::open`] opens a file, in one order for every door,
-//! and [`Urdf::read`] those that an MJCF file includes. [`Urdf::import`] makes a robot file of a chain of a URDF or of
-//! an MJCF file, [`convert()`] writes a table in the other convention, [`export()`] writes it as a URDF,
-//! [`robot_file::write`] is the writer of robot files. [`import()`] is for programs that read one URDF many times: it
-//! keeps what it made.
+//! Functions take and return data and print nothing. Only two open files: [`Description::open`] opens a description, in
+//! the same way for every interface, and [`Urdf::read`] opens files that an MJCF file includes. [`Urdf::import`] makes
+//! a robot file from a chain of a URDF or of an MJCF file, [`convert()`] writes a table in the other convention,
+//! [`export()`] writes it as a URDF, and [`robot_file::write`] writes a robot file. [`import()`] is for programs that
+//! read one URDF many times: it keeps the results.
 //!
-//! Numbers are turned in twice the precision and rounded once. So a length that is 0.4318 in the URDF is 0.4318 in the
-//! table, and what is zero on paper is zero: the compiler folds it away.
+//! Numbers are rotated with twice the precision and rounded once. So a length of 0.4318 in the URDF is 0.4318 in the
+//! table, and a number that is zero on paper is zero, which lets the compiler remove it from the code.
 #![warn(missing_debug_implementations)]
 #![forbid(unsafe_code)]
 

@@ -1,9 +1,9 @@
-//! An MJCF file, MuJoCo's description of a model, as a tree of links and joints.
+//! Reads an MJCF file, MuJoCo's description of a model, as a tree of links and joints.
 //!
-//! Bodies, joints and inertias are read, with the values of their classes, as MuJoCo's XML reference defines them
-//! (<https://mujoco.readthedocs.io/en/stable/XMLreference.html>). What is not a matter of inverse dynamics, such as
-//! meshes, contacts and sensors, is ignored. A body is a link whose frame is that of the body; of several joints of
-//! a body, each but the last one moves a link without mass.
+//! Bodies, joints and inertias are read, with the default values of their classes, as MuJoCo's XML reference defines
+//! them (<https://mujoco.readthedocs.io/en/stable/XMLreference.html>). Parts without effect on inverse dynamics, such
+//! as meshes, contacts and sensors, are ignored. A body is a link whose frame is that of the body; if a body has
+//! several joints, each but the last one moves a link without mass.
 
 mod actuator;
 mod body;
@@ -27,8 +27,8 @@ use crate::remark::Remark;
 use crate::source::{Source, names};
 use crate::urdf::Urdf;
 
-/// Parts of a model that a robot file cannot describe, in words; whether MuJoCo's torques have them; and the names of
-/// the elements that have them.
+/// The kinds of parts that a robot file cannot describe, each in words; with whether MuJoCo's torques include such
+/// parts, and the names of the elements that have them.
 #[derive(Default)]
 struct LeftOut(BTreeMap<&'static str, (bool, Vec<String>)>);
 
@@ -37,18 +37,18 @@ impl LeftOut {
         self.0.entry(what).or_default().1.push(of.to_owned());
     }
 
-    /// Adds a part without which forces or inertias are others than MuJoCo's.
+    /// Adds a part that is left out although it changes forces or inertias in MuJoCo.
     fn add_felt(&mut self, what: &'static str, of: &str) {
         self.add(what, of);
         self.0.entry(what).or_default().0 = true;
     }
 
-    /// Whether an element is among those of a kind.
+    /// Returns whether an element has a part of this kind.
     fn has(&self, what: &str, of: &str) -> bool {
         self.0.get(what).is_some_and(|(_, elements)| elements.iter().any(|element| element == of))
     }
 
-    /// A remark for each thing.
+    /// Returns a remark for each kind of part.
     fn remarks(self) -> impl Iterator<Item = Remark> {
         self.0.into_iter().map(|(what, (is_felt, of))| {
             let of = names(of);
@@ -61,7 +61,7 @@ impl LeftOut {
     }
 }
 
-/// Whether one of the numbers of some attributes is not zero.
+/// Returns whether a number of one of these attributes is not zero.
 fn is_there(element: Classed, attributes: &[&str]) -> Result<bool, Report> {
     let mut is_there = false;
     for attribute in attributes {
@@ -71,7 +71,7 @@ fn is_there(element: Classed, attributes: &[&str]) -> Result<bool, Report> {
     Ok(is_there)
 }
 
-/// Reads an MJCF file and the files that it includes, which are searched in the folder of the file.
+/// Reads an MJCF file and the files that it includes, which are searched in its folder.
 pub(crate) fn read(mut source: Source) -> Result<Urdf, Report> {
     let root = element::read(&mut source)?;
     let compiler = Compiler::read(&source, &root)?;
@@ -107,7 +107,7 @@ pub(crate) fn read(mut source: Source) -> Result<Urdf, Report> {
     Ok(urdf)
 }
 
-/// The acceleration of gravity, m/s².
+/// Reads the acceleration of gravity, m/s².
 fn gravity(settings: &Settings, root: &Element) -> Result<[f64; 3], Report> {
     let mut gravity = [0.0, 0.0, -9.81];
     let mut is_off = false;

@@ -1,18 +1,18 @@
-//! A payload that stays on the arm: a part of its last link.
+//! Adds a payload to an arm, as a part of the link that carries it.
 
 use rne_model::{FixedFrame, Inertia, InertiaReference, Robot, Transform};
 
 use crate::body::Body;
 use crate::geometry::Pose;
 
-/// The robot whose last link has the payload, too: `mass` in kg, `com` from the origin of the tip frame in m, `inertia`
-/// about the centre of mass in kg m², all in tip-frame axes. A robot without joints stays as it is.
+/// Returns the robot with a payload on its last link: `mass` in kg, `com` from the origin of the tip frame in m,
+/// `inertia` about the centre of mass in kg m², all in tip-frame axes. A robot without joints stays as it is.
 #[must_use]
 pub fn carrying(robot: &Robot, mass: f64, com: [f64; 3], inertia: Inertia) -> Robot {
     carrying_at(robot, &robot.tip(), mass, com, inertia)
 }
 
-/// As [`carrying`], with the payload at a frame instead of the tip. A frame on the base carries nothing.
+/// Adds a payload as [`carrying`] does, but at a frame instead of the tip. On the base it has no effect.
 #[must_use]
 pub fn carrying_at(robot: &Robot, frame: &FixedFrame, mass: f64, com: [f64; 3], inertia: Inertia) -> Robot {
     let Transform { xyz, rpy } = frame.placement;

@@ -1,4 +1,4 @@
-//! Remarks on parts that an import leaves out or assumes: one list, which every door prints in its own words.
+//! Remarks on parts that an import leaves out or assumes, which every interface prints in its own words.
 
 use std::fmt;
 
@@ -10,14 +10,15 @@ use rne_model::Remedy;
 pub struct Remark {
     /// A sentence without its full stop.
     pub text: String,
-    /// Whether the numbers of the file are probably wrong, or functions give others than the program of the file.
+    /// Whether this is a warning: the numbers of the file are probably wrong, or functions give other results than the
+    /// program to which the file belongs.
     pub is_warning: bool,
-    /// The choice of the caller that changes it.
+    /// The choice of the caller that changes what the remark says.
     pub remedy: Option<Remedy>,
 }
 
 impl Remark {
-    /// The sentence, and the choice of the caller in the words of a door.
+    /// Returns the sentence; `words` adds the remedy in the words of an interface.
     pub fn worded(&self, words: impl Fn(&Remedy) -> Option<String>) -> String {
         let words = self.remedy.as_ref().and_then(words);
         words.map_or_else(|| self.text.clone(), |words| format!("{}; {words}", self.text))
@@ -44,7 +45,7 @@ impl fmt::Display for Remark {
     }
 }
 
-/// Remarks that are collected.
+/// A list to which remarks are added.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Remarks(pub(crate) Vec<Remark>);
 

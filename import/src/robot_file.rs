@@ -1,4 +1,4 @@
-//! Robots as robot files: what `check` reads, as a person would write it.
+//! Writes robots as robot files, in the form in which a person would write them.
 
 use std::fmt::Write as _;
 
@@ -9,14 +9,14 @@ use rne_model::{
 
 use crate::snap::angle_text;
 
-/// Width of a folded text.
+/// Number of characters after which a long text is folded.
 const WIDTH: usize = 110;
 
-/// The robot file of a robot. Reading it gives the robot again, bit for bit, but for parameters that stay free until
-/// run time: every number is written as its value.
+/// Writes a robot as a robot file. Reading it gives the same robot, bit for bit, except for parameters that stay free
+/// until run time: every number is written as its value.
 ///
-/// Angles are written as `pi/2`, limits as `deg(170)` where that is the same number; every other number with the
-/// digits that it needs.
+/// Angles are written as `pi/2` and limits as `deg(170)` where that is exactly the same number; any other number has
+/// all digits that it needs.
 ///
 /// ```
 /// let text = "
@@ -89,7 +89,7 @@ fn write_floating_base(text: &mut String, FloatingBase { name, link }: &Floating
     }
 }
 
-/// The tip frame, the other frames, and those that carry wrenches or touch something.
+/// Writes the tip frame, the other frames, and which of them are tips or contacts.
 fn write_frames(text: &mut String, robot: &Robot) {
     if let (false, Some(on)) = (robot.is_serial(), robot.tip().on) {
         let on = scalar(&robot.joints[on].name);
@@ -154,29 +154,29 @@ fn write_drives(text: &mut String, robot: &Robot) {
     }
 }
 
-/// The name of the joint whose link carries something; `base` where frame 0 does.
+/// Returns the name of the joint that moves the carrying link; `base` for frame 0.
 fn carrier(robot: &Robot, on: Option<usize>) -> String {
     on.map_or_else(|| "base".to_owned(), |joint| scalar(&robot.joints[joint].name))
 }
 
-/// The entries of a mapping from joints to ratios.
+/// Writes the entries of a mapping from joints to ratios.
 fn ratios(robot: &Robot, of_joints: &[(usize, f64)]) -> String {
     let ratio =
         |&(joint, ratio): &(usize, f64)| format!("{}: {}", scalar(&robot.joints[joint].name), exact_digits(ratio));
     of_joints.iter().map(ratio).collect::<Vec<_>>().join(", ")
 }
 
-/// Writes a line with its units after it.
+/// Writes a line followed by a comment with its units.
 fn noted(text: &mut String, line: &str, units: &str) {
     let _ = writeln!(text, "{line}   # {units}");
 }
 
-/// Writes a line without its units, which the first joint has.
+/// Writes a line without its units, because those of the first joint have been written.
 fn unnoted(text: &mut String, line: &str, _units: &str) {
     let _ = writeln!(text, "{line}");
 }
 
-/// One block of the list; the first one with units.
+/// Writes one joint of the list; the first one with units.
 fn write_joint(text: &mut String, robot: &Robot, index: usize) {
     let joint = &robot.joints[index];
     let Joint { name, row, limits, motor, .. } = joint;
@@ -216,7 +216,7 @@ fn write_joint(text: &mut String, robot: &Robot, index: usize) {
     }
 }
 
-/// The link of a joint, if it is not empty.
+/// Writes the link of a joint, if it has data.
 fn write_link(text: &mut String, joint: &Joint, line: fn(&mut String, &str, &str)) {
     let (written, about) = joint.written_inertia;
     let Link { mass, com, first_moment, .. } = joint.row.link;
@@ -241,7 +241,7 @@ fn write_link(text: &mut String, joint: &Joint, line: fn(&mut String, &str, &str
     }
 }
 
-/// The keys of a placement that are not zero.
+/// Writes the keys of a placement that are not zero.
 fn place(placement: &Transform) -> String {
     let Transform { xyz, rpy } = placement;
     let mut text = String::new();
@@ -260,7 +260,7 @@ fn transform(placement: &Transform) -> String {
     format!("{{xyz: {}, rpy: [{}]}}", list(&placement.xyz), rpy.join(", "))
 }
 
-/// The elements that are not zero; a tensor has one at least.
+/// Writes the elements of a tensor that are not zero, but at least one.
 fn inertia(tensor: &Inertia) -> String {
     let Inertia { xx, yy, zz, xy, xz, yz } = *tensor;
     let elements = [("xx", xx), ("yy", yy), ("zz", zz), ("xy", xy), ("xz", xz), ("yz", yz)];
@@ -306,7 +306,7 @@ fn angle(value: f64) -> String {
     angle_text(value).unwrap_or_else(|| exact_digits(value))
 }
 
-/// An angle, or an angular velocity, in whole degrees where that is the same number.
+/// Writes an angle or an angular velocity in whole degrees where that is exactly the same number.
 fn in_degrees(value: f64) -> String {
     let degrees = value.to_degrees().round();
     let text = format!("{}deg({})", if value < 0.0 { "-" } else { "" }, degrees.abs());
@@ -317,7 +317,7 @@ fn in_degrees(value: f64) -> String {
     }
 }
 
-/// Whether a text means itself without quotation marks, within a line.
+/// Returns whether YAML reads a text within a line as the same text without quotation marks.
 fn is_plain(text: &str) -> bool {
     let is_word = text.starts_with(|c: char| c.is_ascii_alphabetic())
         && text
@@ -327,7 +327,7 @@ fn is_plain(text: &str) -> bool {
     is_word && !text.ends_with(' ') && !words.contains(&text.to_lowercase().as_str())
 }
 
-/// A text of one line.
+/// Writes a text of one line.
 fn scalar(text: &str) -> String {
     if is_plain(text) {
         return text.to_owned();
@@ -350,7 +350,7 @@ fn scalar(text: &str) -> String {
     quoted
 }
 
-/// A text of one line, folded where it is long.
+/// Writes a text of one line, folded where it is long.
 fn folded(text: &str) -> String {
     let is_foldable = text.chars().count() > WIDTH
         && text.split(' ').all(|word| !word.is_empty() && word.chars().all(|c| !c.is_whitespace() && !c.is_control()));
@@ -373,7 +373,7 @@ fn folded(text: &str) -> String {
     format!(">\n  {}", lines.join("\n  "))
 }
 
-/// A text of several lines.
+/// Writes a text of several lines.
 fn block(text: &str) -> String {
     let is_line = |line: &str| {
         !line.is_empty()

@@ -1,4 +1,4 @@
-//! The names that select a chain: its base, its tip and the joints that are held, found in the tree.
+//! Finds in the tree of links what selects a chain: its base, its tip, and the joints that are locked.
 
 use std::collections::HashMap;
 
@@ -8,35 +8,35 @@ use crate::source::{names, quoted};
 use crate::urdf::xml::LARGEST;
 use crate::urdf::{Joint, Kind, Urdf};
 
-/// Largest number of leaves that are listed where the tip must be named.
+/// Largest number of end links that a message lists when the caller must name the tip.
 const LISTED: usize = 60;
 
-/// The chain that is taken out of a tree.
+/// Which chain is taken out of a tree.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Selection {
     /// The fixed link at the base [default: the root].
     pub base: Option<String>,
-    /// The link at the end of the arm; needed where the tree has several leaves.
+    /// The link at the end of the arm; needed where the tree has several end links.
     pub tip: Option<String>,
-    /// Movable joints that are held, and where: rad or m. The joint that lets the base float is held at 0, which fixes
-    /// the base.
+    /// Movable joints that are locked, each with its position, rad or m. The joint that lets the base float can be
+    /// locked at 0, which fixes the base.
     pub lock: Vec<(String, f64)>,
-    /// Whether every other movable joint off the chain is held at zero.
+    /// Whether all other movable joints outside the chain are locked at zero.
     pub lock_others: bool,
-    /// Whether every movable joint after the base is taken: the robot is a tree, and `tip` is only where its tip frame
-    /// is.
+    /// Whether all movable joints after the base are taken: the robot is a tree, and `tip` only says where its tip
+    /// frame is.
     pub whole: bool,
-    /// Whether a whole robot has a floating base: the root link, or the link that floats in the file [default: where
-    /// the base floats in the file].
+    /// Whether a whole robot has a floating base: the root link, or the link that floats in the file [default: if a
+    /// link floats in the file].
     pub floating: Option<bool>,
 }
 
 impl Urdf {
-    /// Whether every link and every joint that a selection names is there.
+    /// Checks that every link and every joint that a selection names exists.
     ///
     /// # Errors
     ///
-    /// The first name that is not, with the one that was probably meant and those that there are.
+    /// The first name that does not exist, with the one that was probably meant and all that exist.
     pub fn check_names(&self, selection: &Selection) -> Result<(), Report> {
         selection.base.as_ref().map_or(Ok(0), |name| link(self, name, "base"))?;
         selection.tip.as_ref().map_or(Ok(0), |name| link(self, name, "tip"))?;
@@ -45,7 +45,7 @@ impl Urdf {
 }
 
 impl Selection {
-    /// Whether the robot has a floating base.
+    /// Returns whether the robot has a floating base.
     pub(crate) fn floats(&self, urdf: &Urdf, base: usize) -> Result<bool, Report> {
         let mut locked = self.lock.iter().filter_map(|(name, _)| urdf.joints.iter().find(|joint| joint.name == *name));
         let is_free = urdf.floats.is_some_and(|link| locked.all(|joint| joint.child != link));
@@ -66,7 +66,7 @@ impl Selection {
 }
 
 impl Urdf {
-    /// Chooses the base of a robot that floats: of these links that a free joint moves, the one that carries all other
+    /// Chooses the base of a floating robot: among links that a free joint moves, the one that carries all other
     /// joints.
     pub(crate) fn find_floating(&mut self, floating: &[usize]) {
         let carried = |link: usize| {
@@ -98,7 +98,7 @@ pub(crate) fn link(urdf: &Urdf, name: &str, what: &str) -> Result<usize, Report>
     })
 }
 
-/// A joint that is to be locked.
+/// Finds a joint that is to be locked.
 fn joint(urdf: &Urdf, name: &str) -> Result<usize, Report> {
     urdf.joints.iter().position(|joint| joint.name == name).ok_or_else(|| {
         let movable = urdf.joints.iter().filter(|joint| joint.kind != Kind::Fixed);
@@ -109,8 +109,8 @@ fn joint(urdf: &Urdf, name: &str) -> Result<usize, Report> {
     })
 }
 
-/// The question after the name that was probably meant: one that is a slip away, or the only one that has the word in
-/// it, as `panda_hand` has `hand`.
+/// Returns the question "did you mean": with the name that is a slip away, or else with the only name that contains the
+/// word, as `panda_hand` contains `hand`.
 fn meant<'n>(word: &str, known: impl IntoIterator<Item = &'n str>) -> String {
     let known: Vec<&str> = known.into_iter().collect();
     let lower = word.to_lowercase();
@@ -120,7 +120,7 @@ fn meant<'n>(word: &str, known: impl IntoIterator<Item = &'n str>) -> String {
     meant.map_or_else(String::new, |meant| format!("did you mean {}? ", quoted(meant)))
 }
 
-/// Leaves, one per line, with the joints before them.
+/// Lists end links, one per line, each with the number of joints before it.
 fn listed(urdf: &Urdf, leaves: &[(usize, usize)]) -> String {
     let listed = leaves.iter().map(|&(leaf, joints)| {
         let joints = if joints == 1 { "1 joint".to_owned() } else { format!("{joints} joints") };
@@ -131,14 +131,14 @@ fn listed(urdf: &Urdf, leaves: &[(usize, usize)]) -> String {
     listed.take(LISTED).collect::<Vec<_>>().join("\n") + &more
 }
 
-/// Words in names of tips, the surest last.
+/// Words that names of tips contain, the most certain one last.
 const OF_TIPS: [&str; 8] = ["foot", "hand", "flange", "end_effector", "endeffector", "ee", "tool", "tcp"];
 
-/// How probable it is that a leaf is the tip, by its name: `tool0` is the tip by convention (ROS REP 199, and
-/// ROS-Industrial before it), as is `tip`, the name that `rne export` writes, then names with the words of tips, `tcp`
-/// (tool centre point) first. `ee` and `hand` end a name, but for `_link`, because other words and fingers contain
-/// them. A leaf that follows another joint, such as the second finger of a gripper, comes after the others, and what is
-/// drawn or spins in a motor last.
+/// Returns how probable it is that an end link is the tip, by its name. `tool0` is the tip by convention (ROS REP 199,
+/// and ROS-Industrial before it), as is `tip`, the name that `rne export` writes; then come names with a word for tips,
+/// `tcp` (tool centre point) first. `ee` and `hand` must be at the end of the name, apart from `_link`, because other
+/// words and names of fingers contain them. A link that a follower moves, such as the second finger of a gripper, is
+/// less probable than others; least probable are links that are only drawn (`visual`) or are rotors of motors.
 fn rank(urdf: &Urdf, base: usize, leaf: usize) -> usize {
     const OTHER: usize = 2;
     let name = urdf.links[leaf].name.to_lowercase();
@@ -164,11 +164,11 @@ fn rank(urdf: &Urdf, base: usize, leaf: usize) -> usize {
 /// The end of a chain.
 pub(crate) struct End {
     pub(crate) link: usize,
-    /// Leaves behind the same movable joints, if the end was chosen among them.
+    /// Other end links after the same movable joint, if the end was chosen among several.
     pub(crate) others: Vec<usize>,
 }
 
-/// The link where the chain ends.
+/// Returns the link at which the chain ends.
 pub(crate) fn tip(urdf: &Urdf, base: usize, selection: &Selection) -> Result<End, Report> {
     let alone = |link| End { link, others: Vec::new() };
     if let Some(name) = &selection.tip {
@@ -178,9 +178,9 @@ pub(crate) fn tip(urdf: &Urdf, base: usize, selection: &Selection) -> Result<End
     if let [(leaf, _)] = leaves[..] {
         return Ok(alone(leaf));
     }
-    // leaves without a movable joint are sensors on the base, or marks on it
+    // end links that no movable joint moves are sensors or marks on the base
     let moved: Vec<usize> = leaves.iter().filter(|(_, joints)| *joints > 0).map(|(leaf, _)| *leaf).collect();
-    // among equally probable leaves, those at the end of a chain come first: their last joint moves no further joint
+    // among equally probable end links, those whose last joint moves no further joint come first
     let is_outermost = |leaf: usize, leaves: &[usize]| {
         let Some(joint) = last_movable(urdf, base, leaf) else { return false };
         leaves.iter().all(|&other| last_movable(urdf, base, other) == Some(joint) || !is_beyond(urdf, joint, other))
@@ -206,7 +206,7 @@ pub(crate) fn tip(urdf: &Urdf, base: usize, selection: &Selection) -> Result<End
     Err(urdf.source.error_with(&urdf.links[base].span, message, help, &Remedy::NameTip))
 }
 
-/// Whether a joint moves a link.
+/// Returns whether a joint moves a link.
 fn is_beyond(urdf: &Urdf, joint: usize, mut link: usize) -> bool {
     while let Some(parent) = urdf.links[link].parent {
         if parent == joint {
@@ -217,7 +217,7 @@ fn is_beyond(urdf: &Urdf, joint: usize, mut link: usize) -> bool {
     false
 }
 
-/// The last movable joint before a link.
+/// Returns the last movable joint before a link.
 fn last_movable(urdf: &Urdf, base: usize, mut link: usize) -> Option<usize> {
     while link != base {
         let joint = urdf.links[link].parent?;
@@ -229,7 +229,7 @@ fn last_movable(urdf: &Urdf, base: usize, mut link: usize) -> Option<usize> {
     None
 }
 
-/// The links behind `base` that carry no other, with the number of movable joints in between.
+/// Returns the end links after `base`, each with the number of movable joints between them.
 fn leaves(urdf: &Urdf, base: usize) -> Vec<(usize, usize)> {
     let mut leaves = Vec::new();
     let mut open = vec![(base, 0)];
@@ -247,7 +247,7 @@ fn leaves(urdf: &Urdf, base: usize) -> Vec<(usize, usize)> {
     leaves
 }
 
-/// The joints from `base` to `tip`.
+/// Returns the joints from `base` to `tip`.
 pub(crate) fn path(urdf: &Urdf, base: usize, tip: usize) -> Result<Vec<usize>, Report> {
     let mut path = Vec::new();
     let mut link = tip;
@@ -269,7 +269,7 @@ pub(crate) fn path(urdf: &Urdf, base: usize, tip: usize) -> Result<Vec<usize>, R
     Ok(path)
 }
 
-/// The joints that are held by name.
+/// Returns the joints that the selection locks by name, with their positions.
 pub(crate) fn locks(urdf: &Urdf, selection: &Selection) -> Result<HashMap<usize, f64>, Report> {
     let mut locks = HashMap::new();
     for (place, (name, value)) in selection.lock.iter().enumerate() {
@@ -299,7 +299,7 @@ pub(crate) fn locks(urdf: &Urdf, selection: &Selection) -> Result<HashMap<usize,
     Ok(locks)
 }
 
-/// Refuses a value that is not a position of a joint.
+/// Refuses a value that cannot be a position of a joint.
 pub(crate) fn refuse_value(urdf: &Urdf, joint: &Joint, value: f64) -> Result<(), Report> {
     let is_angle = joint.kind != Kind::Prismatic;
     let is_position = if is_angle { value.abs() < LARGEST_ANGLE } else { value.abs() <= LARGEST };

@@ -1,27 +1,27 @@
-//! Angles that a file only rounds: 1.5708 is meant to be pi/2.
+//! Replaces rounded angles by the exact ones that they stand for: 1.5708 becomes pi/2.
 
 use std::f64::consts::PI;
 
 use crate::geometry::{Vector, twelfths_of_pi};
 
-/// Largest distance of an angle from the multiple of pi/12 by which it is replaced, rad.
+/// Largest distance of an angle from the multiple of pi/12 that replaces it, rad.
 pub const TOLERANCE: f64 = 2e-4;
 
-/// An angle or an axis that was taken for the one that was meant.
+/// An angle or an axis that was replaced by the exact one.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Snapped {
-    /// The place: `joint shoulder, roll`.
+    /// The place in the file, such as `joint shoulder, roll`.
     pub place: String,
-    /// As the file has it.
+    /// The number or the axis as the file has it.
     pub from: String,
-    /// As it is taken.
+    /// The number or the axis that replaces it.
     pub to: String,
-    /// The angle by which it turns, rad.
+    /// The angle between both, rad.
     pub by: f64,
 }
 
-/// The numbers that were snapped, in the order in which it is met. Without `is_on` nothing is.
+/// Records the numbers that were snapped, in the order in which they are read. If `is_on` is false, nothing is snapped.
 #[derive(Debug, Default)]
 pub(crate) struct Snapping {
     pub(crate) is_on: bool,
@@ -29,7 +29,7 @@ pub(crate) struct Snapping {
 }
 
 impl Snapping {
-    /// Roll, pitch and yaw of a frame.
+    /// Snaps roll, pitch and yaw of a frame.
     pub(crate) fn rpy(&mut self, of: &str, rpy: [f64; 3]) -> [f64; 3] {
         let mut result = rpy;
         if !self.is_on {
@@ -51,7 +51,7 @@ impl Snapping {
         result
     }
 
-    /// The axis of a joint: one that is nearly an axis of its frame is that axis.
+    /// Snaps the axis of a joint: a direction that is nearly an axis of its frame becomes this axis.
     pub(crate) fn axis(&mut self, of: &str, written: [f64; 3], axis: Vector) -> Vector {
         let Some(along) = (0..3).find(|&i| axis.0[i].high.abs() > 0.9).filter(|_| self.is_on) else { return axis };
         let meant = if axis.0[along].high > 0.0 { Vector::unit(along) } else { -Vector::unit(along) };
@@ -65,13 +65,13 @@ impl Snapping {
     }
 }
 
-/// A multiple of pi/12 as the expression that a person would write gives it.
+/// Returns a multiple of pi/12 with exactly the bits of the expression that a person would write for it.
 pub(crate) fn of_twelfths(twelfths: f64) -> f64 {
     let (factor, divisor) = fraction(twelfths);
     factor * PI / divisor
 }
 
-/// An angle as a robot file would have it: `0`, `-pi/2`, `5*pi/12`; `None` where it is no multiple of pi/12.
+/// Returns an angle as a robot file would have it: `0`, `-pi/2`, `5*pi/12`; `None` where it is no multiple of pi/12.
 pub(crate) fn angle_text(angle: f64) -> Option<String> {
     let twelfths = twelfths_of_pi(angle)?;
     let (factor, divisor) = fraction(twelfths);
@@ -86,7 +86,7 @@ pub(crate) fn angle_text(angle: f64) -> Option<String> {
     (rne_model::number(&text).ok()? == angle).then_some(text)
 }
 
-/// n/12 in lowest terms.
+/// Returns n/12 in lowest terms.
 fn fraction(twelfths: f64) -> (f64, f64) {
     let common = [12.0, 6.0, 4.0, 3.0, 2.0].into_iter().find(|common| twelfths % common == 0.0).unwrap_or(1.0);
     (twelfths / common, 12.0 / common)

@@ -1,4 +1,4 @@
-//! The text that is read, and mistakes in it.
+//! The text of a description, and errors at places in it.
 
 use std::ffi::OsStr;
 use std::ops::Range;
@@ -6,17 +6,17 @@ use std::path::Path;
 
 use rne_model::{Remedy, Report};
 
-/// A text and what messages call it.
+/// A text and its name in messages.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Source {
     pub(crate) file: String,
-    /// The text of the file, and after it those of the files that it includes.
+    /// The text of the file, followed by the texts of the files that it includes.
     pub(crate) text: String,
-    /// The included files: where the text of each begins, and what messages call it.
+    /// The included files: where the text of each begins, and its name in messages.
     pub(crate) included: Vec<(usize, String)>,
 }
 
-/// The help against an error, if one is known.
+/// The help for an error, if there is one.
 #[derive(Debug)]
 pub(crate) struct Help(Option<String>);
 
@@ -43,12 +43,12 @@ impl Source {
         Self { file: file.to_owned(), text: text.to_owned(), included: Vec::new() }
     }
 
-    /// The name of the file without its folders: where they are matters to messages alone.
+    /// Returns the name of the file without its folders, which only messages need.
     pub(crate) fn file_name(&self) -> &str {
         file_name(&self.file)
     }
 
-    /// A mistake against which a choice of the caller helps.
+    /// Makes an error that a choice of the caller solves.
     pub(crate) fn error_with(
         &self,
         span: &Range<usize>,
@@ -59,7 +59,7 @@ impl Source {
         self.error(span, message, help).with_remedy(remedy)
     }
 
-    /// A mistake at some bytes of the text.
+    /// Makes an error at some bytes of the text.
     pub(crate) fn error(&self, span: &Range<usize>, message: impl Into<String>, help: impl Into<Help>) -> Report {
         let Help(help) = help.into();
         let next = self.included.partition_point(|(start, _)| *start <= span.start);
@@ -72,20 +72,20 @@ impl Source {
     }
 }
 
-/// The name of a file without its folders.
+/// Returns the name of a file without its folders.
 pub(crate) fn file_name(path: &str) -> &str {
     Path::new(path).file_name().and_then(OsStr::to_str).unwrap_or(path)
 }
 
-/// Largest number of names in a message, which counts the others.
+/// Largest number of names that a message lists; it only counts the others.
 const NAMED: usize = 24;
 
-/// Names for a message: `a`, `b` and 3 more.
+/// Lists names for a message: `a`, `b` and 3 more.
 pub(crate) fn names<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> String {
     some(names.into_iter().map(|name| quoted(name.as_ref())))
 }
 
-/// A list for a message, not too long.
+/// Joins items to a list for a message, up to a largest number.
 pub(crate) fn some(items: impl IntoIterator<Item = String>) -> String {
     let items: Vec<String> = items.into_iter().collect();
     let shown = items[..items.len().min(NAMED)].join(", ");
@@ -95,7 +95,7 @@ pub(crate) fn some(items: impl IntoIterator<Item = String>) -> String {
     }
 }
 
-/// A name of the file in a message: one line, not too long.
+/// Formats a name from the file for a message: one line, not too long.
 pub(crate) fn quoted(name: &str) -> String {
     const LONGEST: usize = 60;
     let line = rne_model::one_line(name);

@@ -1,16 +1,16 @@
-//! From a chain to the rows of a Denavit-Hartenberg table.
+//! Converts a chain to the rows of a Denavit-Hartenberg table.
 //!
-//! z of every frame is the positive axis of its joint: then q, its sign and its limits stay what they were. What the
-//! axes leave free is chosen so that the table is short:
+//! z of every frame is the positive axis of its joint, so q, its sign and its limits stay the same. Where the axes
+//! leave a choice, the table becomes as short as possible:
 //!
-//! - parallel axes: the normal begins where the one before ended, so that d is zero;
-//! - one line: a = 0, x stays, the origin is that of the next joint;
-//! - x points so that |theta| ≤ pi/2, at ±pi/2 so that a > 0, or else theta > 0;
-//! - frame 0: the origin of the base on the first axis, x of the base;
-//! - the last frame: the origin of the last joint, x of its link.
+//! - parallel axes: the common normal begins where the one before it ended, so that d is zero;
+//! - two axes on one line: a = 0, x stays, the origin is that of the next joint;
+//! - x points so that |theta| ≤ pi/2; at exactly ±pi/2 so that a > 0, or if a = 0, so that theta > 0;
+//! - frame 0: its origin is on the first axis, nearest to the origin of the base, and its x is that of the base;
+//! - the last frame: its origin is that of the last joint, and its x that of the last link.
 //!
-//! Both conventions share the common normals: the standard frame stands at the far end of one, the modified frame at
-//! the near end of the next.
+//! Both conventions use the same common normals: a standard frame is at the far end of one, a modified frame at the
+//! near end of the next.
 
 use rne_model::{Angle, Convention, Dh, Double};
 
@@ -18,56 +18,56 @@ use crate::chain::Chain;
 use crate::geometry::{Pose, Rotation, Vector, atan2, rounded, twelfths_of_pi};
 use crate::snap::of_twelfths;
 
-/// A length below this, m, is the rounding of an `f64`.
+/// A length below this is taken for a rounding error of an `f64`, m.
 const NOTHING: f64 = 1e-15;
-/// A tilt that is the rounding of an `f64`, rad.
+/// An angle between axes below this is taken for a rounding error of an `f64`, rad.
 const ROUNDING: f64 = 1e-15;
-/// More than this is unlike any arm, m: two axes are nearly parallel.
+/// A distance that no arm has, m: it shows that two axes are nearly parallel.
 pub(crate) const FAR: f64 = 100.0;
 
-/// The sine of the angle below which two axes make a table long.
+/// Sine of the angle between two axes below which they are nearly parallel, so that lengths in the table become large.
 pub(crate) const NEARLY_PARALLEL: f64 = 0.05;
 
-/// The rows of a table and the frames they lead to.
+/// The rows of a table and the resulting frames.
 pub(crate) struct Table {
-    /// Base → frame 0.
+    /// Placement of frame 0 in the frame of the base.
     pub(crate) start: Pose,
     pub(crate) rows: Vec<Dh>,
-    /// γ and b of each row, by which it begins in the link frame of its parent; zero but in a tree.
+    /// γ and b of each row, by which the row begins in the link frame of its parent; both are zero except in a tree.
     pub(crate) branches: Vec<[f64; 2]>,
-    /// Frame of each moved link → frame i of the table: both are fixed to the link.
+    /// For each moved link, placement of frame i of the table in the link's own frame; both are fixed to the link.
     pub(crate) frames: Vec<Pose>,
-    /// Frame of the link of the tip → tip.
+    /// Placement of the tip in the link frame of the link that carries it.
     pub(crate) tool: Pose,
-    /// Pairs of axes, from 1, that are taken as parallel although they are tilted by so much, rad. After the joints
-    /// stands the z axis of the base.
+    /// Pairs of axes, counted from 1, that are taken as parallel, each with the angle between them, rad. The number
+    /// after that of the last joint means the z axis of the base.
     pub(crate) levelled: Vec<([usize; 2], f64)>,
 }
 
 /// The common normal of the axes of two neighbouring joints.
 struct Normal {
-    /// The point at which it begins, on the first axis.
+    /// The point on the first axis at which the normal begins.
     from: Vector,
-    /// The point at which it ends, on the second axis.
+    /// The point on the second axis at which the normal ends.
     to: Vector,
-    /// Its direction, of length 1.
+    /// The direction of the normal, of length 1.
     x: Vector,
 }
 
-/// The joints at q = 0, in the frame of the base.
+/// The joint axes at q = 0, in the frame of the base.
 struct Axes {
-    /// Frames of the moved links.
+    /// The frames of the moved links.
     links: Vec<Pose>,
     points: Vec<Vector>,
     directions: Vec<Vector>,
 }
 
-/// Writes the chain as a table.
+/// Computes the table of a chain.
 pub(crate) fn table(chain: &Chain, convention: Convention) -> Table {
     let mut axes = Axes::of(chain);
     let n = axes.points.len();
     let first = axes.directions[0];
-    // The foot of the base's origin on the first axis.
+    // The point on the first axis that is nearest to the origin of the base.
     let origin = axes.points[0].across(first);
     let x = perpendicular(first, [0, 1, 2].map(Vector::unit));
     let mut levelled = Vec::new();
@@ -111,18 +111,18 @@ pub(crate) fn table(chain: &Chain, convention: Convention) -> Table {
     Table { start, branches: vec![[0.0; 2]; n], rows, frames, tool, levelled }
 }
 
-/// Writes the tree as a table of modified rows. Frame 0 is the frame of the base, with its z in the place of an axis.
-/// The first joint on a link begins at its link frame, as in a chain; others begin at γ and b.
+/// Computes the table of a tree, with modified rows. Frame 0 is the frame of the base, whose z axis is treated like a
+/// joint axis. The first joint on a link begins at its link frame, as in a chain; further joints begin at γ and b.
 pub(crate) fn tree_table(chain: &Chain) -> Table {
     let mut axes = Axes::of(chain);
     let n = axes.points.len();
-    // the base behind the joints
+    // the z axis of the base is stored after those of the joints
     axes.points.push(Vector::ZERO);
     axes.directions.push(Vector::unit(2));
     let parent = |k: usize| chain.joints[k].parent.unwrap_or(n);
     let mut levelled = Vec::new();
     let mut normals: Vec<Normal> = Vec::with_capacity(n);
-    // x and origin of the link frames that are known
+    // x axis and origin of each link frame that has been determined
     let mut ends: Vec<Option<(Vector, Vector)>> = vec![None; n];
     ends.push(Some((Vector::unit(0), Vector::ZERO)));
     for k in 0..n {
@@ -166,7 +166,7 @@ impl Axes {
         axes
     }
 
-    /// The normal from axis `k` to axis `after`; `origin` and `x` are those of the frame before.
+    /// Computes the common normal from axis `k` to axis `after`; `origin` and `x` are those of the frame before it.
     fn normal(
         &mut self,
         (k, after): (usize, usize),
@@ -179,13 +179,14 @@ impl Axes {
         let tilt = cross.norm();
         let way = self.points[after] - self.points[k];
         let skew = (tilt.to_f64() > ROUNDING).then(|| {
-            // The feet of two skew lines, by Cramer's rule.
+            // The nearest points of two skew lines, by Cramer's rule.
             let square = tilt * tilt;
             let along = way.cross(next).dot(cross) / square;
             let along_next = way.cross(z).dot(cross) / square;
             (self.points[k] + z * along, self.points[after] + next * along_next)
         });
-        // Feet so far away cannot be written: what their rounding costs is more than the tilt is worth over a metre.
+        // If the nearest points are so far away that their rounding errors exceed the effect of the tilt over a metre,
+        // the axes are taken as parallel.
         let skew = skew.filter(|(from, to)| {
             let far = (*from - self.points[k]).norm().to_f64().max((*to - self.points[after]).norm().to_f64());
             let is_lost = tilt.to_f64() < f64::EPSILON * far;
@@ -201,21 +202,21 @@ impl Axes {
             let normal = if leads && length.dot(normal).to_f64() < 0.0 { -normal } else { normal };
             return Normal { from, to, x: facing(x, z, normal, leads) };
         }
-        // The same direction, to the last bit.
+        // Makes both directions equal to the last bit.
         self.directions[after] = if z.dot(next).to_f64() < 0.0 { -z } else { z };
         let across = way.across(z);
         if across.norm().to_f64() <= NOTHING {
             let point = self.points[after] - (self.points[after] - self.points[k]).across(z);
             return Normal { from: point, to: point, x };
         }
-        // Not where a nearly parallel pair has led far away.
+        // The normal begins at `origin`, unless a nearly parallel pair before it has moved that far away.
         let from = if (origin - self.points[k]).norm().to_f64() > FAR { self.points[k] } else { origin };
         let distance = (self.points[after] - from).across(z);
         let direction = distance.direction().unwrap_or(x);
         Normal { from, to: from + distance, x: facing(x, z, direction, true) }
     }
 
-    /// a and alpha from axis `k` to axis `after`; of the last joint both are zero.
+    /// Returns a and alpha from axis `k` to axis `after`; both are zero for the last joint.
     fn twist(&self, (k, after): (usize, usize), normal: Option<&Normal>) -> (f64, f64) {
         let Some(Normal { from, to, x }) = normal else { return (0.0, 0.0) };
         let (z, next) = (self.directions[k], self.directions[after]);
@@ -224,15 +225,17 @@ impl Axes {
     }
 }
 
-/// The normal `x`, or its opposite, so that the angle from `before` about `z` is at most a right one. At exactly a
-/// right angle it stays where it `leads` to the next axis, for then a > 0; else theta is to be positive.
+/// Returns the normal `x` or its opposite, so that the angle from `before` to it about `z` is at most a right angle. At
+/// exactly a right angle, `x` stays if it `leads` to the next axis, because then a > 0; else it is chosen so that theta
+/// > 0.
 fn facing(before: Vector, z: Vector, x: Vector, leads: bool) -> Vector {
     const RIGHT: f64 = 1e-20;
     let (sin, cos) = (z.dot(before.cross(x)).to_f64(), before.dot(x).to_f64());
     if cos < -RIGHT || (cos <= RIGHT && !leads && sin < 0.0) { -x } else { x }
 }
 
-/// A unit vector perpendicular to `z`: the first of `hints` that is nearly so, made so, else the one that is most.
+/// Returns a unit vector perpendicular to `z`: the first of `hints` that is nearly perpendicular, else the most
+/// perpendicular one, each without its part along `z`.
 fn perpendicular(z: Vector, hints: [Vector; 3]) -> Vector {
     let tilt = |hint: &Vector| hint.dot(z).to_f64().abs();
     let near = hints.iter().find(|hint| tilt(hint) < 0.5);
@@ -244,14 +247,15 @@ fn perpendicular(z: Vector, hints: [Vector; 3]) -> Vector {
     hint.across(z).direction().unwrap_or_else(|| Vector::unit(0))
 }
 
-/// A length between two points, rounded once; what is the rounding of an `f64` is nothing.
+/// Returns a distance between two points, rounded once; a value that is only a rounding error becomes zero.
 fn length(value: Double, from: Vector, to: Vector) -> f64 {
     let scale = from.to_f64().into_iter().chain(to.to_f64()).map(f64::abs).fold(0.0, f64::max);
     let value = rounded(value, scale);
     if value.abs() < NOTHING { 0.0 } else { value }
 }
 
-/// An angle as a person would write it: -pi is pi, and a multiple of pi/12 has the bits of that expression.
+/// Returns an angle as a person would write it: -pi becomes pi, and a multiple of pi/12 gets the bits of that
+/// expression.
 fn canonical(angle: f64) -> f64 {
     let angle = twelfths_of_pi(angle).map_or(angle, of_twelfths);
     if angle == -std::f64::consts::PI { std::f64::consts::PI } else { angle }

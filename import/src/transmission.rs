@@ -1,6 +1,6 @@
-//! Elements `transmission` of a URDF: gears and rotors of joints.
+//! Reads elements `transmission` of a URDF: gears and rotors of joints.
 //!
-//! Read are `mechanicalReduction` of ros_control, as a text, and `rotor_inertia` and `gear_ratio` of Drake, as
+//! It reads `mechanicalReduction` of ros_control, as a text, and `rotor_inertia` and `gear_ratio` of Drake, as
 //! attributes `value`, with or without the prefix `drake:`. Everything else in a transmission is ignored.
 
 use std::borrow::Cow;
@@ -17,24 +17,24 @@ use crate::urdf::xml::LARGEST;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Transmission {
     pub(crate) name: String,
-    /// The names of its joints.
+    /// The names of the joints of the transmission.
     pub(crate) joints: Vec<String>,
     /// The number of its actuators.
     pub(crate) actuators: usize,
-    /// Motor angle by joint angle.
+    /// Gear ratio: motor angle per joint angle.
     pub(crate) ratio: Option<f64>,
     /// Inertia of the rotor, kg m², or its mass, kg.
     pub(crate) rotor_inertia: Option<f64>,
 }
 
-/// The transmissions of a text that has been read as a URDF.
+/// Reads the transmissions of a text that is known to be a URDF.
 pub(crate) fn read(source: &Source) -> Result<Vec<Transmission>, Report> {
     let mut found: Vec<Transmission> = Vec::new();
     if !source.text.contains("<transmission") {
         return Ok(found);
     }
     let mut reader = Reader::from_str(&source.text);
-    // the elements that are open
+    // the names of the elements around the current place
     let mut open: Vec<String> = Vec::new();
     loop {
         let start = usize::try_from(reader.buffer_position()).unwrap_or(0);
@@ -63,12 +63,12 @@ pub(crate) fn read(source: &Source) -> Result<Vec<Transmission>, Report> {
     }
 }
 
-/// The name of an element without the prefix of a namespace.
+/// Returns the name of an element without the prefix of a namespace.
 fn local_name(tag: &BytesStart) -> String {
     String::from_utf8_lossy(tag.local_name().as_ref()).into_owned()
 }
 
-/// Whether the open elements are those of a transmission of the robot.
+/// Returns whether the current place is inside an element `transmission` of the robot.
 fn is_within(open: &[String]) -> bool {
     open.get(..2).is_some_and(|outer| outer == ["robot", "transmission"])
 }
@@ -114,7 +114,7 @@ fn element(
     Ok(())
 }
 
-/// A ratio, which is not zero.
+/// Reads a gear ratio, which must not be zero.
 fn ratio(source: &Source, what: &str, text: &str, span: Range<usize>) -> Result<f64, Report> {
     let ratio = text.trim().parse().ok().filter(|ratio: &f64| (1e-6..=1e6).contains(&ratio.abs()));
     ratio.ok_or_else(|| {

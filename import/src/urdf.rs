@@ -1,5 +1,5 @@
-//! A URDF as a tree of links and joints, whose every number is finite and whose every name is known. An MJCF file
-//! becomes the same tree.
+//! Reads a URDF as a tree of links and joints, in which every number is finite and every name exists. An MJCF file
+//! becomes the same kind of tree.
 
 mod elements;
 pub(crate) mod xml;
@@ -21,28 +21,28 @@ use crate::urdf::xml::{root_name, scan};
 pub struct Urdf {
     pub(crate) source: Source,
     pub(crate) name: String,
-    /// In the order of the text.
+    /// The links, in the order of the text.
     pub(crate) links: Vec<Link>,
-    /// In the order of the text.
+    /// The joints, in the order of the text.
     pub(crate) joints: Vec<Joint>,
-    /// Joints that gears couple to others, of URDF+.
+    /// Joints that gears couple to others; only URDF+ has them.
     pub(crate) gears: Vec<Gear>,
-    /// Closed loops.
+    /// The closed loops of the robot.
     pub(crate) loops: Vec<Loop>,
     /// The link that no joint moves.
     pub(crate) root: usize,
-    /// The link at the base of an arm that names none: the root, or the link that floats.
+    /// The link that is the base of an arm if the caller names none: the root, or the link that floats.
     pub(crate) base: usize,
-    /// The link that carries all joints as a floating base: a floating joint in a URDF, or a free joint in an MJCF
-    /// file, moves it. This joint is `Fixed` here.
+    /// The link that carries all joints as a floating base: a floating joint of a URDF, or a free joint of an MJCF
+    /// file, moves it. This joint has the kind `Fixed` here.
     pub(crate) floats: Option<usize>,
-    /// The acceleration of gravity in the axes of the root, m/s², where the file says it.
+    /// The acceleration of gravity in the axes of the root, m/s², if the file gives it.
     pub(crate) gravity: Option<[f64; 3]>,
-    /// Remarks on what the file has and a robot file has not, in sentences.
+    /// Remarks on parts of the file that a robot file cannot express, in sentences.
     pub(crate) remarks: Remarks,
-    /// Kinds of elements and attributes that are not known, in words.
+    /// Kinds of unknown elements and attributes, in words.
     pub(crate) unknown: Vec<String>,
-    /// The unknown elements beside links and joints.
+    /// Unknown elements outside of links and joints, as indices into `unknown`.
     pub(crate) beside: BTreeSet<usize>,
 }
 
@@ -50,27 +50,27 @@ pub struct Urdf {
 pub(crate) struct Link {
     pub(crate) name: String,
     pub(crate) span: Range<usize>,
-    /// The place of its inertia.
+    /// The place of the link's inertia in the text.
     pub(crate) span_of_inertia: Range<usize>,
-    /// Unknown names in it.
+    /// Unknown names in the link, as indices into [`Urdf::unknown`].
     pub(crate) unknown: BTreeSet<usize>,
     /// Mass, kg; 0 where there is no `inertial`.
     pub(crate) mass: f64,
     /// Centre of mass in the link frame, m.
     pub(crate) xyz: [f64; 3],
-    /// The axes of the tensor, rad.
+    /// The orientation of the axes in which the inertia is given, rad.
     pub(crate) rpy: [f64; 3],
-    /// About the centre of mass, in the axes of `rpy`.
+    /// The inertia about the centre of mass, in the axes of `rpy`.
     pub(crate) inertia: Inertia,
-    /// Whether it is a mark on another link, and no end of an arm: a site of an MJCF file.
+    /// Whether the link is only a mark on another link, a site of an MJCF file, and so no end of an arm.
     pub(crate) is_site: bool,
-    /// The joint that moves it.
+    /// The joint that moves the link.
     pub(crate) parent: Option<usize>,
-    /// The joints whose parent it is.
+    /// The joints that the link carries.
     pub(crate) children: Vec<usize>,
 }
 
-/// The cut joint of a word in a URDF+.
+/// Returns the kind of cut joint that a word of a URDF+ means.
 pub(crate) fn cut(word: &str) -> Option<Cut> {
     match word {
         "revolute" | "continuous" => Some(Cut::Revolute),
@@ -81,20 +81,20 @@ pub(crate) fn cut(word: &str) -> Option<Cut> {
     }
 }
 
-/// A joint that gears couple to others: its position is Σ ratio · q of those.
+/// A joint that gears couple to others: its position is Σ ratio · q over these joints.
 #[derive(Clone, Debug)]
 pub(crate) struct Gear {
-    /// The place of its tag.
+    /// The place of its tag in the text.
     pub(crate) span: Range<usize>,
     pub(crate) joint: usize,
-    /// The joints that it follows, and the ratios.
+    /// The joints that it follows, and the ratio of each.
     pub(crate) follows: Vec<(usize, f64)>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Revolute,
-    /// Revolute without limits of position.
+    /// A revolute joint without position limits.
     Continuous,
     Prismatic,
     Fixed,
@@ -107,12 +107,12 @@ impl Kind {
     pub(crate) const ALL: [Self; 7] =
         [Self::Revolute, Self::Continuous, Self::Prismatic, Self::Fixed, Self::Floating, Self::Planar, Self::Spherical];
 
-    /// The kind of a word in a URDF.
+    /// Returns the kind of joint that a word of a URDF means.
     pub(crate) fn of(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.name() == word)
     }
 
-    /// Its word in a URDF.
+    /// Returns the word of a URDF for this kind of joint.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Revolute => "revolute",
@@ -125,17 +125,17 @@ impl Kind {
         }
     }
 
-    /// Whether one number says where it is.
+    /// Returns whether one number describes the position of such a joint.
     pub(crate) fn has_one_freedom(self) -> bool {
         matches!(self, Self::Revolute | Self::Continuous | Self::Prismatic)
     }
 }
 
-/// A joint that follows another one: q = `multiplier` · q of `joint` + `offset`.
+/// How a joint follows another one: q = `multiplier` · q of `joint` + `offset`.
 #[derive(Clone, Debug)]
 pub(crate) struct Mimic {
     pub(crate) joint: String,
-    /// The index of that joint, where it exists.
+    /// The index of the joint that is followed, if it exists.
     pub(crate) leader: Option<usize>,
     pub(crate) multiplier: f64,
     pub(crate) offset: f64,
@@ -145,11 +145,11 @@ pub(crate) struct Mimic {
 pub(crate) struct Joint {
     pub(crate) name: String,
     pub(crate) span: Range<usize>,
-    /// Unknown names in it.
+    /// Unknown names in the joint, as indices into [`Urdf::unknown`].
     pub(crate) unknown: BTreeSet<usize>,
-    /// Whether its axis is written; 1 0 0 otherwise.
+    /// Whether the file gives the axis; otherwise it is 1 0 0.
     pub(crate) has_axis: bool,
-    /// Limits of position of which the lower one is above the upper one.
+    /// Position limits of which the lower one is above the upper one.
     pub(crate) crossed: Option<(f64, f64)>,
     /// Limits of effort and velocity that are below zero.
     pub(crate) negative: Vec<(&'static str, f64)>,
@@ -161,41 +161,42 @@ pub(crate) struct Joint {
     pub(crate) child: usize,
     pub(crate) xyz: [f64; 3],
     pub(crate) rpy: [f64; 3],
-    /// As written: not of length 1.
+    /// The axis as the file has it, not scaled to length 1.
     pub(crate) axis: [f64; 3],
     pub(crate) limits: Limits,
     /// Viscous and Coulomb friction at the joint, N m s/rad and N m, or N s/m and N.
     pub(crate) friction: [f64; 2],
     /// Inertia of the rotor about its own axis, kg m², or its mass, kg.
     pub(crate) rotor_inertia: f64,
-    /// Motor angle by joint angle.
+    /// Gear ratio: motor angle per joint angle.
     pub(crate) gear_ratio: f64,
-    /// The position at which the links are where the file has them, rad or m: `ref` of an MJCF file.
+    /// The joint position at which the links are placed as in the file, rad or m: `ref` of an MJCF file.
     pub(crate) reference: f64,
-    /// Whether it has a motor, where the file says it.
+    /// Whether the joint has a motor, if the file says it.
     pub(crate) has_motor: Option<bool>,
 }
 
 impl Urdf {
-    /// Reads the text of a URDF, or of an MJCF file, whose root element is `mujoco`. `file` is what messages call it,
-    /// its path; files that an MJCF file includes are read from its folder. The robot file keeps its name without
-    /// folders. Closed loops that a URDF has not are read from the file beside it, `robot.yaml` for `robot.urdf`, if
+    /// Reads the text of a URDF, or of an MJCF file, whose root element is `mujoco`. `file` is the path of the file,
+    /// which messages name; files that an MJCF file includes are read from its folder. The robot file keeps only the
+    /// name without folders. Closed loops of a URDF are read from the file beside it, `robot.yaml` for `robot.urdf`, if
     /// that has the key `closed_loop`, as those of Gepetto/example-parallel-robots have.
     ///
     /// # Errors
     ///
     /// An error with its place in the text: not XML, a document type, more than 16 MiB, a value that is no finite
-    /// number, a name that is there twice or not at all, links that are not one tree.
+    /// number, a name that is there twice or does not exist, links that are not one tree.
     pub fn read(file: &str, text: &str) -> Result<Self, Report> {
         let loops = crate::extended_urdf::beside(file);
         Self::read_with_loops(file, text, loops.as_ref().map(|(name, text)| (name.as_str(), text.as_str())))
     }
 
-    /// [`Urdf::read`] with the closed loops of the file `loops`, its name and its text, and not of one beside the URDF.
+    /// Does the same as [`Urdf::read`], but reads the closed loops from `loops`, the name and the text of a file, and
+    /// not from the file beside the URDF.
     ///
     /// # Errors
     ///
-    /// As [`Urdf::read`]; an error of the file with its place there; an MJCF file with such a file.
+    /// As [`Urdf::read`]; an error in the file of loops, with its place there; an MJCF file together with such a file.
     pub fn read_with_loops(file: &str, text: &str, loops: Option<(&str, &str)>) -> Result<Self, Report> {
         let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
         let source = Source::new(file, text);
@@ -228,13 +229,13 @@ impl Urdf {
         Ok(urdf)
     }
 
-    /// The link of a name, or the link that the joint of this name moves.
+    /// Returns the link with a name, or else the link that the joint with this name moves.
     pub(crate) fn link_or_moved(&self, name: &str) -> Option<usize> {
         let moved = || self.joints.iter().find(|joint| joint.name == name).map(|joint| joint.child);
         self.links.iter().position(|link| link.name == name).or_else(moved)
     }
 
-    /// A robot without links.
+    /// Makes a robot without links.
     pub(crate) fn empty(source: Source) -> Self {
         Self {
             source,
@@ -253,19 +254,19 @@ impl Urdf {
         }
     }
 
-    /// The names of the links that carry no other: where an arm may end.
+    /// Returns the names of the end links, which carry no other link: an arm may end at each of them.
     #[must_use]
     pub fn leaves(&self) -> Vec<&str> {
         self.links.iter().filter(|link| self.is_end(link)).map(|link| link.name.as_str()).collect()
     }
 
-    /// Whether an arm may end with a link: it carries nothing but marks, and is not a mark itself.
+    /// Returns whether an arm may end at a link: it carries only marks, and is no mark itself.
     pub(crate) fn is_end(&self, link: &Link) -> bool {
         let is_mark = |&joint: &usize| self.links[self.joints[joint].child].is_site;
         !link.is_site && link.children.iter().all(is_mark)
     }
 
-    /// The joints from a link to the root.
+    /// Returns the joints from a link to the root.
     pub(crate) fn to_root(&self, link: usize) -> Vec<usize> {
         let parent = |joint: &usize| self.links[self.joints[*joint].parent].parent;
         std::iter::successors(self.links[link].parent, parent).collect()
@@ -273,7 +274,7 @@ impl Urdf {
 }
 
 impl Link {
-    /// A link without mass and joints.
+    /// Makes a link without mass and joints.
     pub(crate) fn new(name: String, span: Range<usize>) -> Self {
         Self {
             name,
@@ -290,14 +291,14 @@ impl Link {
         }
     }
 
-    /// Whether it has a body of its own.
+    /// Returns whether the link has mass or inertia.
     pub(crate) fn has_mass(&self) -> bool {
         self.mass != 0.0 || self.inertia != Inertia::default()
     }
 }
 
 impl Joint {
-    /// A joint without name, limits and friction, between links that are still to be named.
+    /// Makes a joint without name, limits and friction, whose links are set later.
     pub(crate) fn new(kind: Kind, span: Range<usize>) -> Self {
         Self {
             name: String::new(),

@@ -1,4 +1,4 @@
-//! The attribute `#[robot(…)]`: what the user asks for.
+//! Reads the attribute `#[robot(…)]`.
 
 use proc_macro2::Span;
 use rne_codegen::Form;
@@ -11,37 +11,37 @@ use crate::error::Errors;
 
 /// Everything the attribute says, with defaults for what it leaves out.
 pub(crate) struct Attribute {
-    /// Where the robot is; `None` when that is missing or wrong, which has been reported.
+    /// The source of the robot file; `None` if it is missing or wrong, which has been reported.
     pub(crate) source: Option<Source>,
-    /// How it is computed.
+    /// The form of the code.
     pub(crate) form: Form,
     /// The most operations allowed.
     pub(crate) max_ops: Option<Limit>,
-    /// Whether the lints of the robot file are known and stay unsaid.
+    /// Whether the lints of the robot file are not reported.
     pub(crate) allow_lints: bool,
     /// Whether rotors belong to the arm.
     pub(crate) rotors: bool,
-    /// Whether single calls are compiled for the target alone, to be inlined.
+    /// Whether single calls are compiled for the compiled target only, so that they can be inlined.
     pub(crate) inline: bool,
-    /// Where the code is asked for as a file to read, if it is.
+    /// The place of the key `inspect`, which asks for the code as a file to read.
     pub(crate) inspect: Option<Span>,
-    /// Where tests are asked for, if they are.
+    /// The place of the key `tests`, which asks for tests.
     pub(crate) tests: Option<Span>,
     /// The path of the crate `rne` in the user's crate.
     pub(crate) krate: Path,
 }
 
-/// Where the robot is.
+/// The source of the robot file.
 pub(crate) enum Source {
-    /// In the file of this path.
+    /// A file with this path.
     Path(LitStr),
-    /// In this text.
+    /// This text.
     Yaml(LitStr),
-    /// Shipped under this name.
+    /// A shipped robot with this name.
     Builtin(LitStr),
 }
 
-/// A number of operations and where it stands.
+/// A number of operations, and its place in the attribute.
 #[derive(Clone, Copy)]
 pub(crate) struct Limit {
     pub(crate) operations: usize,
@@ -49,7 +49,8 @@ pub(crate) struct Limit {
 }
 
 impl Attribute {
-    /// Reads every `#[robot(…)]` of the item. Mistakes go to `errors` and what they concern keeps its default.
+    /// Reads all attributes `#[robot(…)]` of the item. Errors are added to `errors`, and the entries with errors keep
+    /// their defaults.
     pub(crate) fn parse(item: &DeriveInput, errors: &mut Errors) -> Self {
         let mut entries = Entries::default();
         let mut place = None;
@@ -77,7 +78,7 @@ impl Attribute {
         }
         match (&entries.source, place) {
             (Some(_), _) => {}
-            // Something else is wrong with the attribute, perhaps just this.
+            // An entry had an error, which may be the reason why the robot is missing.
             (None, Some(_)) if errors.len() > before => {}
             (None, Some(place)) => {
                 errors.at(&place, "the robot is missing: write `path = \"…\"`, `yaml = \"…\"` or `builtin = \"…\"`");
@@ -105,7 +106,7 @@ impl Attribute {
 const KEYS: [&str; 11] =
     ["path", "yaml", "builtin", "form", "max_ops", "rotors", "inline", "tests", "inspect", "allow_lints", "crate"];
 
-/// The keys in words.
+/// Lists the keys in a sentence.
 fn keys() -> String {
     format!("the keys are {}", KEYS.map(|key| format!("`{key}`")).join(", "))
 }
@@ -122,7 +123,7 @@ struct Entries {
 }
 
 impl Entries {
-    /// `key = value, key = value`; a mistake in one entry does not hide one in the next.
+    /// Reads a list `key = value, key = value`. An error in one entry does not prevent the reading of the next.
     fn list(&mut self, input: ParseStream<'_>, errors: &mut Errors) {
         while !input.is_empty() {
             if let Err(error) = self.entry(input) {
@@ -216,7 +217,7 @@ fn key(input: ParseStream<'_>) -> syn::Result<Ident> {
     Ok(key)
 }
 
-/// The advice for a URDF, with its name where that is given.
+/// Returns advice for a URDF, with the name of the file if it was given.
 fn of_urdf(input: ParseStream<'_>) -> String {
     let ahead = input.fork();
     let named = ahead.parse::<Token![=]>().and_then(|_| ahead.parse::<LitStr>());
@@ -228,7 +229,7 @@ fn of_urdf(input: ParseStream<'_>) -> String {
     )
 }
 
-/// Skips what is left of an entry, up to its comma.
+/// Skips the rest of an entry, up to its comma.
 fn skip_entry(input: ParseStream<'_>) {
     while !input.is_empty() && !input.peek(Token![,]) {
         // A token tree is always there: the input is not empty.

@@ -1,4 +1,4 @@
-//! The derives of batches: `#[derive(BatchInverseDynamics)]` and its like.
+//! The derives of batches, such as `#[derive(BatchInverseDynamics)]`.
 
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{ToTokens, format_ident, quote};
@@ -19,14 +19,14 @@ struct Sizes {
     tips: TokenStream,
 }
 
-/// A result: its name and the lengths of its arrays.
+/// A result: its name, and the dimensions of its arrays.
 struct Answer(&'static str, Vec<TokenStream>);
 
-/// The second derive on a robot. What is wrong with the struct, its attribute or the file has been said by the first,
-/// `InverseDynamics`, say, which the trait requires: nothing is reported here, and an unknown robot computes nothing.
+/// Expands the derive of a batch. The derive that its trait requires, such as `InverseDynamics`, reports all errors in
+/// the struct, the attribute or the file. So nothing is reported here, and for an unknown robot nothing is computed.
 ///
-/// The function is written once more, for it must be inlined into code of each vector unit, and must not into every
-/// place where a user calls the first derive's methods.
+/// The code of the function is written a second time, because it must be inlined into the code for each vector unit,
+/// but not into every place where a user calls the methods of the first derive.
 pub(crate) fn batch(function: Function, input: TokenStream) -> TokenStream {
     let item: DeriveInput = match syn::parse2(input) {
         Ok(item) => item,
@@ -37,7 +37,7 @@ pub(crate) fn batch(function: Function, input: TokenStream) -> TokenStream {
     let parameters = Parameters::of(&item, &mut said);
     let loaded = attribute.source.as_ref().map(|source| load(source, &parameters, &mut said)).unwrap_or_default();
     let refused = refusal(&item, &parameters);
-    // the sizes of a robot are known where it is only refused
+    // a refused robot still has known sizes
     let robot = loaded.robot.map(|robot| rne_model::Robot { rotors: attribute.rotors, ..robot });
     let sizes = robot.as_ref().map_or_else(Sizes::unknown, |robot| Sizes::of(robot.dof(), robot.tip_count()));
     let program = robot.as_ref().filter(|robot| robot.run_time.is_empty()).and_then(|robot| {
@@ -64,7 +64,7 @@ pub(crate) fn batch(function: Function, input: TokenStream) -> TokenStream {
         |program| body(program, krate, &answers(function, &sizes)),
     );
     let method = sizes.method(function, &target.number(), krate, &body);
-    // a robot that is not known uses no argument
+    // without a robot, the method uses none of its arguments
     let unused = program.is_none().then(|| quote!(#[allow(unused_variables)]));
     let tests = program.as_ref().map(|program| {
         let (name, tests) = (trait_name(function), of_batch(function));
@@ -75,7 +75,7 @@ pub(crate) fn batch(function: Function, input: TokenStream) -> TokenStream {
         #[automatically_derived]
         #unused
         #[allow(clippy::approx_constant)] // a mass of 3.14 kg is not π
-        #[allow(clippy::inline_always)] // into the code of each vector unit
+        #[allow(clippy::inline_always)] // must be inlined into the code of each vector unit
         impl #impl_generics #krate::#name<#(#of_trait),*> for #ident #type_generics #where_clause {
             #method
         }
@@ -83,7 +83,7 @@ pub(crate) fn batch(function: Function, input: TokenStream) -> TokenStream {
     }
 }
 
-/// The error for a robot with run-time parameters.
+/// Returns the error for a robot with run-time parameters, which a batch cannot have.
 fn refusal(item: &DeriveInput, parameters: &Parameters) -> Option<TokenStream> {
     let name = parameters.names().into_iter().next()?;
     let message = format!(
@@ -125,7 +125,7 @@ impl Sizes {
         Self { dof: quote!(__JOINTS), velocities: quote!(__VELOCITIES), tips: quote!(__TIPS) }
     }
 
-    /// The arguments of the trait.
+    /// Returns the constant parameters of the trait.
     fn of_trait(&self, function: Function) -> Vec<&TokenStream> {
         match function {
             Function::InverseDynamicsOfFloatingBase => vec![&self.dof, &self.velocities, &self.tips],
@@ -162,8 +162,7 @@ impl Sizes {
     }
 }
 
-/// The arrays of an argument of the program: its name there, the numbers of the method's argument, and their part of
-/// the list of arguments.
+/// Returns the expressions for the numbers of an argument of the program, and its entries in the list of arguments.
 fn inputs(name: &'static str, length: usize, krate: &syn::Path) -> (Vec<TokenStream>, Vec<TokenStream>) {
     let list = quote!(#krate::batch::Argument);
     let elements = |of: &TokenStream, length: usize| {
@@ -194,16 +193,16 @@ fn inputs(name: &'static str, length: usize, krate: &syn::Path) -> (Vec<TokenStr
     (elements(&of, length), vec![quote!(#list::vector(#shown, #count))])
 }
 
-/// The arrays that the code reads.
+/// The arrays that the code of a batch reads.
 #[derive(Default)]
 struct Inputs {
-    /// The arrays of numbers.
+    /// Expressions for the arrays, one per input.
     numbers: Vec<TokenStream>,
     /// The list of arguments.
     arguments: Vec<TokenStream>,
-    /// Statements that take the arrays apart for the code.
+    /// Statements that collect the inputs of each argument into an array.
     taken: Vec<TokenStream>,
-    /// How many of the arrays must be given.
+    /// How many of the arrays, from the first on, must be given.
     required: usize,
 }
 
@@ -227,7 +226,7 @@ impl Inputs {
     }
 }
 
-/// The arrays of the results as an expression, and the statement before it.
+/// Returns an expression for the arrays of the results, and the statement that must precede it.
 fn elements(answers: &[Answer]) -> (Option<TokenStream>, TokenStream) {
     if let [Answer(name, lengths)] = answers
         && lengths.len() == 1
@@ -237,7 +236,7 @@ fn elements(answers: &[Answer]) -> (Option<TokenStream>, TokenStream) {
     let names = answers.iter().map(|Answer(name, _)| format_ident!("{name}")).collect::<Vec<_>>();
     let parts = answers.iter().zip(&names).map(|(Answer(_, lengths), name)| {
         let arrays = if lengths.len() == 1 { quote!(#name) } else { quote!(#name.as_flattened_mut()) };
-        // borrowed, for arguments may live differently long
+        // borrowed again, because the arguments may have different lifetimes
         quote!(::core::iter::Iterator::map(#arrays.iter_mut(), |numbers| &mut **numbers))
     });
     let parts = parts.reduce(|all, part| quote!(::core::iter::Iterator::chain(#all, #part)));
@@ -248,7 +247,7 @@ fn elements(answers: &[Answer]) -> (Option<TokenStream>, TokenStream) {
     (Some(quote!(let (#(mut #names,)*) = (#(#names,)*);)), elements)
 }
 
-/// The call of the loop, with the code.
+/// Returns the body of the method: the code for a state, and the call of the loop over states.
 fn body(program: &Program, krate: &syn::Path, answers: &[Answer]) -> TokenStream {
     let scalar = quote!(#krate::Scalar);
     let body = rne_emit::Body::new(program, &scalar);
@@ -256,7 +255,7 @@ fn body(program: &Program, krate: &syn::Path, answers: &[Answer]) -> TokenStream
     let Inputs { numbers, arguments, taken, required } = Inputs::of(program, krate);
     let is_whole = answers.iter().all(|Answer(_, lengths)| lengths.len() == 1);
     let distinct = body.distinct();
-    // what is wanted in any case is written, a zero too
+    // if no result may be left out, every output is written, even one that is always zero
     let outputs: Vec<usize> = if is_whole {
         (0..distinct.len()).collect()
     } else {
@@ -276,7 +275,7 @@ fn body(program: &Program, krate: &syn::Path, answers: &[Answer]) -> TokenStream
     });
     let (mutable, elements) = elements(answers);
     let (angles, statements) = (body.angles(), body.beyond_angles(&outputs));
-    let of_angles = &taken[..1]; // positions come first
+    let of_angles = &taken[..1]; // the positions, which are the first argument
     quote! {
         struct Code;
         impl #krate::batch::BatchFunction<#input_count, #angle_count, #output_count, #element_count> for Code {

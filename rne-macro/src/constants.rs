@@ -1,4 +1,4 @@
-//! The constants of a type, and numbers as they are written.
+//! The associated constants of a type, and numbers as source code.
 
 use proc_macro2::{Literal, Span, TokenStream};
 use quote::{format_ident, quote};
@@ -11,7 +11,7 @@ use crate::implementation::Target;
 
 /// The constants of a type.
 pub(crate) struct Constants {
-    /// For the documentation.
+    /// The description of the robot, for the documentation.
     description: Option<String>,
     name: String,
     joint_names: Vec<String>,
@@ -53,8 +53,8 @@ impl Constants {
 }
 
 impl Target<'_> {
-    /// The visibility of the type. Its `pub` counts as generated: with that of the user, so would the constants count
-    /// as the user's, and the compiler would warn of each that is never used.
+    /// Returns the visibility of the type. Its `pub` gets a span of generated code. With the user's span, the compiler
+    /// would warn of each constant that is never used.
     pub(crate) fn visibility(&self) -> Visibility {
         let mut visibility = self.item.vis.clone();
         match &mut visibility {

@@ -1,4 +1,4 @@
-//! A robot and its programs in words, for the documentation of the generated code.
+//! Describes a robot and its programs, for the documentation of the generated code.
 
 use std::fmt::Debug;
 
@@ -12,13 +12,14 @@ pub(crate) fn robot(robot: &Robot) -> String {
     format!("The robot that this type represents, as a constant at compile time.\n\n{}", rne_emit::verbatim(&text))
 }
 
-/// Describes the result of folding for each program.
+/// Describes the operations of each program, before and after terms are removed.
 pub(crate) fn operations(programs: &[Program]) -> String {
     let table = rne_emit::operations_table(programs);
     format!("Straight-line code. Operations of one call, of the unfolded recursion -> of this code:\n\n{table}")
 }
 
-/// Why a form that is not the seven steps can be trusted, which ones could not, and what single precision loses.
+/// Says why a form other than the seven steps can be trusted, which programs could not be checked, and how much
+/// accuracy single precision loses.
 pub(crate) fn evidence(programs: &[Program]) -> Vec<String> {
     let proved = programs.iter().find_map(|program| Some(rne_emit::evidence(program, program.proof.as_ref()?)));
     let others = programs.iter().map(rne_emit::refusals).chain([rne_emit::losses(programs)]);

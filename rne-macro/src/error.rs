@@ -1,4 +1,4 @@
-//! Mistakes, collected, and how they reach the user.
+//! Collects errors and passes them to the compiler.
 
 use std::fmt::Display;
 use std::path::Path;
@@ -8,7 +8,7 @@ use quote::ToTokens;
 use rne_codegen::{CompileError, Remedy};
 use rne_model::{Report, Severity, robot_of};
 
-/// The mistakes found so far, in order.
+/// The errors found so far, in order.
 #[derive(Default)]
 pub(crate) struct Errors {
     found: Vec<syn::Error>,
@@ -19,12 +19,12 @@ impl Errors {
         self.found.push(error);
     }
 
-    /// A mistake in these tokens.
+    /// Adds an error at the place of these tokens.
     pub(crate) fn at(&mut self, tokens: &impl ToTokens, message: impl Display) {
         self.push(syn::Error::new_spanned(tokens, message));
     }
 
-    /// A mistake at this place.
+    /// Adds an error at this place.
     pub(crate) fn at_span(&mut self, span: Span, message: impl Display) {
         self.push(syn::Error::new(span, message));
     }
@@ -33,13 +33,13 @@ impl Errors {
         self.found.len()
     }
 
-    /// Every mistake as an invocation of `compile_error!`.
+    /// Returns every error as an invocation of `compile_error!`.
     pub(crate) fn into_tokens(self) -> TokenStream {
         self.found.iter().map(syn::Error::to_compile_error).collect()
     }
 }
 
-/// Why a function cannot be compiled, with the command that helps.
+/// Returns why a function cannot be compiled, with the command that helps.
 pub(crate) fn not_compiled(robot: &str, error: &CompileError) -> String {
     let remedy = match error.remedy() {
         Some(Remedy::RewriteAfresh) => "; `rne search ROBOT.yaml --rewrite --fresh` writes a new plan",
@@ -49,7 +49,7 @@ pub(crate) fn not_compiled(robot: &str, error: &CompileError) -> String {
     format!("{robot}: {error}{remedy}")
 }
 
-/// The mistakes in a robot file or a plan, for the message of a compiler: without the lints, which stop no build.
+/// Returns the errors in a robot file or a plan as text. Lints are left out, because they do not stop a build.
 pub(crate) fn describe(mut report: Report) -> String {
     report.diagnostics.retain(|found| found.severity == Severity::Error);
     // An empty line keeps the second `error:` apart from the compiler's own.

@@ -1,4 +1,4 @@
-//! The expansion: an item in, implementations out.
+//! Expands the derives: takes an item, and returns implementations.
 
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -20,10 +20,10 @@ use crate::own_tests;
 use crate::parameters::Parameters;
 use crate::warning::{misnamed_golden, warnings};
 
-/// The derive of a capability.
+/// Expands the derive of a capability.
 ///
-/// Every mistake becomes one `compile_error!`; beside them stands an implementation, of the robot as far as it is
-/// known, so that the code that uses it causes no errors of its own.
+/// Every error becomes one `compile_error!`. An implementation is written in any case, for as much of the robot as is
+/// known, so that code that uses it causes no further errors.
 pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStream {
     let Head { item, attribute, parameters, mut errors } = match Head::parse(input) {
         Ok(head) => head,
@@ -67,21 +67,21 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
         }
         None => target.stub(capability, loaded.joints),
     };
-    // a shipped file is not the user's to change
+    // a user cannot change a shipped file, so its lints are not reported
     let is_silent = attribute.allow_lints || matches!(attribute.source, Some(Source::Builtin(_)));
     let said = if is_silent { None } else { attribute.source.as_ref().zip(loaded.lints.as_ref()) };
     let warnings = said.map(|(source, lints)| warnings(lints, &item, source.span()));
     let asks = capability == Capability::InverseDynamics && attribute.tests.is_some() && !is_silent;
     let misnamed = loaded.misnamed_golden.filter(|_| asks).zip(attribute.source.as_ref());
     let misnamed = misnamed.map(|((found, right), source)| misnamed_golden(&found, &right, &item, source.span()));
-    // a plan that is not used is not watched
+    // a plan is watched for changes only if the form uses it
     let plan = loaded.plan.filter(|_| attribute.form != Form::SevenSteps).map(|file| watch(&file));
     let watched = loaded.watched;
     let errors = errors.into_tokens();
     quote!(#errors #warnings #misnamed #watched #plan #code)
 }
 
-/// A robot and the programs of a capability; `None`, and an error in `errors`, where they cannot be compiled.
+/// Compiles the programs of a capability. If that fails, adds an error to `errors` and returns `None`.
 fn compiled(
     robot: Robot,
     capability: Capability,
@@ -102,8 +102,8 @@ fn compiled(
     Some((robot, programs))
 }
 
-/// The derive of `FrameKinematics`: the functions of the tip that can be taken at a frame, at each frame. No plan has a
-/// part in them.
+/// Expands the derive of `FrameKinematics`: implements the functions of the tip at each frame. Plans do not affect
+/// them.
 pub(crate) fn frame_kinematics(input: TokenStream) -> TokenStream {
     let Head { item, attribute, parameters, mut errors } = match Head::parse(input) {
         Ok(head) => head,
@@ -126,7 +126,7 @@ struct Head {
     item: DeriveInput,
     attribute: Attribute,
     parameters: Parameters,
-    /// The mistakes in these parts.
+    /// Errors in these parts.
     errors: Errors,
 }
 
@@ -168,26 +168,26 @@ fn is_within(limit: Limit, program: &Program, errors: &mut Errors) {
     }
 }
 
-/// Result of reading a robot file.
+/// The result of reading a robot file.
 #[derive(Default)]
 pub(crate) struct Loaded {
     /// The robot, if the file is valid.
     pub(crate) robot: Option<Robot>,
     /// An expression that is the text of a valid file.
     pub(crate) text: TokenStream,
-    /// Makes the compiler watch the file.
+    /// Code that makes the compiler watch the file for changes.
     watched: TokenStream,
-    /// The plan file beside it.
+    /// The plan file beside the robot file.
     pub(crate) plan: Option<RobotFile>,
-    /// The golden file beside it.
+    /// The golden file beside the robot file.
     golden: Option<RobotFile>,
-    /// A file that was probably meant to be that: its name, and what it should be.
+    /// A file that was probably meant to be the golden file, and the name that it should have.
     misnamed_golden: Option<(String, String)>,
-    /// How many joints it has, or seems to have if it is invalid.
+    /// The number of joints; an estimate if the file is invalid.
     joints: usize,
     /// Suspicious points of a valid file.
     lints: Option<Report>,
-    /// The mistake of a valid file in which two joints have one identifier.
+    /// The error that two joints of a valid file give the same identifier.
     one_identifier: Option<Report>,
 }
 
@@ -239,7 +239,7 @@ pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors
             let (joints, robot, lints, one_identifier) = (robot.dof(), Some(robot), Some(lints), identifiers.err());
             Loaded { robot, text, watched, plan, golden, misnamed_golden, joints, lints, one_identifier }
         }
-        // a field is no parameter, which has been said
+        // a field is not a parameter of the file, which has been reported
         Ok(None) => Loaded { watched, ..Loaded::default() },
         Err(report) => {
             let joints = guess_joints(&report);
@@ -249,12 +249,12 @@ pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors
     }
 }
 
-/// Every joint has a `dh`.
+/// Estimates the number of joints of an invalid file by the number of keys `dh`, because every joint has one.
 fn guess_joints(report: &Report) -> usize {
     report.text.matches("dh:").count()
 }
 
-/// Tells the compiler that the code depends on the file: it is compiled again when the file changes.
+/// Returns code that makes the compiler compile the crate again when the file changes.
 fn watch(file: &RobotFile) -> TokenStream {
     // A path that is not Unicode cannot be written in source code.
     let Some(file) = file.absolute.as_deref().and_then(Path::to_str) else { return TokenStream::new() };
@@ -263,7 +263,7 @@ fn watch(file: &RobotFile) -> TokenStream {
     )
 }
 
-/// The text of a file for code at run time: read where it is, or as it is here.
+/// Returns the text of a file, for code at run time: an `include_str!` of its path, or the text itself.
 fn text(file: &RobotFile) -> TokenStream {
     if let Some(file) = file.absolute.as_deref().and_then(Path::to_str) {
         return quote!(::core::include_str!(#file));
@@ -272,7 +272,7 @@ fn text(file: &RobotFile) -> TokenStream {
     quote!(#text)
 }
 
-/// A compiler with the choices of the plan file, or those that a build makes by itself.
+/// Returns a compiler with the choices of the plan file, or with the choices that a build makes by itself.
 pub(crate) fn compiler<'r>(
     robot: &'r Robot,
     capability: Capability,
@@ -285,7 +285,7 @@ pub(crate) fn compiler<'r>(
     let is_planned = capability.functions().any(Algorithm::is_planned);
     match (form, plan) {
         (Form::Reduced, None) if is_planned => Some(compiler.with_plans(default_plans(robot))),
-        // nothing is chosen
+        // these forms need no choices
         (Form::SevenSteps, _) | (Form::Reduced, None) => Some(compiler),
         (Form::Reduced, Some(file)) => {
             let Ok(text) = std::str::from_utf8(&file.bytes) else {
@@ -298,8 +298,8 @@ pub(crate) fn compiler<'r>(
     }
 }
 
-/// The choices that a build makes by itself. The derives of one crate are expanded in one process, so they are made
-/// once per robot.
+/// Returns the choices that a build makes by itself. All derives of a crate are expanded in one process, so they are
+/// made once per robot.
 fn default_plans(robot: &Robot) -> PlanSet {
     static KNOWN: Mutex<Vec<(Fingerprint, PlanSet)>> = Mutex::new(Vec::new());
     let print = rne_search::fingerprint(robot);
@@ -312,8 +312,8 @@ fn default_plans(robot: &Robot) -> PlanSet {
     plans
 }
 
-/// The error for a robot without the floating base or the contacts that a derive is about: its numbers would be those
-/// of a base without mass.
+/// Returns the error for a robot that lacks the floating base or the contacts that a derive needs. Without it, the
+/// results would be those of a base without mass.
 fn without_base(robot: &Robot, capability: Capability) -> Option<String> {
     let refused = capability.functions().find_map(|function| function.check_base(robot).err());
     let meant = if robot.floating_base.is_none() { "a base that has no mass" } else { "a robot with a floating base" };

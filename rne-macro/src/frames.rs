@@ -18,7 +18,8 @@ const ABOUT_FRAME: &str = "\
     Where the robot file has no frame of this name.";
 
 impl Target<'_> {
-    /// Everything for the frames of a robot; `None`, and an error in `errors`, where a program cannot be compiled.
+    /// Returns all code for the frames of a robot. If a program cannot be compiled, adds an error to `errors` and
+    /// returns `None`.
     pub(crate) fn frames(
         &self,
         robot: &Robot,
@@ -98,8 +99,8 @@ impl Target<'_> {
         }
     }
 
-    /// A stub for a robot that is not known, as [`Target::stub`]. It has no list of frames: with an unknown length of
-    /// this list, no call of `FrameKinematics` would be of one trait.
+    /// Returns a stub for a robot that is not known, as [`Target::stub`] does. Its list of frames is empty: with an
+    /// unknown length, the compiler could not choose the trait for a call of `FrameKinematics`.
     pub(crate) fn frames_stub(&self) -> TokenStream {
         let (ident, krate, vis) = (&self.item.ident, self.krate, self.visibility());
         let (impl_generics, type_generics, where_clause) = self.item.generics.split_for_impl();

@@ -11,22 +11,22 @@ use crate::constants::Constants;
 use crate::description;
 use crate::parameters::Parameters;
 
-/// The type that the code is for, and where the library is.
+/// The type for which code is written, and the path of the library `rne`.
 pub(crate) struct Target<'a> {
     pub(crate) item: &'a DeriveInput,
     pub(crate) krate: &'a Path,
-    /// Whether single calls are compiled for the target alone, to be inlined.
+    /// Whether single calls are compiled for the compiled target only, so that they can be inlined.
     pub(crate) inline: bool,
     /// The number of tips of the robot, or a parameter for it.
     pub(crate) tips: TokenStream,
     /// The number of dependent joints of its closed loops, or a parameter for it.
     pub(crate) passive: TokenStream,
-    /// The number of their equations, or a parameter for it.
+    /// The number of equations of these loops, or a parameter for it.
     pub(crate) equations: TokenStream,
 }
 
 impl<'a> Target<'a> {
-    /// The target of a derive; `None` for a robot that is not known.
+    /// The target of a derive; without sizes for a robot that is not known.
     pub(crate) fn new(item: &'a DeriveInput, attribute: &'a Attribute, sizes: Option<Sizes>) -> Self {
         let number = |unknown: &str, size: fn(Sizes) -> usize| {
             sizes.map_or_else(
@@ -46,7 +46,7 @@ impl<'a> Target<'a> {
 }
 
 impl Target<'_> {
-    /// Everything for a robot and the programs of one capability.
+    /// Returns all code for a robot and the programs of one capability.
     pub(crate) fn robot(
         &self,
         robot: &Robot,
@@ -55,7 +55,7 @@ impl Target<'_> {
         parameters: &Parameters,
     ) -> TokenStream {
         let constants = match capability {
-            // no robot has both
+            // a robot has only one of these two capabilities, which both define the constants
             Capability::InverseDynamics | Capability::ClosedLoops => {
                 let (constants, joints) = (self.constants(&Constants::of(robot, programs)), self.joints(robot));
                 let motors = self.motors(robot);
@@ -84,15 +84,15 @@ impl Target<'_> {
             #(#evidence)*
             #[automatically_derived]
             #[allow(clippy::approx_constant)] // a mass of 3.14 kg is not π
-            #[allow(clippy::inline_always)] // into the code of the processor's instructions
+            #[allow(clippy::inline_always)] // inlined into code for the processor's instructions
             impl #impl_generics #krate::#name<#sizes> for #ident #type_generics #where_clause {
                 #(#methods)*
             }
         }
     }
 
-    /// Writes a stub for a robot that is not known: every use of it compiles, so that the mistake that is reported
-    /// stays the only one. The trait is implemented for every number of joints.
+    /// Returns a stub for a robot that is not known. Every use of it compiles, so that the reported error remains the
+    /// only one. The trait is implemented for every number of joints.
     pub(crate) fn stub(&self, capability: Capability, joints: usize) -> TokenStream {
         let constants = if matches!(capability, Capability::InverseDynamics | Capability::ClosedLoops) {
             let (constants, joints) = (self.constants(&Constants::unknown(joints)), self.joints_stub());
@@ -111,7 +111,7 @@ impl Target<'_> {
         let (impl_generics, ..) = generics.split_for_impl();
         let sizes = self.sizes(capability, &joints);
         let methods = capability.functions().map(|function| {
-            // what has the shape of an argument returns it
+            // a result with the shape of the positions can return these; other bodies never return
             let body = if function.takes(Argument::Positions)
                 && *function.shape() == Shape::Array(Length::Joints, &Shape::Number)
             {
@@ -165,13 +165,14 @@ impl Target<'_> {
         quote!(#[doc = #documentation] #method)
     }
 
-    /// The statement that takes an argument apart into the arrays that the body reads; `None` where it is one of them.
+    /// Returns the statement that splits an argument into the arrays that the body reads; `None` if it is one of these
+    /// arrays.
     fn taken_apart(&self, argument: Argument, program: &Program) -> Option<TokenStream> {
         let (krate, name) = (self.krate, format_ident!("{}", argument.name()));
         let parts: Vec<_> = argument.parts().map(|part| format_ident!("{}", part.name)).collect();
         match argument.shape() {
             Shape::Number | Shape::Array(_, Shape::Number) => None,
-            // its inertia is a type of the model
+            // the inertia of a payload is a type of the model, so the payload converts itself to an array
             Shape::Record(Record::Payload, _) => Some(quote!(let #name = &#krate::Payload::to_array(#name);)),
             Shape::Record(record, _) if parts.len() > 1 => {
                 let fields = record.fields().iter().zip(&parts).map(|(field, part)| {
@@ -179,11 +180,11 @@ impl Target<'_> {
                     if field == *part { quote!(#field) } else { quote!(#field: #part) }
                 });
                 let type_name = format_ident!("{}", record.name());
-                // the velocity of a base has no influence
+                // the velocity of a base has no effect, so it is ignored
                 let fields = if *record == Record::BaseMotion { quote!(#(#fields,)* ..) } else { quote!(#(#fields),*) };
                 Some(quote!(let #krate::#type_name { #fields } = #name;))
             }
-            // named as its array, too
+            // here the argument and its array have the same name
             shape => {
                 let numbers = elements(quote!(#name), shape, program.tips.len());
                 Some(quote!(let #name = &[#(#numbers),*];))
@@ -191,13 +192,13 @@ impl Target<'_> {
         }
     }
 
-    /// Whether a method is computed by the instructions that the processor has, not by those alone that the program is
-    /// compiled for.
+    /// Whether a method uses the instructions that the processor has, and not only those for which the program is
+    /// compiled.
     ///
-    /// The seven steps keep their bits on every processor. What has no sine to compute and is short stays as it is: to
-    /// ask and to call costs one or two nanoseconds, and what is inlined is not written to memory and read again. Calls
-    /// one after the other in `f64`, plain build on an AMD EPYC with AVX-512 (`benches/plain_build.rs` with these
-    /// arms):
+    /// The seven steps must have the same bits on every processor. Short code without sines stays as it is: the test of
+    /// the processor and the call cost one or two nanoseconds, and values of inlined code stay in registers. Measured
+    /// are consecutive calls in `f64`, in a plain build on an AMD EPYC with AVX-512 (`benches/plain_build.rs` with
+    /// these arms):
     ///
     /// | | operations, angles | ns: inlined | asked |
     /// |---|---|---:|---:|
@@ -214,7 +215,7 @@ impl Target<'_> {
         program.form == Form::Reduced && !self.inline && (operations.sincos > 0 || operations.total() >= SHORT)
     }
 
-    /// The body of a method that is compiled for the processor's instructions as well.
+    /// Returns the body of a method that is also compiled for the processor's instructions.
     fn call(
         &self,
         function: Function,
@@ -225,7 +226,7 @@ impl Target<'_> {
     ) -> TokenStream {
         let krate = self.krate;
         let arguments = self.arguments(function, dof, &quote!('a)).into_iter().zip(function.arguments());
-        // a call takes references; `&step` is the pattern and the argument
+        // a call takes references; `&step` serves as the pattern of the parameter and as the argument
         let by_reference = |((name, kind), argument): ((Ident, TokenStream), &Argument)| {
             if argument.is_number() { (quote!(&#name), quote!(&'a #kind)) } else { (quote!(#name), kind) }
         };
@@ -254,7 +255,7 @@ impl Target<'_> {
     }
 }
 
-/// The numbers of an argument of this shape, in order, as expressions.
+/// Returns expressions for the numbers of an argument of this shape, in order.
 fn elements(of: TokenStream, shape: &Shape, tips: usize) -> Vec<TokenStream> {
     match shape {
         Shape::Number => vec![of],

@@ -1,5 +1,5 @@
-//! `#[robot(inspect)]`: the generated code as a file to read, with the formulas and the meaning of every name, where
-//! the compiler writes its output.
+//! `#[robot(inspect)]`: writes the generated code to a file that people can read, with the formulas and the meaning of
+//! every name, in the folder of the compiler's output.
 
 use std::ffi::OsString;
 use std::fs;
@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 use rne_codegen::{Capability, Form, Program};
 use rne_model::Robot;
 
-/// Writes the annotated code of a capability to `rne/NAME.CAPABILITY.rs`, beside what the compiler writes. Where no
-/// compiler tells its folder, as in editors, nothing is written.
+/// Writes the annotated code of a capability to `rne/NAME.CAPABILITY.rs`, in the folder of the compiler's output. If
+/// the folder is unknown, as in editors, nothing is written.
 pub(crate) fn write(robot: &Robot, capability: Capability, form: Form, programs: &[Program]) -> io::Result<()> {
     let Some(out) = output_folder(std::env::args_os()) else { return Ok(()) };
     let folder = out.join("rne");
@@ -25,7 +25,8 @@ pub(crate) fn write(robot: &Robot, capability: Capability, form: Form, programs:
         return Ok(());
     }
     fs::create_dir_all(&folder)?;
-    // crates that are compiled at once may derive the same robot: each writes the whole file
+    // crates that are compiled at the same time may derive the same robot, so each writes a file of its own and renames
+    // it
     let whole = folder.join(format!(".{}.{}", file_name(robot, capability, form), std::process::id()));
     fs::write(&whole, text)?;
     fs::rename(&whole, &file)
@@ -35,7 +36,7 @@ fn file_name(robot: &Robot, capability: Capability, form: Form) -> String {
     format!("{}.{}.{form}.rs", robot.name, capability.name())
 }
 
-/// The folder of the profile, `target/debug`: above the one that the compiler was given.
+/// Returns the folder of the profile, such as `target/debug`, from the arguments of the compiler.
 fn output_folder(arguments: impl Iterator<Item = OsString>) -> Option<PathBuf> {
     let mut arguments = arguments.skip_while(|argument| argument != "--out-dir").skip(1);
     let out = PathBuf::from(arguments.next()?);

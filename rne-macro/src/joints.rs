@@ -61,7 +61,8 @@ impl Target<'_> {
         }
     }
 
-    /// An enum of names: joints or tips. Of names with one identifier, which is an error elsewhere, it has the first.
+    /// Returns an enum with a variant for each name of a joint or tip. If several names give one identifier, which is
+    /// reported elsewhere as an error, only the first is used.
     pub(crate) fn names_enum<'n>(
         &self,
         suffix: &str,
@@ -71,7 +72,7 @@ impl Target<'_> {
         let vis = self.visibility();
         let name = self.type_name();
         let all = Ident::new(&format!("{name}{suffix}"), Span::call_site());
-        // forbidden lints cannot be allowed here: a type whose name is no type's name is the user's choice
+        // allowed only where it is needed, because a lint that the user forbids cannot be allowed here
         let is_camel_case = name.starts_with(char::is_uppercase) && !name.contains('_');
         let name_of_the_user = (!is_camel_case).then(|| quote!(#[allow(non_camel_case_types)]));
         let mut known = BTreeSet::new();
@@ -97,7 +98,7 @@ impl Target<'_> {
             #name_of_the_user
             #[allow(clippy::enum_variant_names)]
             #vis enum #all { #(#variants),* }
-            // not every name is used in code, and the user's compiler warns of none
+            // uses every variant, so that the compiler does not warn the user of unused ones
             const _: [#all; #count] = [#(#uses),*];
         }
     }
@@ -107,7 +108,7 @@ impl Target<'_> {
         self.item.ident.to_string().trim_start_matches("r#").to_owned()
     }
 
-    /// The functions `order` of a robot that is not known: an array for any list.
+    /// Returns the functions `order` for a robot that is not known; they return an array for any list.
     pub(crate) fn joints_stub(&self) -> TokenStream {
         let (impl_generics, type_generics, where_clause) = self.item.generics.split_for_impl();
         let (ident, vis) = (&self.item.ident, self.visibility());

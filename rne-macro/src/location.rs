@@ -1,4 +1,4 @@
-//! From the path in the attribute to the bytes of the file.
+//! Finds and reads the robot file that the attribute names.
 
 use std::collections::VecDeque;
 use std::path::{Component, Path, PathBuf};
@@ -11,7 +11,8 @@ use syn::LitStr;
 /// A robot file that has been read.
 #[derive(Debug)]
 pub(crate) struct RobotFile {
-    /// Where it is, from the root, for the compiler to watch; `None` of a shipped one, which is part of this macro.
+    /// The absolute path of the file, which the compiler must watch; `None` for a shipped robot, whose file is part of
+    /// this macro.
     pub(crate) absolute: Option<PathBuf>,
     /// Name of the file in messages.
     pub(crate) shown: String,
@@ -22,7 +23,7 @@ pub(crate) struct RobotFile {
 /// Why there is no robot file.
 #[derive(Debug)]
 pub(crate) enum Missing {
-    /// It is in none of these places. Perhaps another path was meant.
+    /// The file exists in none of these places. `meant` is a path that the user may have meant.
     NotFound { written: String, tried: Vec<Place>, meant: Option<String> },
     /// It is there and cannot be read.
     Unreadable { shown: String, error: io::Error },
@@ -31,9 +32,9 @@ pub(crate) enum Missing {
 /// A place where the file may be.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Place {
-    /// The place in words.
+    /// The description of the place, for messages.
     what: &'static str,
-    /// The file there.
+    /// The path of the file in this place.
     file: PathBuf,
 }
 
@@ -42,7 +43,7 @@ impl fmt::Display for Missing {
         match self {
             Self::NotFound { written, tried, meant } => {
                 write!(f, "there is no robot file `{written}`")?;
-                // An absolute path is one place, and has been named.
+                // An absolute path has only one place, which the message has named.
                 if Path::new(written).is_absolute() {
                     return Ok(());
                 }
@@ -106,7 +107,7 @@ pub(crate) fn golden_beside(file: &RobotFile) -> Result<Option<RobotFile>, Missi
     beside(file, golden_of)
 }
 
-/// A file beside a robot file that was probably meant to be its golden file: its name, and what it should be.
+/// Returns a file beside a robot file that was probably meant to be its golden file, and the name that it should have.
 pub(crate) fn misnamed_golden_beside(file: &RobotFile) -> Option<(String, String)> {
     let found = misnamed_golden_of(file.absolute.as_deref()?)?;
     let shown = Path::new(&file.shown);
@@ -138,13 +139,13 @@ pub(crate) fn shipped(name: &str) -> Result<(RobotFile, Option<RobotFile>), Stri
     Ok((file("yaml", robot.yaml), robot.plan.map(|plan| file("plan.yaml", plan))))
 }
 
-/// The file in which the literal stands. The compiler knows it; some editors do not.
+/// Returns the source file that contains the literal. The compiler knows it, but some editors do not.
 fn source_file(span: Span) -> Option<PathBuf> {
     if proc_macro::is_available() { span.unwrap().local_file() } else { None }
 }
 
-/// Where the file may be: beside the source file, as with `include_str!`. Where the source file is
-/// unknown, as in some editors, the package's folders stand in for its folder.
+/// Returns the places of a file: relative to the source file, as with `include_str!`. If the source file is unknown, as
+/// in some editors, relative to folders of the package.
 fn places(written: &Path, source_file: Option<&Path>, package: Option<&Path>) -> Vec<Place> {
     let beside = source_file.and_then(Path::parent).map(|folder| ("beside the source file", folder.to_owned()));
     let package = package.filter(|_| beside.is_none());
@@ -153,7 +154,7 @@ fn places(written: &Path, source_file: Option<&Path>, package: Option<&Path>) ->
     let mut places: Vec<Place> = Vec::new();
     for (what, folder) in beside.into_iter().chain(sources).chain(package) {
         let place = Place { what, file: folder.join(written) };
-        // An absolute path is the same from everywhere.
+        // An absolute path gives the same file for every folder.
         if places.iter().all(|other| other.file != place.file) {
             places.push(place);
         }
@@ -161,9 +162,9 @@ fn places(written: &Path, source_file: Option<&Path>, package: Option<&Path>) ->
     places
 }
 
-/// Where else the file may be when the source file is unknown: the path from every folder with sources, for the source
-/// file is in one of them; at last the path without its leading `..` from the package and from `src`. So many folders
-/// are looked at, those near the package first.
+/// Returns further paths to try when the source file is unknown. The source file is in some folder with sources, so the
+/// path is tried relative to each of them, at most 200, those near the package first. At last the path without its
+/// leading `..` is tried in the package and in `src`.
 fn guesses(written: &Path, package: &Path) -> Vec<PathBuf> {
     const FOLDERS: usize = 200;
     if written.is_absolute() {
@@ -179,7 +180,7 @@ fn guesses(written: &Path, package: &Path) -> Vec<PathBuf> {
         waiting.extend(inside);
         folders.push(folder);
     }
-    // `a/../b` has a meaning where `a` is no folder
+    // normalised first, because `a/../b` is only found if the folder `a` exists
     let mut guesses: Vec<PathBuf> = folders.iter().map(|folder| normal(&folder.join(written))).collect();
     let is_up = |part: &Component<'_>| matches!(part, Component::ParentDir | Component::CurDir);
     let rest: PathBuf = written.components().skip_while(is_up).collect();
@@ -187,8 +188,8 @@ fn guesses(written: &Path, package: &Path) -> Vec<PathBuf> {
     guesses
 }
 
-/// Lists files of this name in the folders above the source file, nearest first: the intended file
-/// where one `..` too few or too many is written.
+/// Lists files of this name in the folders above the source file, nearest first. One of them may be the intended file,
+/// if the path has a wrong number of `..`.
 fn neighbours(written: &Path, source_folder: &Path) -> impl Iterator<Item = PathBuf> {
     let named: PathBuf = written.components().filter(|part| matches!(part, Component::Normal(_))).collect();
     let levels = normal(source_folder).components().filter(|part| matches!(part, Component::Normal(_))).count();
@@ -200,8 +201,8 @@ fn neighbours(written: &Path, source_folder: &Path) -> impl Iterator<Item = Path
     })
 }
 
-/// A path from the working directory, as the compiler shows its own, or from the package; `None` for one that is in
-/// neither.
+/// Returns a path relative to the working directory, as the compiler shows its own paths, or to the package; `None` if
+/// it is in neither.
 fn short(file: &Path, working_directory: &Path, package: Option<&Path>) -> Option<PathBuf> {
     let file = normal(file);
     let from = |folder: &Path| file.strip_prefix(normal(folder)).ok().map(Path::to_owned);
@@ -245,8 +246,7 @@ mod tests {
         assert_eq!(found("../robots/x.yaml", None), ["/arm/robots/x.yaml", "/robots/x.yaml"]);
     }
 
-    /// As an editor that does not tell the source file: this crate asks for a file of another package of the
-    /// repository.
+    /// Tests an editor that does not know the source file: this crate asks for a file of another package.
     #[test]
     fn a_source_file_that_is_unknown_is_in_some_folder_with_sources() {
         let repository = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the repository");
@@ -255,10 +255,10 @@ mod tests {
             let found = guesses.into_iter().find(|file| file.is_file());
             found.map(|file| file.strip_prefix(repository).expect("in the repository").to_owned())
         };
-        // written in tests/users/tests/ui/pass and in tests/users/tests/ui
+        // as if written in tests/users/tests/ui/pass and in tests/users/tests/ui
         assert_eq!(first("../robots/rod.yaml", "tests/users"), Some("tests/users/tests/ui/robots/rod.yaml".into()));
         assert_eq!(first("robots/rod.yaml", "tests/users"), Some("tests/users/tests/ui/robots/rod.yaml".into()));
-        // in src/a/b, were there such a folder
+        // as if written in src/a/b, if this folder existed
         assert_eq!(first("../../../robots/planar1.yaml", "."), Some("robots/planar1.yaml".into()));
         assert_eq!(first("robots/nowhere.yaml", "tests/users"), None);
         assert_eq!(first("/robots/rod.yaml", "tests/users"), None);

@@ -28,7 +28,7 @@ pub(crate) const fn laws(capability: Capability) -> &'static [&'static str] {
     }
 }
 
-/// The tests of a batch. An `Arm` stands on the floor.
+/// Returns the tests of a batch. The base of the runtime robot does not move, so a batch with a floating base has none.
 pub(crate) fn of_batch(function: Function) -> &'static [&'static str] {
     match function {
         Function::InverseDynamics => &["batches_are_those_of_the_runtime"],
@@ -39,7 +39,7 @@ pub(crate) fn of_batch(function: Function) -> &'static [&'static str] {
     }
 }
 
-/// Says why a struct can have no tests: they need a value of it, and all its numbers.
+/// Reports why a struct cannot have tests: they need a value of it without fields, and numbers that are all known.
 pub(crate) fn check(item: &DeriveInput, attribute: &Attribute, parameters: &Parameters, errors: &mut Errors) {
     let Some(span) = attribute.tests else { return };
     if let Some(name) = parameters.names().first() {
@@ -62,14 +62,14 @@ pub(crate) fn check(item: &DeriveInput, attribute: &Attribute, parameters: &Para
     }
 }
 
-/// Whether `Name {}` is a value.
+/// Whether `Name {}` is a value of the struct.
 fn is_made_of_nothing(item: &DeriveInput) -> bool {
-    let Data::Struct(data) = &item.data else { return true }; // which has been said
+    let Data::Struct(data) = &item.data else { return true }; // an error that has been reported
     data.fields.is_empty() && item.generics.params.is_empty()
 }
 
-/// The module with the tests of one derive: each of `functions` against the runtime, and the tests of `rne::testing`
-/// with the names `tests`. `trait_name` is the derive, `text` the robot file.
+/// Returns the module with the tests of one derive: each of `functions` is compared with the runtime, and `tests` names
+/// further tests of `rne::testing`. `trait_name` is the name of the derive, `text` the robot file.
 pub(crate) fn module(
     item: &DeriveInput,
     attribute: &Attribute,
@@ -168,7 +168,7 @@ pub(crate) fn golden(
             #import
             #krate::testing::with_runtime! {
                 #[::core::prelude::v1::test]
-                #[allow(clippy::all, clippy::pedantic)] // numbers of the file
+                #[allow(clippy::all, clippy::pedantic)] // the numbers are those of the file
                 fn torques_are_those_of_the_golden_file() {
                     #krate::testing::torques_are_those_of_the_golden_file::<#dof, _>(
                         &super::#ident {},
@@ -183,7 +183,7 @@ pub(crate) fn golden(
     }
 }
 
-/// A path as a module inside the one where it was written has it, and what that module imports for it.
+/// Returns a path as it must be written inside of a module, and the import that the module needs for it.
 fn seen_from_inside(path: &Path) -> (TokenStream, Path) {
     let mut inner = path.clone();
     let first = path.segments.first().map(|segment| segment.ident.to_string());
@@ -193,7 +193,7 @@ fn seen_from_inside(path: &Path) -> (TokenStream, Path) {
         Some("crate") | None => {}
         Some("self") => inner.segments[0] = outer(),
         Some("super") => inner.segments.insert(0, outer()),
-        // a module there, or a crate
+        // the first segment is a module of the user or a crate
         Some(_) => {
             let import = quote! {
                 #[allow(unused_imports, clippy::wildcard_imports)]

@@ -7,7 +7,7 @@ use syn::{Data, DeriveInput, Ident, Path, Type};
 
 use crate::error::Errors;
 
-/// The fields that stay free until run time, in their order.
+/// The fields of the struct that are run-time parameters, in their order.
 #[derive(Default)]
 pub(crate) struct Parameters {
     fields: Vec<Field>,
@@ -19,7 +19,7 @@ struct Field {
 }
 
 impl Parameters {
-    /// The named fields of a struct. `#[robot(skip)]` keeps one out, and a `PhantomData` is none.
+    /// Returns the named fields of a struct, except those with `#[robot(skip)]` and those of type `PhantomData`.
     pub(crate) fn of(item: &DeriveInput, errors: &mut Errors) -> Self {
         let Data::Struct(data) = &item.data else { return Self::default() };
         let mut fields = Vec::new();
@@ -44,7 +44,7 @@ impl Parameters {
         self.fields.iter().map(|field| unraw(&field.ident)).collect()
     }
 
-    /// Says which fields are no parameters of the file; `known` are those it has.
+    /// Reports which fields are not parameters of the file. `known` are the parameters that it has.
     pub(crate) fn check(&self, known: &[&str], errors: &mut Errors) -> bool {
         let before = errors.len();
         for Field { ident, .. } in &self.fields {
@@ -70,7 +70,7 @@ impl Parameters {
         errors.len() == before
     }
 
-    /// Reads the fields into an array `parameters`, as the body of a method expects it.
+    /// Returns a statement that reads the fields into an array `parameters`, which the body of a method expects.
     pub(crate) fn read(&self, krate: &Path) -> TokenStream {
         if self.fields.is_empty() {
             return TokenStream::new();

@@ -8,13 +8,13 @@ use syn::GenericParam;
 use crate::implementation::Target;
 
 impl Target<'_> {
-    /// The parameters of the trait of a capability: the number of joints, and others that it needs.
+    /// Returns the constant parameters of a capability's trait: the number of joints, and other sizes that it needs.
     pub(crate) fn sizes(&self, capability: Capability, dof: &TokenStream) -> TokenStream {
         let sizes = capability.lengths().map(|length| self.size(length, dof));
         quote!(#(#sizes),*)
     }
 
-    /// The arguments of a function and their types, references of the given lifetime, in which `T` is the scalar.
+    /// Returns the arguments of a function with their types. References have the given lifetime, and `T` is the scalar.
     pub(crate) fn arguments(
         &self,
         function: Function,
@@ -29,12 +29,12 @@ impl Target<'_> {
         function.arguments().iter().map(name_and_type).collect()
     }
 
-    /// A method of the trait with the given body, in which `T` is the scalar.
+    /// Returns a method of the trait with the given body; `T` is the scalar.
     pub(crate) fn signature(&self, function: Function, dof: &TokenStream, body: &TokenStream) -> TokenStream {
         self.signature_named(function.name(), function, dof, body)
     }
 
-    /// A method of the trait `AtFrame`, as [`Self::signature`].
+    /// Returns a method of the trait `AtFrame`, as [`Self::signature`] does for other traits.
     pub(crate) fn signature_at_frame(&self, function: Function, dof: &TokenStream, body: &TokenStream) -> TokenStream {
         let name = format!("{}_at_frame", function.of_frame().unwrap_or_default());
         self.signature_named(&name, function, dof, body)
@@ -67,7 +67,7 @@ impl Target<'_> {
         }
     }
 
-    /// A length as it stands in a type.
+    /// Returns a length as it is written in a type.
     pub(crate) fn size(&self, length: Length, dof: &TokenStream) -> TokenStream {
         match length {
             Length::Joints => dof.clone(),
@@ -80,12 +80,12 @@ impl Target<'_> {
         }
     }
 
-    /// A name for a method's scalar.
+    /// Returns a name for the scalar of a method that no parameter of the type has.
     pub(crate) fn number(&self) -> Ident {
         if self.is_taken("T") { format_ident!("{}", self.free_name()) } else { format_ident!("T") }
     }
 
-    /// Whether the user's type has a parameter of that name.
+    /// Whether the user's type has a parameter with this name.
     fn is_taken(&self, name: &str) -> bool {
         self.item.generics.params.iter().any(|parameter| match parameter {
             GenericParam::Type(parameter) => parameter.ident == name,
@@ -103,14 +103,14 @@ impl Target<'_> {
     }
 }
 
-/// A length for a number of joints, which does not depend on the tips; `unknown` if that is a parameter.
+/// Returns a length that depends only on the number of joints; `unknown` if this number is not known.
 fn of_joints(length: Length, dof: &TokenStream, unknown: TokenStream) -> TokenStream {
     let dof = dof.to_string().parse::<usize>();
     let of = |dof| length.of(Sizes { dof, tips: 0, passive: 0, equations: 0 });
     dof.map_or(unknown, |dof| Literal::usize_unsuffixed(of(dof)).into_token_stream())
 }
 
-/// Replaces every identifier `from` in the tokens.
+/// Returns the tokens with every identifier `from` replaced.
 fn renamed(tokens: TokenStream, from: &str, to: &Ident) -> TokenStream {
     tokens
         .into_iter()

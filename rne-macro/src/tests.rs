@@ -1,4 +1,4 @@
-//! The expansion itself, away from the compiler.
+//! Tests the expansion of the derives without the compiler.
 
 use proc_macro2::{TokenStream, TokenTree};
 use quote::quote;
@@ -9,10 +9,10 @@ fn inverse_dynamics(input: TokenStream) -> TokenStream {
     crate::expand::capability(Capability::InverseDynamics, input)
 }
 
-/// Formatted as rustfmt would, nearly.
+/// Formats an expansion almost as rustfmt does.
 fn pretty(expansion: TokenStream) -> String {
     let file = syn::parse2(expansion).expect("the expansion is a list of items");
-    // Where this checkout lies is nobody's business.
+    // the path of this checkout must not be in a snapshot
     prettyplease::unparse(&file).replace(env!("CARGO_MANIFEST_DIR"), "…")
 }
 
@@ -36,7 +36,7 @@ fn what_stands_in_for_an_unknown_robot() {
     insta::assert_snapshot!(stub);
 }
 
-/// How many tokens the compiler gets to read.
+/// Returns how many tokens an expansion has, which the compiler must read.
 fn tokens(stream: TokenStream) -> usize {
     let count = |tree| match tree {
         TokenTree::Group(group) => 2 + tokens(group.stream()),
@@ -45,7 +45,8 @@ fn tokens(stream: TokenStream) -> usize {
     stream.into_iter().map(count).sum()
 }
 
-/// The seven-joint arm with the longest code: what an expansion costs follows what it writes.
+/// Limits the size of an expansion, on which the time of compilation depends, for the seven-joint arm with the longest
+/// code.
 #[test]
 fn an_expansion_is_short() {
     let input = quote! {
@@ -56,7 +57,7 @@ fn an_expansion_is_short() {
     assert!(!expansion.to_string().contains("compile_error"));
     let tokens = tokens(expansion);
     println!("expansion of panda.yaml: {tokens} tokens");
-    // six methods, three of them with the whole recursion and one with a payload on top
+    // six methods, three of them with the whole recursion and one with a payload in addition
     assert!(tokens <= 32_000, "{tokens} tokens");
 }
 

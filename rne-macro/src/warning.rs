@@ -1,4 +1,4 @@
-//! Lints of a robot file, and of what stands beside it, as warnings of the compiler.
+//! Reports lints of a robot file, and of files beside it, as warnings of the compiler.
 
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -8,14 +8,14 @@ use quote::{quote, quote_spanned};
 use rne_model::{Diagnostic, Report};
 use syn::{Attribute, DeriveInput, Meta};
 
-/// Largest number of warnings to print.
+/// The largest number of warnings that are reported.
 const SAID: usize = 8;
 
-/// One warning for each lint, at the place of the robot in the attribute.
+/// Returns code that causes one warning for each lint, at the place of the robot in the attribute.
 ///
-/// Stable Rust lets a macro refuse a program, not warn. A use of a deprecated constant is a warning that carries a text
-/// of ours. It is shown where its tokens have the span of something that the user wrote, as it is: what a derive itself
-/// resolves is exempt. Of the derives of one struct the first says it.
+/// In stable Rust a macro can report errors, but no warnings. So the code uses a deprecated constant, and the text of
+/// the warning is the note of its deprecation. The warning is only shown if its tokens have the span of something that
+/// the user wrote, because paths in derived code are exempt. If a struct has several derives, the first one warns.
 pub(crate) fn warnings(lints: &Report, item: &DeriveInput, place: Span) -> TokenStream {
     if !is_first(item, place) {
         return TokenStream::new();
@@ -28,7 +28,7 @@ pub(crate) fn warnings(lints: &Report, item: &DeriveInput, place: Span) -> Token
     used(&notes, item, place)
 }
 
-/// The warning that the tests compare with no golden file, although one is nearly there.
+/// Returns code that warns that the tests compare with no golden file, although there is a file with a similar name.
 pub(crate) fn misnamed_golden(found: &str, right: &str, item: &DeriveInput, place: Span) -> TokenStream {
     let note =
         format!("{found} is not the golden file of this robot, and no test reads it\ndid you mean to name it {right}?");
@@ -50,8 +50,8 @@ fn used(notes: &[String], item: &DeriveInput, place: Span) -> TokenStream {
     quote!(#(#used)*)
 }
 
-/// Whether no other derive of this struct has been expanded. They all are in one process; where a process lives longer,
-/// as in editors, nobody is told the source file, and each derive counts as the first.
+/// Whether no other derive of this struct has been expanded. The compiler expands all of them in one process. Processes
+/// of editors live longer, but do not tell the source file, so that each derive counts as the first.
 fn is_first(item: &DeriveInput, place: Span) -> bool {
     static KNOWN: Mutex<Vec<(PathBuf, usize, usize, String)>> = Mutex::new(Vec::new());
     if !proc_macro::is_available() {
@@ -73,7 +73,8 @@ fn note(name: &str, lint: &Diagnostic) -> String {
     format!("{name}:{}:{}: {}{help}", lint.line, lint.column, lint.message)
 }
 
-/// Whether an attribute of the struct decides about these warnings: it holds for the struct alone, so it is repeated.
+/// Whether an attribute of the struct sets the level of these warnings. It applies to the struct only, so it must be
+/// repeated for the code that warns.
 fn is_level(attribute: &Attribute) -> bool {
     let path = attribute.path();
     let Meta::List(list) = &attribute.meta else { return false };

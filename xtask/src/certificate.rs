@@ -1,4 +1,4 @@
-//! The certificate of the generated code on microcontrollers: `firmware/`, docs/measured/embedded.md.
+//! Certifies the generated code on microcontrollers: `firmware/`, docs/measured/embedded.md.
 
 use anyhow::{Context as _, Result, ensure};
 use clap::Args;
@@ -25,7 +25,7 @@ Examples:
   cargo xtask certificate --install   get what is missing by apt-get (Debian) first
   cargo xtask certificate --sample --changed
                                       nothing, unless something has changed since --record")]
-#[allow(clippy::struct_excessive_bools)] // each is an option
+#[allow(clippy::struct_excessive_bools)] // each field is an option of the command
 pub(crate) struct Certificate {
     /// Write docs/measured/embedded.md anew
     #[arg(long)]
@@ -45,7 +45,8 @@ pub(crate) struct Certificate {
     pub(crate) install: bool,
 }
 
-/// Newlib is only recommended by the C compiler, which links its memcpy and memset all the same.
+/// Packages of Debian. Newlib is named, because the compiler's package only recommends it, although programs need its
+/// memcpy and memset.
 const PACKAGES: [&str; 9] = [
     "rustc-web",
     "cargo-web",
@@ -58,7 +59,7 @@ const PACKAGES: [&str; 9] = [
     "lld",
 ];
 
-/// Programs that `rne certify` and its checker start.
+/// Packages with the programs that `rne certify` and its checker start.
 pub(crate) const OF_COMMAND_LINE: [&str; 5] =
     ["gcc-arm-none-eabi", "libnewlib-arm-none-eabi", "qemu-system-arm", "cppcheck", "python3"];
 
@@ -82,7 +83,7 @@ impl Certificate {
     fn judged(&self) -> Result<bool> {
         machine::packages(&PACKAGES, self.install)?;
         let shell = machine::shell()?;
-        // Debian's compiler builds the tool as well: what the macro is made of is built once.
+        // Debian's compiler also builds the measuring tool, so that the crates of the macro are built only once
         shell.set_var("RUSTC", "/usr/bin/rustc");
         shell.set_var("RUSTC_BOOTSTRAP", "1");
         shell.set_var("CARGO_TARGET_DIR", machine::target_folder("target/embedded")?);
@@ -103,7 +104,7 @@ impl Certificate {
         let fetched = cargo(&["fetch"]).ignore_status().output()?;
         let said = String::from_utf8_lossy(&fetched.stderr);
         if said.contains("lock file") {
-            // nothing that a network would mend
+            // not caused by the network, so it is an error and not skipped
             anyhow::bail!("firmware/Cargo.lock is not that of its manifests: {}", said.trim());
         }
         if !fetched.status.success() {
@@ -121,11 +122,11 @@ impl Certificate {
     }
 }
 
-/// The hash of what was certified.
+/// The file with the hash of the code that was certified last.
 const RECORD: &str = "firmware/certified.txt";
 
-/// The files that decide what is certified: the emitted code by its list, the runtime, and all that builds, runs and
-/// judges them.
+/// The files on which the certificate depends: the list of emitted code, the runtime, and everything that builds, runs
+/// and judges them.
 const CERTIFIED: [&str; 14] = [
     "docs/measured/embedded.md",
     "firmware/board",
@@ -143,7 +144,7 @@ const CERTIFIED: [&str; 14] = [
     "tests/shipped/src",
 ];
 
-/// The hash of these files in the last commit; nothing where some are not committed.
+/// Returns the hash of these files in the last commit; `None` if some changes are not committed.
 fn certified(shell: &Shell) -> Result<Option<String>> {
     if !cmd!(shell, "git status --porcelain -- {CERTIFIED...}").quiet().read()?.is_empty() {
         return Ok(None);

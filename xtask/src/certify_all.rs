@@ -1,4 +1,4 @@
-//! Certificates of the shipped robots: tests/certify/.
+//! Certifies the shipped robots: tests/certify/.
 
 use anyhow::Result;
 use clap::Args;

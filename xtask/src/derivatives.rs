@@ -1,4 +1,5 @@
-//! Derivatives of random robots beside dual numbers, and of imported and shipped ones beside Pinocchio.
+//! Compares derivatives of random robots with dual numbers, and derivatives of imported and shipped robots with
+//! Pinocchio.
 
 use anyhow::Result;
 use clap::Args;

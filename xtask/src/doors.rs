@@ -1,4 +1,4 @@
-//! Hostile inputs at every door: the command line, the Python package and the C library.
+//! Gives invalid and unusual inputs to the three interfaces: the command line, the Python package and the C library.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -43,10 +43,10 @@ pub(crate) struct Doors {
     pub(crate) install: bool,
 }
 
-/// A script of `tests/doors`.
+/// A script of `tests/doors`, which tests one interface.
 struct Script {
     name: &'static str,
-    /// The share of its inputs in a draw, by how long they take.
+    /// The share of its inputs that is drawn when not all are run; smaller for inputs that take long.
     share: f64,
     door: Door,
 }
@@ -63,7 +63,7 @@ const fn script(name: &'static str, share: f64, door: Door) -> Script {
     Script { name, share, door }
 }
 
-/// All scripts. Two run at a time, so the slowest come first.
+/// All scripts. Several run at a time, so the slowest come first.
 const SCRIPTS: [Script; 16] = [
     script("long_logs", 0.024, Door::CommandLine),
     script("robot_texts", 0.032, Door::CommandLine),
@@ -83,7 +83,7 @@ const SCRIPTS: [Script; 16] = [
     script("capi", 0.3, Door::Library),
 ];
 
-/// Summary that a script writes about its run.
+/// The summary that a script writes about its run.
 #[derive(Default, Deserialize)]
 struct Summary {
     cases: usize,
@@ -107,7 +107,7 @@ impl Doors {
         let place = Place::new()?;
         let programs = Programs::new(&shell, &place, self.install)?;
         let python = &programs.python;
-        // first of all whether the rules find what they are there for
+        // first a test that the harness finds violations of its rules
         cmd!(shell, "{python} -B -m unittest -q test_harness").env("PYTHONPATH", "tests/doors").quiet().run()?;
         let is_whole = self.all || std::env::var_os("CI_FULL").is_some();
         let seed = self.seed(&shell);
@@ -132,7 +132,7 @@ impl Doors {
         Ok(Verdict::from(table(&chosen, &summaries)))
     }
 
-    /// `--seed`, `DOORS_SEED`, or the commit.
+    /// Returns the seed: that of `--seed`, of `DOORS_SEED`, or the commit.
     fn seed(&self, shell: &Shell) -> String {
         let commit = || cmd!(shell, "git rev-parse --short HEAD").quiet().ignore_stderr().read().ok();
         let seed = self.seed.clone().or_else(|| std::env::var("DOORS_SEED").ok()).or_else(commit);
@@ -146,7 +146,7 @@ struct Programs {
     python: PathBuf,
     /// The command line with every format of logs.
     rne: PathBuf,
-    /// Where the C library is.
+    /// The prefix below which the C library is installed.
     prefix: PathBuf,
 }
 
@@ -167,7 +167,7 @@ impl Programs {
         Ok(Self { python, rne: place.command_line()?, prefix: capi::prefix()? })
     }
 
-    /// Whether a door was built here before, so that building it again takes little.
+    /// Whether an interface was built here before, so that another build takes little time.
     fn has(&self, door: Door, place: &Place) -> bool {
         match door {
             Door::CommandLine => true,
@@ -192,7 +192,7 @@ impl Programs {
         Ok(())
     }
 
-    /// Runs scripts, as many at a time as there are processors, and prints what each said.
+    /// Runs the scripts, as many at a time as there are processors, prints their output and returns their summaries.
     fn run_all(&self, scripts: &[&Script], draw: impl Fn(&Script) -> [String; 2] + Sync) -> Result<Vec<Summary>> {
         let folder = tempfile::tempdir()?;
         let rest = Mutex::new(scripts.iter());
@@ -230,7 +230,7 @@ fn summary(folder: &Path, script: &Script) -> Result<Summary> {
     Ok(serde_json::from_str(&text)?)
 }
 
-/// Prints the table of all scripts; whether no input failed.
+/// Prints the table of all scripts. Returns whether no input failed.
 fn table(scripts: &[&Script], summaries: &[Summary]) -> bool {
     println!("\nscript          cases  failed  skipped  commands  largest MB  largest s of processor time");
     let mut all = Summary::default();

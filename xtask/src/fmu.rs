@@ -1,4 +1,4 @@
-//! FMUs in the hands of FMPy.
+//! Tests exported FMUs with FMPy.
 
 use anyhow::Result;
 use clap::Args;

@@ -1,4 +1,4 @@
-//! The list of emitted texts that must not change, byte for byte.
+//! Compares emitted code with a list of hashes, because it must not change in any byte.
 
 use anyhow::Result;
 use clap::Args;

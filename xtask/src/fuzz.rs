@@ -1,4 +1,4 @@
-//! Inputs that no person would write, made by libFuzzer from what the code does with them.
+//! Fuzzing with libFuzzer, which makes unusual inputs and learns from the code that they reach.
 
 use std::fs;
 use std::path::Path;
@@ -34,7 +34,7 @@ pub(crate) struct Fuzz {
     grow: bool,
 }
 
-/// Compiler flags that instrument the code, the same as those of cargo-fuzz.
+/// Compiler flags that instrument the code for libFuzzer; cargo-fuzz uses the same ones.
 const FLAGS: &str = "--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
                      -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
                      -Cllvm-args=-sanitizer-coverage-trace-compares -Ccodegen-units=1";
@@ -42,7 +42,8 @@ const FLAGS: &str = "--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanitizer
 /// The longest input, bytes.
 const LONGEST: u32 = 4096;
 
-/// Limits of libFuzzer: seconds for one input, MB in total; short output, the same inputs every time.
+/// Options of libFuzzer: at most 10 s per input and 2048 MB, short output, and a fixed seed, so that every run has the
+/// same inputs.
 const OPTIONS: [&str; 5] = ["-timeout=10", "-rss_limit_mb=2048", "-verbosity=0", "-print_final_stats=1", "-seed=1"];
 
 impl Fuzz {
@@ -56,7 +57,7 @@ impl Fuzz {
         }
         let shell = machine::shell()?;
         let folder = machine::target_folder("target")?.join("fuzz");
-        // with a target, the flags are those of the programs and not of build scripts and macros
+        // with --target, RUSTFLAGS apply to the programs only, and not to build scripts and macros
         let host = cmd!(shell, "rustc -vV").quiet().read()?;
         let host = host.lines().find_map(|line| line.strip_prefix("host: ")).unwrap_or_default().to_owned();
         let build = cmd!(shell, "cargo build --quiet --release --manifest-path fuzz/Cargo.toml --target {host}");
@@ -69,7 +70,7 @@ impl Fuzz {
             let artifacts = machine::root().join("fuzz/artifacts").join(target);
             fs::create_dir_all(&found)?;
             fs::create_dir_all(&artifacts)?;
-            // the first folder is where new inputs go
+            // libFuzzer writes new inputs to the first of these folders
             let corpus: &[&Path] = if self.grow { &[&seeds] } else { &[&found, &seeds] };
             let (runs, longest) = (self.runs.to_string(), LONGEST.to_string());
             let artifacts = format!("{}/", artifacts.display());
@@ -87,7 +88,7 @@ impl Fuzz {
     }
 }
 
-/// The names of the files in `fuzz/targets`.
+/// Returns the names of the targets, the files in `fuzz/targets`.
 fn targets() -> Result<Vec<String>> {
     let files = fs::read_dir(machine::root().join("fuzz/targets"))?;
     let mut names = Vec::new();

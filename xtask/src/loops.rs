@@ -1,4 +1,4 @@
-//! Random robots with closed loops beside values of virtual work.
+//! Compares random robots with closed loops with values from the principle of virtual work.
 
 use anyhow::Result;
 use clap::Args;

@@ -1,4 +1,5 @@
-//! The machine: where the repository is, which tools are there, and how those that are missing are got.
+//! The machine on which a task runs: the folder of the repository, installed tools, and the installation of missing
+//! ones.
 
 use std::fmt;
 use std::fs;
@@ -8,12 +9,12 @@ use std::process::{Command, Stdio};
 use anyhow::{Context, Result, anyhow, bail};
 use xshell::{Cmd, Shell, cmd};
 
-/// A tool that this machine lacks: the message that replaces a result.
+/// The error that this machine lacks a tool. Its message is printed in place of a result.
 #[derive(Debug)]
 pub(crate) struct Missing(String);
 
 impl Missing {
-    /// An error of this kind.
+    /// Creates such an error.
     pub(crate) fn error(why: impl Into<String>) -> anyhow::Error {
         anyhow!(Self(why.into()))
     }
@@ -27,19 +28,19 @@ impl fmt::Display for Missing {
 
 impl std::error::Error for Missing {}
 
-/// The folder of the repository.
+/// Returns the folder of the repository.
 pub(crate) fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("this package is in a folder of the repository")
 }
 
-/// A shell in the folder of the repository.
+/// Returns a shell in the folder of the repository.
 pub(crate) fn shell() -> Result<Shell> {
     let shell = Shell::new()?;
     shell.change_dir(root());
     Ok(shell)
 }
 
-/// The text of a file of the repository.
+/// Reads a file of the repository.
 pub(crate) fn read(path: &str) -> Result<String> {
     fs::read_to_string(root().join(path)).with_context(|| path.to_owned())
 }
@@ -49,15 +50,16 @@ pub(crate) fn write(path: &str, text: &str) -> Result<()> {
     fs::write(root().join(path), text).with_context(|| path.to_owned())
 }
 
-/// `CARGO_TARGET_DIR`, or a folder of the repository; it is made, and its path is absolute.
+/// Returns the absolute path of `CARGO_TARGET_DIR`, or of a default folder in the repository, and creates it.
 pub(crate) fn target_folder(default: &str) -> Result<PathBuf> {
     let folder = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join(default), PathBuf::from);
     fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
     Ok(folder.canonicalize()?)
 }
 
-/// The profile of the Python package and of the C library, `release` unless `RNE_PROFILE` names `dev`, and its folder.
-/// Tests use `dev`, which compiles sooner; what is timed or released is `release`.
+/// Returns the profile with which the Python package and the C library are built, and the name of its folder. It is
+/// `release` unless `RNE_PROFILE` says `dev`. Tests use `dev`, which compiles faster; measurements and releases use
+/// `release`.
 pub(crate) fn profile() -> Result<(&'static str, &'static str)> {
     match std::env::var("RNE_PROFILE").as_deref() {
         Ok("dev") => Ok(("dev", "debug")),
@@ -66,14 +68,14 @@ pub(crate) fn profile() -> Result<(&'static str, &'static str)> {
     }
 }
 
-/// Without the caller's flags, which would make other code, and without the folders of libraries that rustup adds for
-/// its own compiler, which need not be the one that is started.
+/// Removes environment variables of the caller from a command: compiler flags, which would change the code, and the
+/// library path that rustup sets for its own compiler, because another compiler may be started.
 pub(crate) fn without_flags(command: Cmd<'_>) -> Cmd<'_> {
     ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "LD_LIBRARY_PATH"].into_iter().fold(command, Cmd::env_remove)
 }
 
-/// Downloads the crates of a workspace of its own. A lock file that is not that of its manifest is a fault, and crates
-/// that cannot be downloaded are missing.
+/// Downloads the crates of a separate workspace. A lock file that does not fit its manifest is an error; crates that
+/// cannot be downloaded are a missing tool.
 pub(crate) fn fetch(shell: &Shell, manifest: &str) -> Result<()> {
     let fetched = cmd!(shell, "cargo fetch --quiet --locked --manifest-path {manifest}").quiet().ignore_status();
     let fetched = fetched.output()?;
@@ -93,7 +95,7 @@ pub(crate) fn has(program: &str) -> bool {
     started.is_ok_and(|status| status.success())
 }
 
-/// Sees to it that packages of Debian are there. With `install`, apt-get gets those that are not.
+/// Checks that Debian packages are installed. With `install`, apt-get installs missing ones.
 pub(crate) fn packages(names: &[&str], install: bool) -> Result<()> {
     let mut missing = not_installed(names);
     if missing.is_empty() {
@@ -112,9 +114,9 @@ pub(crate) fn packages(names: &[&str], install: bool) -> Result<()> {
     Err(Missing::error(format!("apt-get does not install {}{complaint}", missing.join(" "))))
 }
 
-/// The packages of a list that are not installed; all of them if there is no dpkg.
+/// Returns the packages of a list that are not installed; all of them if there is no dpkg.
 fn not_installed<'a>(names: &[&'a str]) -> Vec<&'a str> {
-    // a package that was removed has a status as well: `config-files`
+    // a removed package also has a status, `config-files`
     let is_installed = |name: &&str| {
         let query = Command::new("dpkg-query").args(["--show", "--showformat=${db:Status-Status}", name]).output();
         query.is_ok_and(|output| output.stdout == b"installed")
@@ -122,12 +124,12 @@ fn not_installed<'a>(names: &[&'a str]) -> Vec<&'a str> {
     names.iter().copied().filter(|name| !is_installed(name)).collect()
 }
 
-/// Installs packages and those that they cannot do without. What apt-get complains of, in a line.
+/// Installs packages with their required dependencies. Returns the first complaint of apt-get, if there is one.
 fn apt_get(names: &[&str]) -> Option<String> {
     let update = ["update"].as_slice();
     let install = [["install", "--yes", "--no-install-recommends"].as_slice(), names].concat();
     for arguments in [update, &install] {
-        // a package that asks a question would wait for ever
+        // a package that asks a question would wait for an answer forever
         let output = Command::new("apt-get")
             .args(arguments)
             .env("DEBIAN_FRONTEND", "noninteractive")
@@ -147,13 +149,13 @@ fn apt_get(names: &[&str]) -> Option<String> {
     None
 }
 
-/// Installs a toolchain by rustup unless it exists; the reason in one line if that fails.
+/// Installs a toolchain by rustup if it does not exist. Returns the reason if that fails.
 pub(crate) fn toolchain(version: &str) -> Option<String> {
     let answers = |program: &str, arguments: &[&str]| {
         let output = Command::new(program).args(arguments).stdin(Stdio::null()).env_remove("RUSTUP_TOOLCHAIN").output();
         output.is_ok_and(|output| output.status.success())
     };
-    // rustup alone knows `+`; it must not get a compiler unasked, and not its documentation
+    // `rustup run` and not `rustc +VERSION`, because `+` only works with rustup's own rustc and may install a compiler
     let has = || answers("rustup", &["run", version, "rustc", "--version"]);
     if !answers("rustup", &["--version"]) {
         return Some(format!("there is no rustup to get Rust {version}"));
@@ -164,14 +166,14 @@ pub(crate) fn toolchain(version: &str) -> Option<String> {
     Some(format!("Rust {version} cannot be had (rustup toolchain install {version} says why)"))
 }
 
-/// The oldest compiler that the workspace accepts, from Cargo.toml.
+/// Returns the oldest compiler version that the workspace accepts, from Cargo.toml.
 pub(crate) fn oldest_compiler() -> Result<String> {
     let manifest = read("Cargo.toml")?;
     let version = manifest.lines().find_map(|line| line.strip_prefix("rust-version = \"")?.split('"').next());
     Ok(version.context("Cargo.toml has no rust-version")?.to_owned())
 }
 
-/// Major and minor number of a version in a text such as `rustc 1.96.0 (…)`.
+/// Returns major and minor number of the version in a text such as `rustc 1.96.0 (…)`.
 pub(crate) fn version(text: &str) -> Option<(u32, u32)> {
     let word = text.split_whitespace().find(|word| word.starts_with(|letter: char| letter.is_ascii_digit()))?;
     let mut numbers = word.split('.').map(|number| number.parse().ok());

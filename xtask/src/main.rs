@@ -1,7 +1,7 @@
-//! Tasks for this repository beside `cargo build` and `cargo test`.
+//! Tasks for this repository besides `cargo build` and `cargo test`.
 //!
-//! Each subcommand is a module of this crate, and its `--help` says what it needs and what it takes. Nothing of this is
-//! published; `.ci/run` is the list of those that must succeed before a change lands.
+//! Each subcommand is a module of this crate, and its `--help` says what it needs and what it takes. This crate is not
+//! published. `.ci/run` lists the tasks that must succeed before a change is merged.
 
 mod certificate;
 mod certify_all;
@@ -89,12 +89,12 @@ enum Task {
     Fmu(fmu::Fmus),
 }
 
-/// Result of a task.
+/// The result of a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Verdict {
-    /// It is as it shall be.
+    /// The check succeeded.
     Holds,
-    /// It is not; what is wrong has been printed.
+    /// The check failed, and the reasons have been printed.
     Fails,
 }
 
@@ -105,7 +105,7 @@ impl From<bool> for Verdict {
 }
 
 impl Task {
-    /// Runs the task: its name in messages, whether it may install what it needs, and its result.
+    /// Runs the task. Returns its name for messages, whether it may install what it needs, and its result.
     fn run(&self) -> (&'static str, bool, Result<Verdict>) {
         match self {
             Self::Certificate(task) => ("embedded certificate", task.install, task.run()),
@@ -152,7 +152,7 @@ fn main() -> ExitCode {
         Ok(Verdict::Fails) => ExitCode::FAILURE,
         Err(error) if error.is::<Missing>() => {
             println!("{name}: skipped, {error}");
-            // what cannot be had is no failure where it was asked to be installed
+            // a missing tool is no failure if the task was allowed to install it and could not
             ExitCode::from(if installs { 0 } else { 2 })
         }
         Err(error) => {

@@ -1,4 +1,4 @@
-//! The mutants as data: xtask/mutants.yaml.
+//! Mutants, that is, deliberate mistakes in the source that tests must notice: their data in xtask/mutants.yaml.
 
 use std::path::Path;
 
@@ -7,49 +7,50 @@ use serde::Deserialize;
 
 use crate::machine;
 
-/// The data.
+/// The file with the mutants.
 pub(crate) const FILE: &str = "xtask/mutants.yaml";
 
-/// One change of one place of the source, which a check must notice.
+/// One deliberate change of the source, which the tests of `check` must notice.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Mutant {
-    /// The mistake that the mutant has, in words.
+    /// The mistake that the mutant makes, in words.
     pub(crate) what: String,
-    /// The source, from the root of the repository.
+    /// The path of the source file, from the root of the repository.
     pub(crate) file: String,
-    /// Who must notice.
+    /// The tests that must notice it.
     pub(crate) check: Check,
-    /// A text that occurs once in the source.
+    /// The text to replace, which occurs once in the source.
     pub(crate) old: String,
-    /// Text of the mutant in its place.
+    /// The text that replaces `old`.
     pub(crate) new: String,
 }
 
-/// Tests that must notice.
+/// A group of tests that must notice mutants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Check {
-    /// Comparison with the runtime and with independent torques.
+    /// Comparison with the runtime library and with independent torques.
     Compare,
-    /// The proof that the reduced form is the seven steps.
+    /// The proof that the reduced form equals the seven steps.
     Prove,
     /// Comparison of the other functions with the runtime and with independent values.
     Functions,
-    /// C, beside the derived code.
+    /// Comparison of emitted C code with derived Rust code.
     Code,
     /// Pages for students: equations, closed forms and pictures, compared with the runtime and Lagrange's equations.
     Views,
-    /// Trees: both forms and the runtime, beside projected Newton-Euler, Pinocchio and each other.
+    /// Tests of robots with branches: both forms and the runtime library are compared with projected Newton-Euler, with
+    /// Pinocchio and with each other.
     Trees,
 }
 
 impl Check {
-    /// All, in the order of the document.
+    /// All groups, in the order of the document.
     pub(crate) const ALL: [Self; 6] =
         [Self::Compare, Self::Prove, Self::Functions, Self::Code, Self::Views, Self::Trees];
 
-    /// Arguments of `cargo test`.
+    /// Returns the arguments of `cargo test` that run these tests.
     pub(crate) fn tests(self) -> &'static [&'static str] {
         match self {
             Self::Compare => &["--test", "robots", "--test", "random"],
@@ -103,7 +104,7 @@ impl Check {
         }
     }
 
-    /// The heading of its section in the document.
+    /// Returns the heading of its section in the document.
     pub(crate) fn heading(self) -> &'static str {
         match self {
             Self::Compare => "The seven steps",
@@ -115,7 +116,7 @@ impl Check {
         }
     }
 
-    /// Text of its section before the table.
+    /// Returns the text of its section before the table.
     pub(crate) fn about(self) -> &'static str {
         match self {
             Self::Compare => {
@@ -153,7 +154,7 @@ With these mutations, the C code does not compile, or its results differ from th
 }
 
 impl Mutant {
-    /// The source with the mutation; an error says what is to be done when its text is not there (any more).
+    /// Returns the source with the mutation. If the text to replace is missing or ambiguous, the error says what to do.
     pub(crate) fn apply(&self, source: &str) -> Result<String, String> {
         let Self { what, file, old, new, .. } = self;
         let advice = "write the mutant for today's source, or take it out";
@@ -165,7 +166,7 @@ impl Mutant {
         }
     }
 
-    /// The mutated source, with the source read from a tree.
+    /// Reads the source from a copy of the repository and returns it with the mutation.
     pub(crate) fn applied_in(&self, tree: &Path) -> Result<String, String> {
         let Self { what, file, .. } = self;
         let source = std::fs::read_to_string(tree.join(file));
@@ -173,7 +174,7 @@ impl Mutant {
     }
 }
 
-/// The mutants of the repository.
+/// Reads all mutants of the repository.
 pub(crate) fn all() -> Result<Vec<Mutant>> {
     serde_yaml::from_str(&machine::read(FILE)?).context(FILE)
 }

@@ -1,8 +1,9 @@
-//! Are the tests awake? The compiler broken in one place at a time, in a copy of this tree, and the tests run.
+//! Checks whether the tests notice mistakes: breaks the compiler in one place at a time, in a copy of this repository,
+//! and runs the tests.
 //!
-//! `mutants.yaml` has the mutants that mean something: a term of a formula, a sign of a transformation. What can be
-//! changed without knowing dynamics (an operator, a comparison, a returned value) is the business of cargo-mutants,
-//! which `.cargo/mutants.toml` sets up:
+//! `mutants.yaml` has mistakes that need knowledge of dynamics, such as a missing term or a wrong sign. Changes that
+//! need none (an operator, a comparison, a returned value) are made by cargo-mutants, which `.cargo/mutants.toml`
+//! configures:
 //!
 //! ```sh
 //! cargo install cargo-mutants --locked
@@ -112,22 +113,22 @@ impl Mutate {
     }
 }
 
-/// The head of a section and of its table.
+/// Returns the heading of a section and of its table.
 fn section(check: Check) -> String {
     let head = if check == Check::Prove { "refused by the proof in" } else { "caught by" };
     let (heading, about, tests) = (check.heading(), check.about(), check.tests().join(" "));
     format!("\n## {heading}\n\n{about}\n\n    cargo test {tests}\n\n| mutation | {head} |\n|---|---|\n")
 }
 
-/// The tests that noticed a mutant.
+/// The result of the tests with a mutant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Caught {
     Nothing,
-    /// Names of tests.
+    /// These tests failed.
     By(BTreeSet<String>),
-    /// A derive, while the tests were built.
+    /// The build of the tests failed, because the proof in a derive refused the mutant.
     Build,
-    /// Tests that failed, but not by refusing.
+    /// Tests failed, but not because the proof refused the mutant.
     SomethingElse,
 }
 
@@ -149,7 +150,7 @@ impl Caught {
         }
     }
 
-    /// From the output of tests that failed; nothing, when that says neither what failed nor that anything did.
+    /// Finds the failed tests in the output of a test run. `None` if the output shows no failure of a test.
     fn of(check: Check, log: &str) -> Option<Self> {
         let names = if check == Check::Prove { refused(log) } else { failed(log) };
         if !names.is_empty() {
@@ -164,7 +165,7 @@ impl Caught {
     }
 }
 
-/// Tests whose output has a line of the proof.
+/// Returns the tests whose output says that the proof refuses.
 fn refused(log: &str) -> BTreeSet<String> {
     let mut name = None;
     let mut names = BTreeSet::new();
@@ -178,7 +179,7 @@ fn refused(log: &str) -> BTreeSet<String> {
     names
 }
 
-/// Tests in a list of failures.
+/// Returns the tests in the list of failures.
 fn failed(log: &str) -> BTreeSet<String> {
     let names = log.lines().filter_map(|line| line.strip_prefix("    "));
     let is_name = |name: &&str| {
@@ -190,7 +191,7 @@ fn failed(log: &str) -> BTreeSet<String> {
     names.filter(is_name).map(str::to_owned).collect()
 }
 
-/// A copy of this tree, where something may be wrong.
+/// A copy of the repository, in which one source is broken at a time.
 struct Laboratory {
     tree: TempDir,
     shell: Shell,
@@ -204,13 +205,13 @@ impl Laboratory {
         shell.change_dir(tree.path());
         let target = std::env::var_os("MUTATE_TARGET_DIR").map_or_else(|| tree.path().join("target"), PathBuf::from);
         shell.set_var("CARGO_TARGET_DIR", target);
-        // A random robot that fails is enough; the smallest one takes long to find.
+        // One random robot that fails is enough; the search for the smallest one takes long.
         shell.set_var("PROPTEST_MAX_SHRINK_ITERS", "0");
         shell.set_var("RUST_BACKTRACE", "0");
         Ok(Self { tree, shell })
     }
 
-    /// Finds the tests that notice a mutant.
+    /// Applies a mutant, finds the tests that notice it, and restores the source.
     fn caught(&self, mutant: &Mutant) -> Result<Caught> {
         let file = self.tree.path().join(&mutant.file);
         let original = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
@@ -220,7 +221,7 @@ impl Laboratory {
         caught.with_context(|| mutant.what.clone())
     }
 
-    /// Finds the tests that fail in the tree without a mutant.
+    /// Runs the tests on the tree as it is now, and returns those that fail.
     fn failing(&self, check: Check) -> Result<Caught> {
         let tests = check.tests();
         let output =
@@ -233,7 +234,7 @@ impl Laboratory {
     }
 }
 
-/// Copies a tree without what git and cargo keep in it.
+/// Copies a folder without the folders `.git` and `target`.
 fn copy(from: &Path, to: &Path) -> Result<()> {
     for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
         let entry = entry?;
@@ -285,7 +286,7 @@ test result: FAILED. 0 passed; 2 failed
         assert_eq!(Caught::of(Check::Compare, "error: unresolved import\n"), None);
     }
 
-    /// The page is of these mutants, in this order, and each was caught.
+    /// The page lists these mutants in this order, and each was noticed.
     #[test]
     fn the_page_is_what_is_printed() {
         let page = machine::read(super::PAGE).expect("the page");

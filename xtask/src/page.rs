@@ -1,4 +1,4 @@
-//! The page of `rne report` in a real browser.
+//! Tests the page of `rne report` in a real browser.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use xshell::{Shell, cmd};
 use crate::Verdict;
 use crate::machine::{self, Missing};
 
-/// Packages of Debian that the browser's tests need: Chromium and its driver.
+/// Debian packages for the tests in a browser: Chromium and its driver.
 const BROWSER: [&str; 2] = ["chromium", "chromium-driver"];
 const PACKAGES: [&str; 3] = ["selenium==4.51.0", "axe-core-python==0.1.0", "pillow==12.0.0"];
 
@@ -55,7 +55,7 @@ impl Page {
     }
 }
 
-/// Python with a client of the browser, and the browser; with `install`, what is missing is got.
+/// Returns the Python that has a client of the browser. With `install`, missing packages and the browser are installed.
 pub(crate) fn python(shell: &Shell, install: bool) -> Result<PathBuf> {
     let venv = machine::target_folder("target")?.join("page/venv");
     let python = venv.join("bin/python");
@@ -82,7 +82,7 @@ pub(crate) fn python(shell: &Shell, install: bool) -> Result<PathBuf> {
     Ok(python)
 }
 
-/// The command line, built anew.
+/// Builds the command line and returns its path.
 pub(crate) fn rne(shell: &Shell) -> Result<PathBuf> {
     machine::without_flags(cmd!(shell, "cargo build --quiet --bin rne")).quiet().run()?;
     Ok(machine::target_folder("target")?.join("debug/rne"))

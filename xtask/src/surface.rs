@@ -1,4 +1,4 @@
-//! The list of what users have: names that do not vanish unnoticed.
+//! Compares the names that users rely on with a list, so that none disappears unnoticed.
 
 use std::collections::BTreeSet;
 
@@ -30,7 +30,7 @@ pub(crate) struct Surface {
 
 const LIST: &str = "tests/surface.txt";
 
-/// Commands that print JSON, each on files of this repository.
+/// Commands that print JSON, each with files of this repository as arguments.
 const JSON: &[&str] = &[
     "eval planar2 --q 0,0",
     "eval puma560 --q 0,0,0,0,0,0 --function joint_wrenches",
@@ -52,7 +52,7 @@ impl Surface {
             Ok(cmd!(shell, "cargo run --quiet -- {arguments...}").quiet().ignore_status().ignore_stderr().read()?)
         };
         let committed = machine::read(LIST).unwrap_or_default();
-        // the query engine takes minutes to compile, so its own test compares its names
+        // the query engine takes minutes to compile, so a test in its own workspace compares these names
         let sql = committed.lines().filter(|line| line.starts_with("sql ")).map(str::to_owned);
         let mut names: BTreeSet<String> = sql.collect();
         of_command_line(&rne("completions fish")?, &mut names)?;
@@ -84,7 +84,7 @@ impl Surface {
     }
 }
 
-/// Commands, options and values of options, from the completions of a shell.
+/// Adds commands, options and values of options, from the completions for a shell.
 fn of_command_line(completions: &str, names: &mut BTreeSet<String>) -> Result<()> {
     let line = Regex::new(r#"^complete -c rne -n "__fish_rne_using_subcommand (\w+)" .*?-l ([\w-]+)"#)?;
     let value = Regex::new(r#"(?:^|-a ")([\w.-]+)\\t"#)?;
@@ -106,12 +106,12 @@ fn of_command_line(completions: &str, names: &mut BTreeSet<String>) -> Result<()
     Ok(())
 }
 
-/// The paths of keys in a document. Elements of a list have the same.
+/// Adds the paths of all keys in a JSON document. All elements of a list have the same path.
 fn keys(path: &str, value: &Value, names: &mut BTreeSet<String>) {
     match value {
         Value::Object(members) => {
             for (key, value) in members {
-                // the names of a program are those of its robot
+                // the keys below `names` depend on the robot, so they are replaced by `*`
                 let key = if path.rsplit('.').next() == Some("names") { "*" } else { key };
                 let path = format!("{path}.{key}");
                 names.insert(path.clone());
@@ -123,7 +123,7 @@ fn keys(path: &str, value: &Value, names: &mut BTreeSet<String>) {
     }
 }
 
-/// The names of a stub: classes, their members, functions with their arguments, types.
+/// Adds the names in a Python stub: classes, their members, functions with their arguments, and types.
 fn of_python(stub: &str, names: &mut BTreeSet<String>) -> Result<()> {
     let name = Regex::new(r"^( *)(?:(class|def) (\w+)|(\w+)(?:: | = ))")?;
     let argument = Regex::new(r"(?:[(,*] ?|^ +)(\w+): ")?;

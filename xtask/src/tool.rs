@@ -1,4 +1,4 @@
-//! Tools that are no part of this repository.
+//! Runs tools that are not part of this repository.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use crate::machine::{self, Missing};
 Exit status: 1 when the tool finds fault.
 
 Examples:
-  cargo xtask tool deny --install        licences, sources and duplicates of what every lock file has: deny.toml;
+  cargo xtask tool deny --install        licences, sources and duplicates of what every lock file has: .cargo/deny.toml;
                                          takes minutes to install
   cargo xtask tool semver --install      the public interface against the last tag; takes minutes to install
   cargo xtask tool book --install        docs/teaching/lecture as a book in target/book; takes minutes to install")]
@@ -27,7 +27,7 @@ pub(crate) struct Tool {
     pub(crate) install: bool,
 }
 
-/// The arms whose live pages the book shows.
+/// The arms whose live pages are in the book.
 const LIVE: [&str; 4] = ["planar1", "planar2", "stanford", "puma560"];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -70,7 +70,7 @@ impl Tool {
         let run = match self.tool {
             Name::Deny => return deny(&shell),
             Name::Book => {
-                // the live pages that chapters show
+                // the chapters show live pages of arms, which `rne report` writes
                 let book = machine::target_folder("target")?.join("book");
                 machine::without_flags(cmd!(shell, "cargo build --quiet --bin rne")).quiet().run()?;
                 let rne = machine::target_folder("target")?.join("debug/rne");
@@ -91,9 +91,9 @@ impl Tool {
     }
 }
 
-/// Checks the dependencies of every lock file of the repository.
+/// Checks the dependencies in every lock file of the repository.
 fn deny(shell: &Shell) -> Result<Verdict> {
-    // they are a repository elsewhere
+    // the database of advisories is a separate repository, which may be unreachable
     let fetch = cmd!(shell, "cargo deny --workspace --log-level off fetch db");
     let has_advisories = fetch.quiet().ignore_stdout().ignore_stderr().run().is_ok();
     if !has_advisories {
@@ -108,7 +108,7 @@ fn deny(shell: &Shell) -> Result<Verdict> {
         let fetched = machine::without_flags(fetch).quiet().ignore_status().output()?;
         let said = String::from_utf8_lossy(&fetched.stderr);
         if said.contains("lock file") {
-            // nothing that a network would mend
+            // not caused by the network, so it is an error and not skipped
             anyhow::bail!("{lock} is not that of its manifest: {}", said.trim());
         }
         if !fetched.status.success() {
@@ -116,12 +116,12 @@ fn deny(shell: &Shell) -> Result<Verdict> {
             continue;
         }
         println!("{lock}:");
-        // two versions of a crate cost who compiles this library; what else is built here may have them
+        // In the library, two versions of a crate would cost its users time to compile. Other workspaces may have them.
         let allowed = if lock == "Cargo.lock" { None } else { Some("--allow=duplicate") };
         let check = cmd!(
             shell,
             "cargo deny --manifest-path {manifest} --workspace --all-features --locked --log-level error
-                check --config deny.toml {allowed...} bans licenses sources {advisories...}"
+                check --config .cargo/deny.toml {allowed...} bans licenses sources {advisories...}"
         );
         if machine::without_flags(check).quiet().run().is_err() {
             verdict = Verdict::Fails;

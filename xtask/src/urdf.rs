@@ -1,4 +1,5 @@
-//! Robot files made of URDFs and MJCF files against Pinocchio and MuJoCo, which read the same files.
+//! Compares robot files that were imported from URDF and MJCF files with Pinocchio and MuJoCo, which read the same
+//! files.
 
 use std::path::PathBuf;
 
@@ -10,10 +11,10 @@ use crate::Verdict;
 use crate::machine::{self, Missing};
 use crate::packages::python::Place;
 
-/// Packages that have whole robots beside those.
+/// Python packages with whole robots, for --corpora.
 const CORPORA: [&str; 3] = ["dm_control==1.0.50", "gymnasium==1.4.0", "robosuite-models==1.0.0"];
 
-/// Packages that are installed: Pinocchio, MuJoCo, and arms as URDF.
+/// Python packages that are installed: Pinocchio, MuJoCo, and arms as URDF.
 const PACKAGES: [&str; 4] = ["pin==4.1.0", "mujoco==4.0.0", "example-robot-data==6.0.0", "rtb-data==2.0.0"];
 
 /// Imports real arms and compares them with Pinocchio

@@ -35,40 +35,42 @@ pub(crate) struct Verify {
     pub(crate) install: bool,
 }
 
-/// Something that is looked at.
+/// A check: a command, and what it needs.
 struct Step {
     name: &'static str,
     about: &'static str,
-    /// Variables of the environment, before the command.
+    /// Environment variables of the command.
     variables: &'static [(&'static str, &'static str)],
     command: &'static [&'static str],
-    /// Requirements; without them the step is skipped.
+    /// What the step needs; it is skipped if this is missing.
     needs: Needs,
 }
 
-/// A word of a command that stands for `--test NAME` of every test outside the packages of `cargo test`.
+/// A placeholder in a command, replaced by `--test NAME` for every test of the packages that `cargo test` does not
+/// select by default.
 const TESTS_OF_REST: &str = "TESTS_OF_REST";
 
-/// Requirements of a step.
+/// What a step needs to run.
 enum Needs {
     Nothing,
-    /// The oldest compiler that Cargo.toml allows; rustup gets it.
+    /// The oldest compiler that Cargo.toml allows, which rustup installs.
     OldestCompiler,
-    /// Packages of Debian.
+    /// Packages of Debian, which must be installed.
     Packages(&'static [&'static str]),
-    /// A program, here or in `target/tools`.
+    /// A program on PATH or in `target/tools`.
     Program(&'static str),
-    /// Time: it is run where `CI_FULL` is set.
+    /// Time: the step only runs if `CI_FULL` is set.
     Time,
-    /// Time, and something else.
+    /// Time, and another requirement.
     TimeAnd(&'static Needs),
-    /// A tag of this repository, to compare with.
+    /// A tag of this repository, with which the step compares.
     Tag,
 }
 
-/// Each with a target folder that an earlier one has filled as far as possible. None names or excludes a package where
-/// it can do without: cargo would leave out the features that other packages ask of shared crates, and compile all of
-/// them anew. So the four that test all formats of logs select all packages, and share what they compile.
+/// The steps. Each uses a target folder that earlier steps have filled as far as possible. Steps do not select packages
+/// if they can avoid it, because cargo would then drop the features that other packages ask of shared crates and
+/// compile all of them again. The four steps that test all formats of logs select all packages and share the compiled
+/// code.
 const STEPS: &[Step] = &[
     Step {
         name: "intervals",
@@ -349,7 +351,7 @@ impl Verify {
 }
 
 impl Step {
-    /// The command, as it is typed.
+    /// Returns the command as a person types it.
     fn words(&self, oldest: &str) -> String {
         let quoted = |value: &str| if value.contains(' ') { format!("'{value}'") } else { value.to_owned() };
         let variables = self.variables.iter().map(|(name, value)| format!("{name}={}", quoted(value)));
@@ -371,13 +373,13 @@ impl Step {
         }
         let (program, arguments) = command.split_first().expect("a command has a program");
         let command = machine::without_flags(cmd!(shell, "{program} {arguments...}")).quiet();
-        // this program runs in the toolchain of its caller
+        // the command chooses its own toolchain, not the one in which this program was started
         let command = command.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO").envs(self.variables.iter().copied());
         Ok(command.run().is_ok())
     }
 }
 
-/// The names of the tests of packages that are no default members of the workspace, as cargo tells them.
+/// Returns the names of the tests of all packages that are not default members of the workspace, from cargo's metadata.
 fn tests_of_rest() -> Result<Vec<String>> {
     let shell = machine::shell()?;
     let metadata = cmd!(shell, "cargo metadata --no-deps --format-version 1").quiet().read()?;
@@ -391,7 +393,7 @@ fn tests_of_rest() -> Result<Vec<String>> {
 }
 
 impl Needs {
-    /// Why a step cannot be done.
+    /// Returns why the requirement is not met; `None` if it is met.
     fn lack(&self, oldest: &str, install: bool) -> Option<String> {
         match self {
             Self::Nothing => None,

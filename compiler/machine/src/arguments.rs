@@ -1,33 +1,34 @@
-//! The arguments of many states, in a caller's arrays.
+//! The arguments of a function for many states, in arrays of the caller.
 
 use core::ops::Range;
 
 use rne_codegen::ArgumentPart;
 use rne_runtime::machine::Source;
 
-/// An argument of many states: its elements, a number per joint most often, for each of them.
+/// An argument for many states: its elements, most often one number per joint, for each state.
 #[derive(Clone, Copy, Debug)]
 pub enum Array<'a, T> {
-    /// All elements of a state one after the other, then the next state's: `q[state][joint]`. States that are arrays,
-    /// such as `states: Vec<[f64; 7]>`, are given as they are: `.q(&states)`.
+    /// All elements of the first state, then all of the next one: `q[state][joint]`. States that are arrays, such as
+    /// `states: Vec<[f64; 7]>`, can be given directly: `.q(&states)`.
     Rows(&'a [T]),
-    /// One slice per element, and in it one number per state: `q[joint][state]`. It is read fastest.
+    /// One slice per element, with one number per state: `q[joint][state]`. This layout is read fastest.
     Columns(&'a [&'a [T]]),
-    /// The elements of every state.
+    /// The elements of one state, which all states have in common.
     Same(&'a [T]),
     /// Element `j` of state `s` is at `s * state + j * element`.
     Strided {
-        /// The numbers, the first state's first element first.
+        /// The numbers, from the first element of the first state on.
         numbers: &'a [T],
-        /// How far apart states are.
+        /// The distance from one state to the next, in numbers.
         state: usize,
-        /// How far apart elements are.
+        /// The distance from one element to the next, in numbers.
         element: usize,
     },
 }
 
 impl<'a, T> Array<'a, T> {
-    /// Some elements of a larger array as an array of its own, such as the force of a wrench.
+    /// Returns some elements of a larger array as an array, such as the force of a wrench. `elements` is the number of
+    /// elements of the larger array for each state.
     #[must_use]
     pub fn part(self, elements: usize, range: Range<usize>) -> Self {
         match self {
@@ -43,16 +44,17 @@ impl<'a, T> Array<'a, T> {
         }
     }
 
-    /// Whether it has that number of elements for each of these states.
+    /// Whether the array has this number of elements for each of these states.
     pub(crate) fn has(&self, elements: usize, states: usize) -> bool {
         match *self {
             Array::Columns(columns) => columns.len() == elements && columns.iter().all(|column| column.len() == states),
-            // all elements are as far as one
+            // all elements have the same number of states, so it is enough to test the first
             _ => elements == 0 || self.source(0, elements, states).is_some(),
         }
     }
 
-    /// One element of all states; `elements` is their number per state. `None` when the array is too short.
+    /// Returns one element of all states; `elements` is the number of elements per state. `None` if the array is too
+    /// short.
     pub(crate) fn source(&self, element: usize, elements: usize, states: usize) -> Option<Source<'a, T>> {
         match *self {
             Array::Rows(numbers) => {
@@ -72,7 +74,7 @@ impl<'a, T> Array<'a, T> {
         }
     }
 
-    /// One element of one state; `elements` is their number per state.
+    /// Returns one element of one state; `elements` is the number of elements per state.
     pub(crate) fn number(&self, element: usize, elements: usize, state: usize, states: usize) -> Option<&'a T> {
         match self.source(element, elements, states)? {
             Source::Column(numbers) => numbers.get(state),
@@ -82,21 +84,21 @@ impl<'a, T> Array<'a, T> {
 }
 
 impl<'a, T, const N: usize> From<&'a [[T; N]]> for Array<'a, T> {
-    /// States that are arrays.
+    /// Converts states that are arrays.
     fn from(states: &'a [[T; N]]) -> Self {
         Self::Rows(states.as_flattened())
     }
 }
 
 impl<'a, T, const N: usize, const STATES: usize> From<&'a [[T; N]; STATES]> for Array<'a, T> {
-    /// States that are arrays.
+    /// Converts states that are arrays.
     fn from(states: &'a [[T; N]; STATES]) -> Self {
         Self::Rows(states.as_flattened())
     }
 }
 
 impl<'a, T, const N: usize> From<&'a Vec<[T; N]>> for Array<'a, T> {
-    /// States that are arrays.
+    /// Converts states that are arrays.
     fn from(states: &'a Vec<[T; N]>) -> Self {
         Self::Rows(states.as_flattened())
     }
@@ -111,7 +113,8 @@ macro_rules! arguments {
     ($(
         $name:ident: $argument:ident, $owner:ident [$($quantity:ident * $count:literal),*], $about:literal;
     )*) => {
-        /// The arguments of a function, by name. What it does not take may be there and is not read.
+        /// The arguments of a function, by name. Arguments that the function does not take may be given; they are not
+        /// read.
         ///
         /// ```
         /// use rne_machine::{Arguments, Array};
@@ -128,7 +131,7 @@ macro_rules! arguments {
             arrays: [Option<Array<'a, T>>; ARGUMENTS.len()],
         }
 
-        /// The places of the arguments.
+        /// The places of the arguments in `arrays`.
         #[allow(non_camel_case_types)] // they are called as the arguments
         enum Place { $($name,)* parameters }
 
@@ -154,7 +157,7 @@ macro_rules! arguments {
 rne_codegen::argument_parts!(arguments);
 
 impl<'a, T> Arguments<'a, T> {
-    /// Begins without any argument.
+    /// Returns a list without any argument.
     #[must_use]
     pub const fn new() -> Self {
         Self { arrays: [const { None }; ARGUMENTS.len()] }
@@ -165,24 +168,24 @@ impl<'a, T> Arguments<'a, T> {
         self
     }
 
-    /// The argument of a name; `None` when there is no such argument, and nothing has changed then.
+    /// Sets the argument with a name; `None` if there is no such argument.
     #[must_use]
     pub fn with(self, name: &str, array: Array<'a, T>) -> Option<Self> {
         place(name).map(|place| self.with_array(place, array))
     }
 
-    /// The argument of a part of the table.
+    /// Sets the argument of a part of the table of arguments.
     pub(crate) fn of_part(self, part: &ArgumentPart, array: Array<'a, T>) -> Self {
         self.with_array(part.place, array)
     }
 
-    /// The argument at a place.
+    /// Returns the argument at a place in the list.
     pub(crate) fn at(&self, place: usize) -> Option<&Array<'a, T>> {
         self.arrays.get(place)?.as_ref()
     }
 }
 
-/// Where the argument of a name is among all.
+/// Returns the place of the argument with a name among all arguments.
 pub(crate) fn place(name: &str) -> Option<usize> {
     ARGUMENTS.iter().position(|argument| *argument == name)
 }

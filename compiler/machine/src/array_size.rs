@@ -1,4 +1,4 @@
-//! Arrays of another size than a function needs.
+//! The error of an array whose size a function does not accept.
 
 use std::fmt;
 
@@ -10,33 +10,33 @@ use crate::arguments::Array;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum WrongSize {
-    /// The array has another count of numbers.
+    /// The array has another number of numbers.
     Numbers {
-        /// How many a function needs; of strided numbers, at least.
+        /// The number of numbers that the function needs; for strided numbers at least so many.
         needed: usize,
-        /// How many were given.
+        /// The number of numbers that were given.
         given: usize,
     },
-    /// There is another count of columns.
+    /// The array has another number of columns.
     Columns {
-        /// How many a function needs.
+        /// The number of columns that the function needs.
         needed: usize,
-        /// How many were given.
+        /// The number of columns that were given.
         given: usize,
     },
-    /// A column does not have a number for each state.
+    /// A column does not have one number for each state.
     Column {
         /// The first such column, counted from 1.
         column: usize,
-        /// How many numbers a function needs: the number of states.
+        /// The number of numbers that the column needs: the number of states.
         needed: usize,
-        /// How many were given.
+        /// The number of numbers in the column.
         given: usize,
     },
 }
 
 impl WrongSize {
-    /// The size of an array that does not have that number of elements for each of these states.
+    /// Returns the error for an argument that does not have this number of elements for each of these states.
     pub(crate) fn of_argument<T>(array: &Array<'_, T>, elements: usize, states: usize) -> Self {
         match *array {
             Array::Rows(numbers) => Self::Numbers { needed: elements.saturating_mul(states), given: numbers.len() },
@@ -50,7 +50,7 @@ impl WrongSize {
         }
     }
 
-    /// The size of memory that does not have room for these results of each state.
+    /// Returns the error for an array of results that has no room for these results of each state.
     pub(crate) fn of_results<T>(results: &Destination<'_, T>, outputs: usize, states: usize) -> Self {
         match results {
             Destination::Rows(numbers) => {
@@ -74,7 +74,7 @@ impl WrongSize {
 }
 
 impl fmt::Display for WrongSize {
-    /// The second half of a sentence, whose first half says what an array must have.
+    /// Writes the second half of a sentence; the first half says what the array must have.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Numbers { needed, given } => write!(f, "{given} were given and {needed} are needed"),

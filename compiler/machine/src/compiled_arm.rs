@@ -1,4 +1,4 @@
-//! An arm that is known at run time only, with all its functions.
+//! An arm whose robot file is read at run time, with all its functions.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -14,11 +14,12 @@ use rne_search::PlanFile;
 
 use crate::{Arguments, ArmError, CompiledFunction, EvaluationError, Number};
 
-/// An arm, serial or a tree, that is read when the program runs, and computes nearly as fast as one that is derived:
-/// every function is compiled when it is first called, once, from whatever thread, and runs on the widest vector unit.
+/// An arm, serial or a tree, that is read when the program runs. It is nearly as fast as code that is generated when
+/// the program is built: each function is compiled once, at its first call from any thread, and uses the widest vector
+/// unit.
 ///
-/// [`run`](Self::run) computes many states of any function. The methods with the functions' own names compute one, and
-/// take and return what `DynArm` does. Clones share what has been compiled.
+/// [`run`](Self::run) computes many states of any function. The methods that are named after the functions compute one
+/// state; they have the arguments and results of the methods of `DynArm`. Clones share the compiled functions.
 ///
 /// ```
 /// use rne_machine::{Arguments, Array, CompiledArm, Destination, Function};
@@ -50,17 +51,18 @@ struct Compiled {
     form: Form,
     /// The plan file, if one was given.
     file: Option<PlanFile>,
-    /// Plans of the plan file, or plans that are chosen at the first use.
+    /// The plans of the plan file, or those that were chosen when a function first needed them.
     plans: OnceLock<PlanSet>,
     functions: Box<[OnceLock<Result<CompiledFunction, CompileError>>]>,
-    /// This arm at the frames that were asked for.
+    /// This arm at other frames, for each frame for which it was requested.
     at: Mutex<Vec<(FrameId, CompiledArm)>>,
 }
 
-/// Arms that were read before, the latest last, by what was read: the same text gives the same arm, compiled.
+/// The arms that were read before, the latest last, with the text from which they were read: if the same text is read
+/// again, the same arm is returned, with its compiled functions.
 static READ: Mutex<VecDeque<(Content, CompiledArm)>> = Mutex::new(VecDeque::new());
 
-/// How many of them are kept.
+/// Largest number of arms in `READ`.
 const KEPT: usize = 32;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -69,7 +71,7 @@ struct Content {
     plan: Option<Vec<u8>>,
 }
 
-/// A robot file and the plan file beside it, where there is one, as they were when they were read.
+/// The bytes of a robot file and of the plan file next to it, if there is one, at the time when they were read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RobotFiles {
     path: PathBuf,
@@ -78,7 +80,7 @@ pub struct RobotFiles {
 }
 
 impl RobotFiles {
-    /// Reads both. A relative `path` starts at the working directory.
+    /// Reads both files. A relative `path` starts at the working directory.
     ///
     /// # Errors
     /// When a file cannot be read.
@@ -91,13 +93,13 @@ impl RobotFiles {
         Ok(Self { path, robot, plan })
     }
 
-    /// The bytes of the robot file.
+    /// Returns the bytes of the robot file.
     #[must_use]
     pub fn robot(&self) -> &[u8] {
         &self.robot
     }
 
-    /// The bytes of the plan file.
+    /// Returns the bytes of the plan file; `None` if there is none.
     #[must_use]
     pub fn plan(&self) -> Option<&[u8]> {
         self.plan.as_deref()
@@ -105,37 +107,38 @@ impl RobotFiles {
 }
 
 impl CompiledArm {
-    /// The arm of the text of a robot file. An arm that this process has read before is there at once.
+    /// Reads an arm from the text of a robot file. If this process has read the same text before, returns that arm at
+    /// once.
     ///
     /// # Errors
-    /// Everything that is wrong with the text.
+    /// When the text is not a valid robot file; the report lists all mistakes.
     pub fn from_yaml(text: &str) -> Result<Self, ArmError> {
         Self::read("robot file", Content { robot: text.into(), plan: None }, "")
     }
 
-    /// The arm of a robot file, by the choices of its plan file where there is one beside it. A relative `path` starts
-    /// at the working directory.
+    /// Reads an arm from a robot file, with the choices of the plan file next to it, if there is one. A relative `path`
+    /// starts at the working directory.
     ///
     /// # Errors
-    /// When a file cannot be read, or everything that is wrong with it.
+    /// When a file cannot be read or is not valid; the report lists all mistakes.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, ArmError> {
         Self::from_files(&RobotFiles::read(path)?)
     }
 
-    /// The arm of files that have been read: for who asks for their bytes besides, of a hash say.
+    /// Reads an arm from files that were read before; for callers that also need their bytes, such as for a hash.
     ///
     /// # Errors
-    /// Everything that is wrong with them.
+    /// When a file is not valid; the report lists all mistakes.
     pub fn from_files(files: &RobotFiles) -> Result<Self, ArmError> {
         let RobotFiles { path, robot, plan } = files;
         let content = Content { robot: robot.clone(), plan: plan.clone() };
         Self::read(&path.display().to_string(), content, &plan_of(path).display().to_string())
     }
 
-    /// The arm of the text of a robot file, by the choices of the text of its plan file.
+    /// Reads an arm from the text of a robot file, with the choices of the text of its plan file.
     ///
     /// # Errors
-    /// Everything that is wrong with the texts.
+    /// When a text is not valid; the report lists all mistakes.
     pub fn with_plan(robot: &str, plan: &str) -> Result<Self, ArmError> {
         Self::read("robot file", Content { robot: robot.into(), plan: Some(plan.into()) }, "plan")
     }
@@ -154,7 +157,7 @@ impl CompiledArm {
         };
         let arm = Self::new(robot, Form::Reduced, plan, None);
         let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
-        // another thread may have read it meanwhile: one arm for all
+        // another thread may have read it meanwhile; then both return the same arm
         if let Some(arm) = known(&read) {
             return Ok(arm);
         }
@@ -165,13 +168,13 @@ impl CompiledArm {
         Ok(arm)
     }
 
-    /// The arm of a robot file that has been read otherwise, with parameters that stay free, say.
+    /// Returns the arm of a robot that was read in another way, such as with run-time parameters.
     #[must_use]
     pub fn from_robot(robot: &Robot) -> Self {
         Self::new(robot.clone(), Form::Reduced, None, None)
     }
 
-    /// `plans` are those that were chosen before, where no file has them.
+    /// Returns a new arm. `plans` are plans that were chosen before; they are used if there is no plan file.
     fn new(robot: Robot, form: Form, file: Option<PlanFile>, plans: Option<PlanSet>) -> Self {
         let plans = file.clone().map(PlanSet::from).or(plans).map_or_else(OnceLock::new, OnceLock::from);
         let functions = Function::ALL.iter().map(|_| OnceLock::new()).collect();
@@ -194,22 +197,24 @@ impl CompiledArm {
         Self::new(self.0.robot.clone(), self.0.form, Some(plan), None)
     }
 
-    /// The plan file by which it is compiled: one that was read, or that a [search](Self::search) has found.
+    /// Returns the plan file with whose choices the arm is compiled: one that was read, or the result of a
+    /// [search](Self::search).
     #[must_use]
     pub fn plan(&self) -> Option<&PlanFile> {
         self.0.file.as_ref()
     }
 
-    /// Returns this arm with the rotors of its motors in every function that they affect.
+    /// Returns this arm with the inertia of its motors' rotors in every function that it affects.
     #[must_use]
     pub fn with_rotors(&self) -> Self {
         let Compiled { robot, form, file, plans, .. } = &*self.0;
         Self::new(robot.clone().with_rotors(), *form, file.clone(), plans.get().cloned())
     }
 
-    /// Returns this arm with a frame in the place of the tip: the functions of a frame, such as
-    /// [`jacobian`](Self::jacobian), are those of the frame. Other functions stay those of the tip. `name` is that of a
-    /// frame in the list `frames` of the robot file, or that of a joint for its link frame. The same frame asked for
+    /// Returns this arm with a frame in the place of the tip: the functions that are about a frame, such as
+    /// [`jacobian`](Self::jacobian), are then about this frame. Other functions do not change. `name` is that of a
+    /// frame in the list `frames` of the robot file, or that of a joint for its link frame. If the same frame is
+    /// requested again, the same arm is returned, with its compiled functions.
     /// again gives the same arm, compiled.
     ///
     /// # Errors
@@ -226,41 +231,41 @@ impl CompiledArm {
         Ok(arm)
     }
 
-    /// The table.
+    /// Returns the robot.
     #[must_use]
     pub fn robot(&self) -> &Robot {
         &self.0.robot
     }
 
-    /// Number of joints.
+    /// Returns the number of joints.
     #[must_use]
     pub fn dof(&self) -> usize {
         self.0.robot.dof()
     }
 
-    /// The shape of what a function returns for this arm.
+    /// Returns the shape of a function's result for this arm.
     #[must_use]
     pub fn layout(&self, function: Function) -> Layout {
         function.layout(rne_codegen::sizes_of(&self.0.robot))
     }
 
-    /// How its functions are computed.
+    /// Returns the form in which its functions are computed.
     #[must_use]
     pub fn form(&self) -> Form {
         self.0.form
     }
 
-    /// A function, compiled now if it has not been before.
+    /// Returns a function; it is compiled now if it was not before.
     ///
     /// # Errors
-    /// When it cannot be compiled for this robot: its numbers overflow, say; when it needs a floating base, and the
-    /// file has none.
+    /// When the function cannot be compiled for this robot: for example if its numbers overflow, or if the function
+    /// needs a floating base and the file has none.
     pub fn function(&self, function: Function) -> Result<&CompiledFunction, EvaluationError> {
         let Compiled { robot, form, file, plans, functions, .. } = &*self.0;
         let compiled = functions[function as usize].get_or_init(|| {
             function.check_for(robot)?;
             let mut compiler = Compiler::new(robot).for_target(Target::Throughput);
-            // what has no plan does not wait until one is found
+            // a function that does not depend on plans does not choose them, which takes time
             if *form == Form::Reduced && (file.is_some() || Algorithm::is_planned(function)) {
                 compiler = compiler.with_plans(plans.get_or_init(|| PlanSet::default_of(robot)).clone());
             }
@@ -271,11 +276,11 @@ impl CompiledArm {
 
     /// Computes a function for a number of states on the widest vector unit.
     ///
-    /// The numbers of a result stand in the order of the function's [layout](Function::layout), matrices row by row.
+    /// The numbers of a result are in the order of the function's [layout](Function::layout), matrices row by row.
     ///
     /// # Errors
-    /// When the function cannot be compiled, an argument is missing, has another size or is
-    /// [out of range](crate::OutOfRange), or when the room for the results has another size.
+    /// When the function cannot be compiled, when an argument is missing, has another size or is [out of
+    /// range](crate::OutOfRange), or when `results` has another size.
     pub fn run<T: Number>(
         &self,
         function: Function,

@@ -1,4 +1,4 @@
-//! One function of one arm, ready to run.
+//! One compiled function of one arm.
 
 use rne_codegen::{CompileError, Program};
 use rne_runtime::VectorUnit;
@@ -6,20 +6,21 @@ use rne_runtime::machine::{Destination, Source};
 
 use crate::{Arguments, Array, EvaluationError, Machine, Number, OutOfRange, WrongSize, arguments};
 
-/// As many inputs find room on the stack: those of an arm of twenty joints, of most functions.
+/// Up to this number of inputs an array on the stack is used: it is enough for most functions of an arm with twenty
+/// joints.
 const FEW: usize = 64;
 
-/// A function of an arm that was compiled when it was first asked for.
+/// A function of an arm, compiled when it is first used.
 #[derive(Clone, Debug)]
 pub struct CompiledFunction {
     program: Program,
     machine: Machine,
     arrays: Vec<(&'static str, usize)>,
-    /// The places of the arrays among all arguments.
+    /// The place of each of these arrays among all arguments.
     places: Vec<usize>,
-    /// The array and the element of it that each input of the machine is.
+    /// For each input of the machine: its array, and its element there.
     inputs: Vec<(usize, usize)>,
-    /// The arrays of sines and cosines, and the joints of which the machine uses one.
+    /// The arrays of sines and cosines, and the joints of which the machine uses at least one of both.
     turns: Option<([usize; 2], Vec<usize>)>,
     #[cfg(feature = "native")]
     natives: std::sync::Arc<crate::number::natively::Natives>,
@@ -61,7 +62,7 @@ impl CompiledFunction {
         })
     }
 
-    /// The program that it runs: its statements, counts, constants.
+    /// Returns the program that it runs, with its statements, counts and constants.
     #[must_use]
     pub fn program(&self) -> &Program {
         &self.program
@@ -73,30 +74,31 @@ impl CompiledFunction {
         &self.machine
     }
 
-    /// The arguments that it takes and how many elements each has, in order.
+    /// Returns the arguments that the function takes, in order, each with its number of elements.
     #[must_use]
     pub fn arguments(&self) -> &[(&'static str, usize)] {
         &self.arrays
     }
 
-    /// How many numbers it returns for a state.
+    /// Returns the number of results of one state.
     #[must_use]
     pub fn outputs(&self) -> usize {
         self.program.outputs.len()
     }
 
-    /// Makes ready what [`run_one`](Self::run_one) needs in this precision, which its first call does otherwise: with
-    /// the feature `native` the instructions of the processor, in a millisecond or two for the torques of an arm.
+    /// Prepares [`run_one`](Self::run_one) in this precision, so that its first call does not have to: with the feature
+    /// `native` this compiles the function to instructions of the processor, which takes a millisecond or two for the
+    /// torques of an arm.
     pub fn prepare<T: Number>(&self) {
         #[cfg(feature = "native")]
         T::prepare(&self.natives, &self.program);
     }
 
-    /// Computes a number of states, on all cores with the feature `rayon`.
+    /// Computes a number of states; with the feature `rayon`, on all cores.
     ///
     /// # Errors
-    /// When an argument is missing, has another size or is [out of range](OutOfRange), or when the room for the results
-    /// has another size.
+    /// When an argument is missing, has another size or is [out of range](OutOfRange), or when `results` has another
+    /// size.
     pub fn run<T: Number>(
         &self,
         unit: VectorUnit,
@@ -118,13 +120,13 @@ impl CompiledFunction {
         self.machine.code().run(unit, states, &sources, results).map_err(|_| room)
     }
 
-    /// Computes one state, the first of the arguments: with the bits it has among many. With the feature `native` as
-    /// instructions of the processor, compiled when it is first asked for. With up to 64 inputs nothing is allocated
-    /// but what the thread keeps of its first call.
+    /// Computes one state, the first of the arguments; the results have the same bits as those of [`run`](Self::run).
+    /// With the feature `native` it runs instructions of the processor, which are compiled at the first call. With up
+    /// to 64 inputs it allocates nothing, except at the first call of a thread.
     ///
     /// # Errors
-    /// When an argument is missing, has another size or is [out of range](OutOfRange), or when the room for the results
-    /// has another size.
+    /// When an argument is missing, has another size or is [out of range](OutOfRange), or when `results` has another
+    /// size.
     pub fn run_one<T: Number>(
         &self,
         unit: VectorUnit,
@@ -156,8 +158,8 @@ impl CompiledFunction {
         self.machine.code().run_one(unit, inputs, results).map_err(|_| room)
     }
 
-    /// Refuses what [`run`](Self::run) refuses of the arguments of these states, whether the program uses them or
-    /// not. Who computes states in parts asks this once before the first part.
+    /// Checks the arguments of these states as [`run`](Self::run) does, also those that the program does not use. A
+    /// caller that computes states in parts calls this once before the first part.
     ///
     /// # Errors
     /// When an argument is missing, has another size, or is [out of range](OutOfRange).
@@ -179,7 +181,7 @@ impl CompiledFunction {
         Ok(())
     }
 
-    /// The array of the argument at `index`.
+    /// Returns the array of the argument at `index`.
     fn given<'a, 'b, T>(
         &self,
         index: usize,
@@ -189,7 +191,8 @@ impl CompiledFunction {
         arguments.at(self.places[index]).ok_or(EvaluationError::Missing { function, argument })
     }
 
-    /// The array of the argument at `index`, which has this number of elements for each state.
+    /// Returns the array of the argument at `index`, after a check that it has this number of elements for each state
+    /// and that its numbers are in range.
     pub(crate) fn checked<'a, 'b, T: Number>(
         &self,
         index: usize,
@@ -203,7 +206,7 @@ impl CompiledFunction {
             return Err(refused(argument, array, elements, states));
         }
         if OutOfRange::elements(argument) > 0 {
-            // one row for all is looked at once
+            // numbers that all states share are checked once
             let rows = if matches!(array, Array::Same(_)) { states.min(1) } else { states };
             for state in 0..rows {
                 let number = |element| array.number(element, elements, state, states).map(|&number| number.into());
@@ -214,13 +217,13 @@ impl CompiledFunction {
         Ok(array)
     }
 
-    /// The array and the element of it that each input of the machine is.
+    /// Returns, for each input of the machine, its array and its element there.
     pub(crate) fn inputs(&self) -> &[(usize, usize)] {
         &self.inputs
     }
 }
 
-/// The refusal of an array of another size.
+/// Returns the error for an argument of another size.
 fn refused<T>(argument: &'static str, array: &Array<'_, T>, elements: usize, states: usize) -> EvaluationError {
     let size = WrongSize::of_argument(array, elements, states);
     EvaluationError::Argument { argument, elements, states, size }

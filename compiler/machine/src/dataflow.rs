@@ -1,4 +1,4 @@
-//! A program as the machine and native code take it: its own values, with products fused where that is allowed.
+//! The values of a program for the machine and for native code, with products fused into sums where that is allowed.
 
 use rne_codegen::fma::{self, Fusing};
 use rne_codegen::{Contraction, Form, Name, Negated, Program, Value, ValueId, Values};
@@ -7,18 +7,18 @@ use rne_codegen::{Contraction, Form, Name, Negated, Program, Value, ValueId, Val
 #[derive(Debug)]
 pub(crate) struct Dataflow {
     pub(crate) values: Values,
-    /// The angles whose sines and cosines are evaluated, all at once.
+    /// The angles whose sines and cosines are computed; all of them are computed at once.
     pub(crate) angles: Vec<ValueId>,
-    /// How many values stand before the first sine or cosine.
+    /// The number of values before the first sine or cosine.
     pub(crate) before_turns: usize,
     pub(crate) outputs: Vec<ValueId>,
-    /// The arguments, which are the first values.
+    /// The names of the arguments, which are the first values.
     pub(crate) inputs: Vec<Name>,
 }
 
 impl Dataflow {
-    /// Takes a program. In the reduced form, where the order of terms is free, a product that is added is one operation
-    /// with its sum; in the seven steps each is rounded by itself, as the runtime rounds it.
+    /// Converts a program. In the reduced form, where the order of terms is free, a product and the sum to which it is
+    /// added become one fused operation. In the seven steps, each is rounded by itself, as the runtime does it.
     pub(crate) fn of(program: &Program) -> Self {
         let fused = (program.form == Form::Reduced).then(|| fma::fused(program, Fusing::All));
         let program = fused.as_ref().unwrap_or(program);
@@ -38,7 +38,8 @@ impl Dataflow {
         }
     }
 
-    /// The values from which one is computed. Sines and cosines are not: all are evaluated at once.
+    /// Returns the values from which a value is computed; none for a sine or cosine, because all of them are computed
+    /// at once.
     pub(crate) fn operands(&self, id: ValueId) -> Vec<ValueId> {
         match self.values.get(id) {
             Value::Sine(_) | Value::Cosine(_) => Vec::new(),
@@ -46,7 +47,7 @@ impl Dataflow {
         }
     }
 
-    /// Whether something is computed for a value by itself.
+    /// Whether a value is the result of an operation of its own.
     pub(crate) fn is_computed(&self, id: ValueId) -> bool {
         !self.operands(id).is_empty()
     }
@@ -60,12 +61,12 @@ impl Dataflow {
         matches!(self.values.get(id), Value::Sine(_) | Value::Cosine(_))
     }
 
-    /// The number that a constant is.
+    /// Returns the number of a constant; `None` for other values.
     pub(crate) fn constant(&self, id: ValueId) -> Option<f64> {
         if let Value::Constant(number) = self.values.get(id) { Some(number) } else { None }
     }
 
-    /// The values that the outputs depend on, and the angles.
+    /// Returns for each value whether the outputs or the angles depend on it.
     pub(crate) fn live(&self) -> Vec<bool> {
         let mut is_live = vec![false; self.values.len()];
         let mut open: Vec<ValueId> = self.outputs.iter().chain(&self.angles).copied().collect();
@@ -78,13 +79,13 @@ impl Dataflow {
     }
 }
 
-/// The value that another name stands for.
+/// Returns the value to which `id` refers if it is only another name for it, otherwise `id`.
 fn unaliased(values: &Values, id: ValueId) -> ValueId {
     if let Value::Same(of) = values.get(id) { of } else { id }
 }
 
-/// The same value without minus signs that cost something: z + (-x) y is z - x y, to the bit; only (-x) y - z has no
-/// operation of its own.
+/// Returns the same value with fewer negations: z + (-x) y is computed as z - x y, with the same bits. Only (-x) y - z
+/// has no operation without a negation.
 fn without_signs(values: &Values, value: Value) -> Value {
     match value {
         Value::Negative(a) => match values.get(a) {
@@ -93,7 +94,7 @@ fn without_signs(values: &Values, value: Value) -> Value {
         },
         Value::Fused(Contraction { factors: [x, y], addend, negated: negated @ (None | Some(Negated::Factor)) }) => {
             match values.get(x) {
-                // what has a name is computed all the same
+                // a negated value with a name is computed in any case, so nothing would be saved
                 Value::Negative(of) if values.name(x).is_none() => {
                     let negated = if negated.is_none() { Some(Negated::Factor) } else { None };
                     Value::Fused(Contraction { factors: [of, y], addend, negated })

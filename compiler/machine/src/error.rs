@@ -1,4 +1,4 @@
-//! Errors of an arm at run time, and of a call.
+//! Errors of reading an arm at run time, and of computing a function.
 
 use std::error::Error;
 use std::fmt;
@@ -10,7 +10,7 @@ use rne_model::Report;
 
 use crate::{OutOfRange, WrongSize};
 
-/// Why a file gave no arm.
+/// Why no arm could be read from a file.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum ArmError {
@@ -21,7 +21,7 @@ pub enum ArmError {
         /// Error of the operating system.
         error: io::Error,
     },
-    /// The robot file or its plan is wrong; the report has line, column and what is allowed.
+    /// The robot file or its plan is not valid; the report has the line, the column and what is allowed.
     Invalid(Report),
 }
 
@@ -35,7 +35,8 @@ impl fmt::Display for ArmError {
 }
 
 impl Error for ArmError {
-    /// Returns the error of the operating system; a report is shown as it is, without words of this error.
+    /// Returns the error of the operating system. For a report, returns its source, because the report is displayed
+    /// without words of this error.
     fn source(&self) -> Option<&(dyn Error + 'static)> {
         match self {
             Self::Unreadable { error, .. } => Some(error),
@@ -50,13 +51,13 @@ impl From<Report> for ArmError {
     }
 }
 
-/// Why a function computed nothing. Nothing has been written then.
+/// Why a function computed nothing. In this case no result has been written.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum EvaluationError {
     /// The function cannot be compiled for this robot.
     Compile(CompileError),
-    /// An argument that the function takes is not there.
+    /// An argument that the function takes is missing.
     Missing {
         /// The function.
         function: Function,
@@ -67,29 +68,29 @@ pub enum EvaluationError {
     Argument {
         /// The argument.
         argument: &'static str,
-        /// How many elements it has for each state.
+        /// The number of elements that the argument has for each state.
         elements: usize,
-        /// How many states there are.
+        /// The number of states.
         states: usize,
-        /// How many numbers were given.
+        /// How the size of the array differs.
         size: WrongSize,
     },
-    /// An argument has numbers that it cannot have.
+    /// An argument has numbers that are not allowed.
     OutOfRange {
-        /// The mistake.
+        /// The numbers and why they are not allowed.
         mistake: OutOfRange,
-        /// The first state that has them, counted from 1.
+        /// The first state with such numbers, counted from 1.
         state: usize,
-        /// How many states there are.
+        /// The number of states.
         states: usize,
     },
-    /// The room for the results has another size.
+    /// The array for the results has another size.
     Room {
-        /// How many numbers the function returns for each state.
+        /// The number of results of the function for each state.
         outputs: usize,
-        /// How many states there are.
+        /// The number of states.
         states: usize,
-        /// How many numbers the room has.
+        /// How the size of the array differs.
         size: WrongSize,
     },
 }
@@ -113,7 +114,7 @@ impl fmt::Display for EvaluationError {
     }
 }
 
-/// The words for the states that numbers are of; none for one state.
+/// Returns the words that say for how many states numbers are needed; empty for one state.
 fn of_states(states: usize) -> String {
     if states == 1 { String::new() } else { format!(" for each of {states} states") }
 }

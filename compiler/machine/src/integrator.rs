@@ -1,19 +1,20 @@
-//! The step of the classical Runge-Kutta method, by calls of the accelerations and of their derivatives.
+//! Steps of the classical Runge-Kutta method, which call the accelerations and their derivatives.
 
 use rne_runtime::integrators;
 
 use crate::results::{NextState, NextStateDerivatives, StepDerivatives};
 use crate::{CompiledArm, EvaluationError, Number, OutOfRange};
 
-/// Refuses a step that is not a finite number above zero.
+/// Refuses a duration that is not a finite number above zero.
 fn check<T: Number>(step: T) -> Result<(), EvaluationError> {
     let wrong = |mistake| EvaluationError::OutOfRange { mistake, state: 1, states: 1 };
     OutOfRange::check("step", |_| Some(step.into())).map_err(wrong)
 }
 
 impl CompiledArm {
-    /// A step of the classical Runge-Kutta method of the duration `step`, s, under torques that do not change during
-    /// the step. It computes the accelerations at four states; the error of a motion is of order h⁴.
+    /// Returns the state after a step of the classical Runge-Kutta method of the duration `step`, s, under torques that
+    /// are constant during the step. It computes the accelerations at four states; the error of a motion is of order
+    /// h⁴.
     ///
     /// # Errors
     /// When an argument does not have one element per joint, when the step is not a finite number above zero, or when
@@ -31,8 +32,8 @@ impl CompiledArm {
         Ok(NextState { q, qd })
     }
 
-    /// The derivatives of [`runge_kutta_step`](Self::runge_kutta_step) by q, q̇ and τ, exact up to rounding. It computes
-    /// the accelerations three times and their derivatives four times.
+    /// Returns the derivatives of [`runge_kutta_step`](Self::runge_kutta_step) with respect to q, q̇ and τ, exact up to
+    /// rounding. It computes the accelerations three times and their derivatives four times.
     ///
     /// # Errors
     /// When an argument does not have one element per joint, when the step is not a finite number above zero, or when

@@ -1,8 +1,8 @@
-//! Compiled functions of a robot inside the running program, for arms that are known only at run time.
+//! Compiles functions of a robot inside the running program, for arms that are known only at run time.
 //!
-//! A [`Machine`] is made from a [`Program`] in some ten microseconds. Safe code interprets it over blocks of states, on
-//! the widest vector unit of the processor. With the feature `native`, `Native` computes single states at the speed of
-//! derived code.
+//! A [`Machine`] is created from a [`Program`] in some ten microseconds. It is safe code that interprets the program
+//! for blocks of states, on the widest vector unit of the processor. With the feature `native`, `Native` computes
+//! single states at the speed of code that is generated when the program is built.
 //!
 //! ```
 //! use rne_codegen::{Compiler, Form, Function, Target};
@@ -63,7 +63,7 @@ use dataflow::Dataflow;
 pub use native::{Native, NativeError};
 pub use number::Number;
 
-/// A program made ready to run over many states.
+/// A program in a form that is executed for many states.
 #[derive(Clone, Debug)]
 pub struct Machine {
     code: Code,
@@ -71,8 +71,8 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Makes a machine of a program; those for [`Target::Throughput`](rne_codegen::Target) are the fastest. `None` when
-    /// it would need more than 2³² values at once.
+    /// Creates a machine for a program; programs for [`Target::Throughput`](rne_codegen::Target) are the fastest.
+    /// `None` if it would need more than 2³² values at once.
     #[must_use]
     pub fn new(program: &Program) -> Option<Self> {
         let dataflow = Dataflow::of(program);
@@ -80,7 +80,7 @@ impl Machine {
         Some(Self { code, inputs: dataflow.inputs })
     }
 
-    /// Returns the code that it runs.
+    /// Returns the code that the machine executes.
     #[must_use]
     pub fn code(&self) -> &Code {
         &self.code

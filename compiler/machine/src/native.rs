@@ -1,13 +1,13 @@
-//! One state at a time, as instructions of the processor.
+//! Computes one state at a time, as instructions of the processor.
 //!
-//! The machine reads every instruction once for a block of states; a single state pays for the reading alone.
-//! [`Native`] is the same program without it: Cranelift makes a function of it that takes a state and returns, with the
-//! bits that [`Code::run_one`] gives on the same vector unit.
+//! The machine decodes every instruction once for a block of states; a single state has to pay for the decoding alone.
+//! [`Native`] is the same program without decoding: Cranelift compiles it to a function that computes one state and
+//! returns, with the same bits as [`Code::run_one`] on the same vector unit.
 //!
 //! # Why Cranelift
 //!
-//! Nanoseconds of a call to the torques in double precision, one after the other, on one core of an AMD EPYC with
-//! AVX-512, and milliseconds to build the code:
+//! Nanoseconds of a call to the torques in double precision, in a sequence of calls on one core of an AMD EPYC with
+//! AVX-512, and milliseconds to compile the code:
 //!
 //! ```text
 //! cargo run --release --manifest-path benches/Cargo.toml --no-default-features --features run_time --bin run_time
@@ -22,20 +22,21 @@
 //! | Cobra 600 | 9.4 | 59 | 9.7 | 0.1 |
 //! | Stanford arm | 36 | 196 | 36 | 0.7 |
 //!
-//! The derived code was compiled for every x86-64, so it fuses nothing; this one knows its processor. Machine code of
-//! our own would hardly be faster, for one family of processors, and all of it would have to be trusted; Cranelift has
-//! been tried by whatever runs on it. Its optimiser finds nothing to do, for the compiler of programs did it: when we
-//! tried, calls cost the same or up to a tenth more, and building a quarter to a half more. With its quick register
-//! allocator building took a third of the time and calls 1.5 to 2 times as long.
+//! The derived code was compiled for every x86-64, so it has no fused operations; this module uses all that the
+//! processor has. Machine code that this crate wrote itself would hardly be faster, would support one family of
+//! processors, and would have to be trusted as a whole; Cranelift is tested by all programs that use it. Its optimiser
+//! finds nothing to improve, because the compiler of programs has done so before: with it, calls took the same time or
+//! up to a tenth more, and compilation a quarter to a half more. With its fast register allocator, compilation took a
+//! third of the time and calls 1.5 to 2 times as long.
 //!
 //! # Sines and cosines
 //!
-//! The kernel of rne-runtime is written into the function, operation by operation ([`Kernel`]). A state with an angle
-//! beyond its range is left to the machine.
+//! The function contains the sine and cosine of rne-runtime, operation by operation ([`Kernel`]). A state with an angle
+//! beyond the range of this kernel is computed by the machine.
 //!
 //! # Safety
 //!
-//! This is the one module of the crate with `unsafe` in it: it calls the function and frees its memory.
+//! This is the only module of the crate with `unsafe`: it calls the compiled function and frees its memory.
 //!
 //! - **Signature.** `translation` declares three pointers and a return value of their size, in the calling convention
 //!   that Cranelift has for C on the host: that of [`Function`].
@@ -68,16 +69,18 @@ use crate::dataflow::Dataflow;
 use crate::schedule;
 use crate::{Number, translation};
 
-/// Programs with more values or outputs than this are left to the machine. The longest of a shipped arm, 9,243
-/// operations (the derivatives of the Panda's torques in seven steps), takes a tenth of a second to build.
+/// Programs with more values or outputs than this are left to the machine. The longest one of an arm of this
+/// repository, 9,243 operations (the derivatives of the Panda's torques in seven steps), takes a tenth of a second to
+/// compile.
 const MOST: usize = 1 << 14;
 
-/// The inputs, the outputs, the constants. 0 when an angle is beyond the range of the kernel; then nothing is written.
+/// The compiled function; it takes the inputs, the outputs and the constants. It returns 0 if an angle is beyond the
+/// range of the kernel; then nothing is written.
 type Function<T> = unsafe extern "C" fn(*const T, *mut T, *const T) -> usize;
 
-/// A program as instructions of the processor, for one state at a time.
+/// A program that is compiled to instructions of the processor, for one state at a time.
 ///
-/// The machine runs batches faster. A call allocates nothing and may run on any thread.
+/// For many states the machine is faster. A call allocates nothing and may run on any thread.
 ///
 /// ```
 /// use rne_codegen::{Compiler, Form, Function};
@@ -98,9 +101,9 @@ type Function<T> = unsafe extern "C" fn(*const T, *mut T, *const T) -> usize;
 pub struct Native<T: Number = f64> {
     function: Function<T>,
     constants: Vec<T>,
-    /// The memory of the function; the mutex, which nobody locks, makes it `Sync`.
+    /// The memory of the function. The mutex, which nobody locks, makes it `Sync`.
     _pages: Mutex<Pages>,
-    /// Code for states with angles beyond the range of the kernel.
+    /// Interpreted code for states with angles beyond the range of the kernel.
     code: Code,
     unit: VectorUnit,
     inputs: Vec<Name>,
@@ -108,17 +111,17 @@ pub struct Native<T: Number = f64> {
 }
 
 impl<T: Number> Native<T> {
-    /// Compiles a program for the widest vector unit; those for [`Target::Latency`](rne_codegen::Target) are the
-    /// fastest. It takes a millisecond or two for the torques of an arm, and the more the longer a function is.
+    /// Compiles a program for the widest vector unit; programs for [`Target::Latency`](rne_codegen::Target) are the
+    /// fastest. This takes a millisecond or two for the torques of an arm, and longer for longer functions.
     ///
     /// # Errors
-    /// When Cranelift does not know the processor, when the program is very long, or when Cranelift does not compile
-    /// it. The machine runs it all the same.
+    /// When Cranelift does not support the processor, when the program is too long, or when Cranelift does not compile
+    /// it. The machine can execute it in all these cases.
     pub fn new(program: &Program) -> Result<Self, NativeError> {
         Self::on(VectorUnit::widest(), program)
     }
 
-    /// Compiles the program with the bits of a given vector unit.
+    /// Compiles the program for a given vector unit; the results have the bits of that unit.
     ///
     /// # Errors
     /// As for [`new`](Self::new).
@@ -148,7 +151,7 @@ impl<T: Number> Native<T> {
         &self.inputs
     }
 
-    /// Computes one state: the numbers of the inputs and room for the outputs of the program, in its order.
+    /// Computes one state. `inputs` and `outputs` have the inputs and outputs of the program, in its order.
     ///
     /// # Errors
     /// When there are more or fewer inputs or outputs than the program has. Nothing is written then.
@@ -160,7 +163,8 @@ impl<T: Number> Native<T> {
         if outputs.len() != self.outputs {
             return Err(WrongArrays::Outputs);
         }
-        // SAFETY: the arrays are as long as the function thinks, and its memory is there; see the head of this file.
+        // SAFETY: both arrays have the lengths that the function reads and writes, and its memory exists; see the head
+        // of this file.
         let is_done = unsafe { (self.function)(inputs.as_ptr(), outputs.as_mut_ptr(), self.constants.as_ptr()) };
         if is_done == 0 { self.code.run_one(self.unit, inputs, outputs) } else { Ok(()) }
     }
@@ -174,11 +178,12 @@ impl<T: Number> fmt::Debug for Native<T> {
     }
 }
 
-/// The memory of compiled functions, which Cranelift would keep for ever. It is taken out when it is freed alone.
+/// The memory of compiled functions, which Cranelift does not free by itself. The `Option` lets `drop` take the module
+/// out to free it.
 struct Pages(Option<JITModule>);
 
 impl Pages {
-    /// The function of a program and the constants that it reads.
+    /// Compiles a program; returns the function and the constants that it reads.
     fn compiled<T: Number>(
         &mut self,
         dataflow: &Dataflow,
@@ -192,7 +197,7 @@ impl Pages {
         module.define_function(function, &mut context).map_err(NativeError::compilation)?;
         module.finalize_definitions().map_err(NativeError::compilation)?;
         let function = module.get_finalized_function(function);
-        // SAFETY: it has been compiled with this signature; see the head of this file.
+        // SAFETY: the function was compiled with this signature; see the head of this file.
         let function = unsafe { core::mem::transmute::<*const u8, Function<T>>(function) };
         Ok((function, constants))
     }
@@ -201,13 +206,13 @@ impl Pages {
 impl Drop for Pages {
     fn drop(&mut self) {
         if let Some(module) = self.0.take() {
-            // SAFETY: who calls the function borrows what has this, and nobody else knows where it is.
+            // SAFETY: a caller of the function borrows the owner of this memory, and nobody else has a pointer to it.
             unsafe { module.free_memory() };
         }
     }
 }
 
-/// Cranelift for a processor.
+/// Sets up Cranelift for a processor.
 fn set_up(processor: &isa::Builder, is_fused: bool) -> Result<OwnedTargetIsa, NativeError> {
     let mut flags = settings::builder();
     let settings = [
@@ -229,20 +234,20 @@ fn set_up(processor: &isa::Builder, is_fused: bool) -> Result<OwnedTargetIsa, Na
     Ok(isa)
 }
 
-/// Why there is no native code of a program. The machine runs it all the same.
+/// Why there is no native code for a program. The machine can execute it all the same.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NativeError {
-    /// Cranelift does not know the processor, or not all that the vector unit does.
+    /// Cranelift does not support the processor, or not all instructions of the vector unit.
     Processor(String),
-    /// The program has more values than are compiled at once.
+    /// The program has more values than are allowed.
     TooLong {
-        /// How many it has.
+        /// The number of values of the program.
         values: usize,
-        /// How many there may be.
+        /// The largest number that is allowed.
         most: usize,
     },
-    /// Cranelift does not compile the program, or the system runs no code that is made at run time.
+    /// Cranelift does not compile the program, or the system does not execute code that is created at run time.
     Compilation(String),
 }
 
@@ -282,8 +287,8 @@ mod tests {
         Compiler::new(&robot).compile(Function::InverseDynamics, Form::Reduced).expect("it compiles")
     }
 
-    /// Tests the instructions of every x86-64: vectors in memory are then read by instructions of their own, for they
-    /// stand anywhere.
+    /// Tests code that uses only the instructions that every x86-64 has: vectors in memory are then loaded by separate
+    /// instructions, because they may be unaligned.
     #[test]
     fn the_oldest_processor_of_the_family_has_the_same_bits() {
         let program = program();

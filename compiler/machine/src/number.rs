@@ -1,8 +1,8 @@
-//! The numbers of a state.
+//! The number types of states.
 
 use rne_runtime::{BatchScalar, Numbers, Shaped};
 
-/// A number of a state: `f64` and `f32`, and no other type.
+/// A number type of states: `f64` or `f32`, and no other type.
 #[cfg(feature = "native")]
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a number of a state",
@@ -15,7 +15,7 @@ pub trait Number:
 {
 }
 
-/// A number of a state: `f64` and `f32`, and no other type.
+/// A number type of states: `f64` or `f32`, and no other type.
 #[cfg(not(feature = "native"))]
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a number of a state",
@@ -28,7 +28,7 @@ pub trait Number: BatchScalar + Into<f64> + Numbers<Self> + Shaped<Self> {}
 impl Number for f32 {}
 impl Number for f64 {}
 
-/// One state at a time, as instructions of the processor.
+/// Computes one state at a time, as instructions of the processor.
 #[cfg(feature = "native")]
 pub(crate) mod natively {
     use std::sync::OnceLock;
@@ -38,20 +38,21 @@ pub(crate) mod natively {
 
     use crate::native::Native;
 
-    /// A function in either precision, compiled when a single state is first asked for; `None` when Cranelift cannot:
-    /// then the machine computes single states too.
+    /// A function in both precisions, each compiled when a single state is first computed in it; `None` if Cranelift
+    /// cannot compile it. Then the machine also computes single states.
     #[derive(Debug, Default)]
     pub struct Natives {
         double: OnceLock<Option<Native<f64>>>,
         single: OnceLock<Option<Native<f32>>>,
     }
 
-    /// A type with its own precision.
+    /// A number type that selects its precision of [`Natives`].
     pub trait Natively: Sized {
-        /// Compiles a function, unless it has been before.
+        /// Compiles a function, unless it was compiled before.
         fn prepare(natives: &Natives, program: &Program);
 
-        /// Computes a state on the widest unit, with the bits of the machine there; false when nothing was computed.
+        /// Computes a state on the widest unit, with the same bits as the machine. Returns false if nothing was
+        /// computed.
         fn call(natives: &Natives, unit: VectorUnit, program: &Program, inputs: &[Self], outputs: &mut [Self]) -> bool;
     }
 

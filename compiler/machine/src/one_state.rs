@@ -1,4 +1,4 @@
-//! The functions by their own names, for one state: arguments and results as those of `DynArm`.
+//! The functions as methods with their own names, for one state; arguments and results are those of `DynArm`.
 
 use rne_codegen::{Argument, Function, Length, argument_type};
 use rne_runtime::{BaseMotion, BaseTwist, Numbers, Payload, Pose, Shaped, VectorUnit, Wrench};
@@ -6,15 +6,15 @@ use rne_runtime::{BaseMotion, BaseTwist, Numbers, Payload, Pose, Shaped, VectorU
 use crate::results;
 use crate::{Arguments, Array, CompiledArm, EvaluationError, Number};
 
-/// One state. Arrays have one element per joint: rad, rad/s, rad/s², N m for revolute joints; m, m/s, m/s², N for
-/// prismatic ones.
+/// Methods for one state. Arrays have one element per joint: rad, rad/s, rad/s², N m for revolute joints; m, m/s, m/s²,
+/// N for prismatic ones.
 impl CompiledArm {
-    /// Any function for one state: its numbers, in the order of the function's [layout](Function::layout), into
-    /// `results`. Nothing is allocated for more than the arguments.
+    /// Computes any function for one state and writes its numbers to `results`, in the order of the function's
+    /// [layout](Function::layout). It allocates memory for nothing but the arguments.
     ///
     /// # Errors
-    /// When an argument is missing or has another size, or `results`, when an argument is
-    /// [out of range](crate::OutOfRange), or when the function cannot be compiled.
+    /// When an argument is missing or has another size, when `results` has another size, when an argument is [out of
+    /// range](crate::OutOfRange), or when the function cannot be compiled.
     pub fn run_one<T: Number>(
         &self,
         function: Function,
@@ -24,7 +24,7 @@ impl CompiledArm {
         self.function(function)?.run_one(VectorUnit::widest(), arguments, results)
     }
 
-    /// The numbers of a function in their shape.
+    /// Computes a function and returns its numbers in their shape.
     fn result<T: Number, R: Shaped<T>>(
         &self,
         function: Function,
@@ -37,15 +37,15 @@ impl CompiledArm {
     }
 }
 
-/// The arguments of a call, one after the other.
+/// The numbers of all arguments of a call, one argument after the other.
 struct Given<T> {
     numbers: Vec<T>,
-    /// Where the arrays of the arguments end.
+    /// For each array of the arguments, the index in `numbers` at which it ends.
     ends: Vec<usize>,
 }
 
 impl<T: Number> Given<T> {
-    /// Adds an argument: all of its numbers, however many there are, or those of its arrays.
+    /// Adds an argument. An array of fixed length gets that many of its numbers, the last array all that are left.
     fn add(&mut self, argument: Argument, given: &impl Numbers<T>) {
         let start = self.numbers.len();
         given.each(&mut |number| self.numbers.push(*number));
@@ -53,7 +53,7 @@ impl<T: Number> Given<T> {
         let lengths = argument.parts().map(|part| part.length);
         self.ends.extend(lengths.map(|length| {
             match length {
-                // of one array
+                // an argument can consist of several arrays of fixed length
                 Length::Fixed(count) if !argument.is_of_each_tip() => end += count,
                 _ => end = self.numbers.len(),
             }
@@ -61,7 +61,7 @@ impl<T: Number> Given<T> {
         }));
     }
 
-    /// These arguments of a function.
+    /// Returns the arguments of a function, by name.
     fn arguments(&self, function: Function) -> Arguments<'_, T> {
         let parts = function.arguments().iter().flat_map(|argument| argument.parts());
         let (mut arguments, mut start) = (Arguments::new(), 0);

@@ -1,12 +1,11 @@
-//! Numbers that an argument cannot have: one check for all doors at which arguments come in.
+//! Checks for numbers that an argument cannot have, shared by all interfaces that take arguments.
 
 use std::fmt;
 
 use rne_model::{Inertia, NegativeMoment};
 use rne_runtime::{NegativeMass, Pose};
 
-/// Numbers that an argument cannot have. A number that is not a number passes in a rotation and as a mass: results show
-/// it.
+/// Numbers that an argument cannot have. NaN is accepted in a rotation and as a mass; it then appears in the results.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum OutOfRange {
@@ -14,36 +13,36 @@ pub enum OutOfRange {
     Mass(NegativeMass),
     /// A principal moment of inertia of a payload is below zero.
     Moment(NegativeMoment),
-    /// The duration of a step is not a finite number above zero, s.
+    /// The duration of a step, s, is not a finite number above zero.
     Step(f64),
-    /// The rotation of this argument is not a rotation.
+    /// This argument does not have the elements of a rotation matrix.
     Rotation(String),
-    /// No angle has this sine and this cosine, which a joint's position has.
+    /// There is no angle with this sine and this cosine of a joint.
     Angle {
         /// The joint, counted from 1 among those that do not depend on others.
         joint: usize,
-        /// Sine and cosine.
+        /// The sine and the cosine that were given.
         turn: [f64; 2],
     },
 }
 
 impl OutOfRange {
-    /// How many of the first elements of an argument are [checked](Self::check).
+    /// Returns how many elements at the beginning of an argument are [checked](Self::check).
     #[must_use]
     pub fn elements(argument: &str) -> usize {
         match argument {
             "step" => 1,
             "payload" => 10,
-            // a pose begins with its rotation
+            // a pose begins with its rotation; only that is checked
             "pose" | "base_rotation" => 9,
             _ => 0,
         }
     }
 
-    /// Refuses numbers that an argument cannot have. `number` is an element of the argument.
+    /// Refuses numbers that an argument cannot have. `number` returns an element of the argument by its index.
     ///
     /// # Errors
-    /// What is wrong with them.
+    /// Says what is wrong with the numbers.
     pub fn check(argument: &str, number: impl Fn(usize) -> Option<f64>) -> Result<(), Self> {
         let at = |element| number(element).unwrap_or(f64::NAN);
         match argument {
@@ -62,11 +61,11 @@ impl OutOfRange {
         }
     }
 
-    /// Refuses a sine and a cosine that no angle has, as far as half precision can say: the sum of their squares must
-    /// be 1 to 2e-3. They are those of the joint at this index, of the joints that do not depend on others.
+    /// Refuses a sine and a cosine that no angle has. As the numbers may come from half precision, the sum of their
+    /// squares must be 1 to within 2e-3. `index` counts the joints that do not depend on others, from 0.
     ///
     /// # Errors
-    /// The joint and the two numbers.
+    /// Has the joint and both numbers.
     pub fn check_turn(index: usize, turn: [f64; 2]) -> Result<(), Self> {
         let [sin, cos] = turn;
         let is_none = (sin * sin + cos * cos - 1.0).abs() > 2e-3;

@@ -1,4 +1,4 @@
-//! Rollouts: samples of states that move on under torques, for predictive control by sampling.
+//! Rollouts: many samples of a motion under torques, for sampling-based predictive control.
 
 use std::error::Error;
 use std::fmt;
@@ -11,18 +11,19 @@ use rne_runtime::machine::{self, RolloutJoint, SmoothFriction, Source};
 use crate::arguments::place;
 use crate::{Arguments, CompiledArm, CompiledFunction, EvaluationError, Number, WrongSize};
 
-/// How long samples are rolled out, and what acts on the joints beside the dynamics of the arm.
+/// The steps of a rollout, and what acts on the joints in addition to the dynamics of the arm.
 ///
-/// [`CompiledArm::rollout`] moves each sample on by semi-implicit Euler. A step of duration h does this, in this order:
+/// [`CompiledArm::rollout`] integrates each sample by semi-implicit Euler. A step of duration h does this, in this
+/// order:
 ///
-/// 1. With effort limits, each torque of the step is brought between -effort and +effort.
+/// 1. With effort limits, each torque of the step is clamped to the range from -effort to +effort.
 /// 2. With friction, the friction at the velocity before the step is subtracted from the torque. It is that of
 ///    `Actuation::actuator_torques_smooth` for accelerations of zero: G² B q̇ + |G| (½ (Tc⁺ - Tc⁻) s + ½ (Tc⁺ + Tc⁻) s²)
 ///    with s = q̇ / √(q̇² + width²).
-/// 3. q̈ = `forward_dynamics` of the position and velocity before the step and of this torque.
-/// 4. q̇ becomes q̇ + h q̈. With velocity limits, it is brought between -velocity and +velocity.
+/// 3. q̈ is `forward_dynamics` of the position and velocity before the step and of this torque.
+/// 4. q̇ becomes q̇ + h q̈. With velocity limits, it is clamped to the range from -velocity to +velocity.
 /// 5. q becomes q + h q̇, with the new q̇.
-/// 6. With position limits, a joint beyond an end of its positions stops: q is that end, and q̇ is zero.
+/// 6. With position limits, a joint beyond an end of its range stops: q is set to that end, and q̇ to zero.
 ///
 /// The rotors of the motors belong to the arm only after [`CompiledArm::with_rotors`], as in all functions. Friction is
 /// taken from the velocity before the step, so a long step makes a light joint swing about zero velocity: it is stable
@@ -68,28 +69,29 @@ pub struct Rollout {
     pub steps: usize,
     /// The duration h of a step, s; above zero.
     pub step: f64,
-    /// Friction of the joints, by the `motor` keys of the robot file, and the speed about which Coulomb friction
-    /// changes its sign; `None`: no friction.
+    /// Friction of the joints, by the `motor` keys of the robot file, with the width around zero speed in which Coulomb
+    /// friction changes its sign; `None`: no friction.
     pub friction: Option<FrictionWidth>,
-    /// The limits of the robot file that hold.
+    /// The limits of the robot file that are applied.
     pub limits: RolloutLimits,
 }
 
-/// The speed about which the Coulomb friction of a joint changes its sign: the `width` of s = q̇ / √(q̇² + width²).
+/// The width around zero speed in which the Coulomb friction of a joint changes its sign: `width` in s = q̇ / √(q̇² +
+/// width²).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FrictionWidth {
-    /// The key `coulomb_width` of each joint with Coulomb friction.
+    /// The width is the key `coulomb_width` of each joint with Coulomb friction.
     OfFile,
     /// One width for all joints, rad/s or m/s; above zero.
     Of(f64),
 }
 
-/// The limits of the robot file that hold in a rollout. A joint without a limit in the file has none.
+/// The limits of the robot file that are applied in a rollout. A joint without a limit in the file has none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RolloutLimits {
-    /// The torque of the actuator is not beyond ± the key `effort`.
+    /// The torque of the actuator is limited to ± the key `effort`.
     pub effort: bool,
-    /// The speed is not beyond ± the key `velocity`.
+    /// The speed is limited to ± the key `velocity`.
     pub velocity: bool,
     /// A joint stops at the ends of the key `position`.
     pub position: bool,
@@ -104,13 +106,13 @@ impl RolloutLimits {
 }
 
 impl Rollout {
-    /// A rollout without friction and without limits: a number of steps of a duration in s.
+    /// Returns a rollout without friction and without limits: `steps` steps of the duration `step`, s.
     #[must_use]
     pub const fn new(steps: usize, step: f64) -> Self {
         Self { steps, step, friction: None, limits: RolloutLimits::NONE }
     }
 
-    /// Limits and friction of the joints of a robot.
+    /// Returns the limits and the friction of the joints of a robot.
     fn joints<T: Number>(&self, robot: &Robot) -> Result<Vec<RolloutJoint<T>>, RolloutError> {
         let limit = |holds: bool, limit: Option<f64>| limit.filter(|_| holds).map(T::from_f64);
         let of_joint = |(index, limits): (usize, Limits)| {
@@ -156,31 +158,31 @@ impl Rollout {
     }
 }
 
-/// A finite number above zero, whose square is above zero, too.
+/// Returns the value as a `T` if it is a finite number above zero whose square is above zero, too.
 fn usable<T: Number>(value: f64) -> Option<T> {
     let number = T::from_f64(value);
     (value > 0.0 && number * number > T::zero() && number.into().is_finite()).then_some(number)
 }
 
 impl CompiledArm {
-    /// Moves samples of states on under torques, step by step, on the widest vector unit. [`Rollout`] describes a step.
+    /// Integrates samples of states under torques, step by step, on the widest vector unit. [`Rollout`] describes a
+    /// step.
     ///
-    /// `arguments` has the initial positions `q` and velocities `qd` of n joints, the torques `tau` of steps × n
-    /// numbers for each sample, step after step, and, where the tip carries something, a `payload`. An argument in
-    /// [`Array::Same`](crate::Array::Same) is that of all samples. `positions` and `velocities` get the states after
-    /// each step, samples × steps × n numbers: joint beside joint, step after step, sample after sample. The initial
-    /// state is not among them.
+    /// `arguments` has the initial positions `q` and velocities `qd` of n joints, the torques `tau`, which are steps ×
+    /// n numbers for each sample, step after step, and for an arm with a payload at its tip `payload`. An argument in
+    /// [`Array::Same`](crate::Array::Same) is used for all samples. `positions` and `velocities` get the states after
+    /// each step, samples × steps × n numbers: sample after sample, in each step after step, in each joint after joint.
+    /// The initial state is not among them.
     ///
-    /// A sample has the same bits whatever samples are beside it, and on any number of threads: those that calls of
-    /// `forward_dynamics`, one for each step, and the arithmetic of [`Rollout`] give. A NaN stays in its sample, as do
-    /// infinite numbers. With the feature `rayon` many samples are computed on all cores. Between steps nothing is
-    /// allocated.
+    /// The results of a sample have the same bits for any other samples and any number of threads: those of one call of
+    /// `forward_dynamics` for each step and of the arithmetic in [`Rollout`]. A NaN or an infinite number stays in its
+    /// sample. With the feature `rayon` many samples are computed on all cores. Between steps nothing is allocated.
     ///
     /// # Errors
     /// When the step is not above zero, a joint has Coulomb friction without a width above zero, the friction of a
     /// joint depends on run-time parameters, an argument is missing or has another size, the payload of a sample has a
-    /// mass below zero, `positions` or `velocities` has another size, or forward dynamics cannot be compiled. Nothing
-    /// is written then.
+    /// mass below zero, `positions` or `velocities` has another size, or forward dynamics cannot be compiled. Then
+    /// nothing is written.
     pub fn rollout<T: Number>(
         &self,
         rollout: &Rollout,
@@ -192,7 +194,7 @@ impl CompiledArm {
         self.rollout_on(VectorUnit::widest(), rollout, samples, arguments, [positions, velocities])
     }
 
-    /// As [`rollout`](Self::rollout), on a given vector unit; `states` are `positions` and `velocities`.
+    /// Does what [`rollout`](Self::rollout) does on a given vector unit; `states` are `positions` and `velocities`.
     ///
     /// # Errors
     /// As for [`rollout`](Self::rollout).
@@ -225,7 +227,7 @@ impl CompiledArm {
 }
 
 impl CompiledFunction {
-    /// Forward dynamics, step by step.
+    /// Integrates samples; this function is forward dynamics.
     fn roll_out<T: Number>(
         &self,
         unit: VectorUnit,
@@ -237,7 +239,7 @@ impl CompiledFunction {
     ) -> Result<(), RolloutError> {
         let dof = joints.len();
         let [mut q, mut qd, mut tau, mut constants] = [const { Vec::new() }; 4];
-        // where the elements of an array begin in the list of the machine
+        // the place of each array's first element in the machine's list of inputs
         let mut starts = Vec::with_capacity(self.arguments().len());
         for (index, &(argument, elements)) in self.arguments().iter().enumerate() {
             let is_tau = argument == "tau";
@@ -267,7 +269,7 @@ impl CompiledFunction {
     }
 }
 
-/// Why nothing was rolled out. Nothing has been written then.
+/// Why nothing was rolled out. In this case no result has been written.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RolloutError {
@@ -291,7 +293,7 @@ pub enum RolloutError {
     },
     /// An array has another size.
     Size {
-        /// The array.
+        /// The name of the array.
         array: &'static str,
         /// The number of samples.
         samples: usize,
@@ -299,7 +301,7 @@ pub enum RolloutError {
         steps: usize,
         /// The number of joints.
         joints: usize,
-        /// How many numbers it has.
+        /// The number of numbers that the array has.
         found: usize,
     },
 }

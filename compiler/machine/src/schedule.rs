@@ -1,4 +1,4 @@
-//! When each value is computed and where it is kept.
+//! Decides when each value is computed and where it is kept.
 
 use std::collections::HashMap;
 
@@ -11,24 +11,24 @@ use crate::selection::{Place, constants, operation};
 /// One action of the schedule.
 #[derive(Clone, Copy, Debug)]
 enum Event {
-    /// A value is computed, or an input or a constant is fetched, in the accumulator.
+    /// Computes a value, or loads an input or a constant, into the accumulator.
     Compute(ValueId),
-    /// It is written while it is there.
+    /// Writes the value in the accumulator to the output at this index.
     Output(usize),
-    /// All sines and cosines.
+    /// Computes all sines and cosines.
     Turns,
 }
 
-/// The code of a program.
+/// Returns the code of a program; `None` if it needs too many slots.
 pub(crate) fn code(dataflow: &Dataflow) -> Option<Code> {
-    // constants that an instruction carries need no place
+    // constants that are part of an instruction need no slot
     let carried: Vec<Vec<ValueId>> = dataflow.values.iter().map(|(id, _)| constants(dataflow, id)).collect();
     let events = events(dataflow, &carried);
     allocated(dataflow, &carried, &events)
 }
 
-/// Values in the order of the program; what is fetched comes just before its first use, but not between a value and
-/// the one that takes it from the accumulator.
+/// Returns the events in the order of the program. An input or constant is loaded just before its first use, but not
+/// between a value and the next one that takes it from the accumulator.
 fn events(dataflow: &Dataflow, carried: &[Vec<ValueId>]) -> Vec<Event> {
     let is_live = dataflow.live();
     let mut outputs: HashMap<ValueId, Vec<usize>> = HashMap::new();
@@ -70,7 +70,7 @@ fn events(dataflow: &Dataflow, carried: &[Vec<ValueId>]) -> Vec<Event> {
     part(before_turns, &dataflow.angles, &mut events);
     events.push(Event::Turns);
     part(beyond_turns, &[], &mut events);
-    // what is returned without being computed
+    // outputs that are inputs, constants, sines or cosines
     for (index, &output) in dataflow.outputs.iter().enumerate() {
         if !dataflow.is_computed(output) {
             events.push(Event::Compute(output));
@@ -80,10 +80,10 @@ fn events(dataflow: &Dataflow, carried: &[Vec<ValueId>]) -> Vec<Event> {
     events
 }
 
-/// The uses of each value.
+/// The number of uses of each value, and its last use.
 struct Uses {
     count: Vec<usize>,
-    /// The place of the last one in the list of events.
+    /// The place of the last use in the list of events.
     last: Vec<usize>,
 }
 
@@ -92,7 +92,7 @@ impl Uses {
         let [mut count, mut last] = [(); 2].map(|()| vec![0_usize; dataflow.values.len()]);
         for (at, event) in events.iter().enumerate() {
             let used = match *event {
-                // returned as it is
+                // a sine or cosine that is returned as it is
                 Event::Compute(value) if dataflow.is_turn(value) => vec![value],
                 Event::Compute(value) => {
                     let mut operands = dataflow.operands(value);
@@ -111,7 +111,7 @@ impl Uses {
     }
 }
 
-/// Gives every value that is not used at once a slot, for as long as it is used.
+/// Assigns a slot to every value that is not used at once, from its computation to its last use.
 fn allocated(dataflow: &Dataflow, carried: &[Vec<ValueId>], events: &[Event]) -> Option<Code> {
     let Uses { count: uses, last } = Uses::of(dataflow, carried, events);
     let mut memory = Memory { slots: vec![None; dataflow.values.len()], free: Vec::new(), count: 0 };
@@ -127,7 +127,7 @@ fn allocated(dataflow: &Dataflow, carried: &[Vec<ValueId>], events: &[Event]) ->
                 let turned = dataflow.values.iter().filter(|(id, _)| dataflow.is_turn(*id) && uses[id.index()] > 0);
                 let turned = turned.map(|(id, value)| Some((value, memory.take(id)?)));
                 let mut turned = turned.collect::<Option<Vec<_>>>()?;
-                // each once: two turns may have one angle
+                // each sine and each cosine gets one slot, even if an angle occurs twice
                 let mut take_slot = |wanted: Value| {
                     let place = turned.iter().position(|(value, _)| *value == wanted);
                     place.map_or(NOWHERE, |place| turned.remove(place).1)
@@ -172,7 +172,7 @@ fn allocated(dataflow: &Dataflow, carried: &[Vec<ValueId>], events: &[Event]) ->
     Code::new(angles, turns, rest, [slots, dataflow.inputs.len(), dataflow.outputs.len()])
 }
 
-/// Whether the next value is computed from this one where it is, in the accumulator.
+/// Whether the next value uses this one directly from the accumulator.
 fn takes_from_accumulator(dataflow: &Dataflow, carried: &[Vec<ValueId>], events: &[Event], value: ValueId) -> bool {
     let next = events.iter().find(|event| !matches!(event, Event::Output(..)));
     let Some(&Event::Compute(next)) = next else { return false };
@@ -191,7 +191,7 @@ struct Memory {
 }
 
 impl Memory {
-    /// A slot for a value: the one that was freed last, for it is in the cache.
+    /// Returns a slot for a value: the one that was freed last, because it is in the cache.
     fn take(&mut self, value: ValueId) -> Option<Slot> {
         let slot = if let Some(slot) = self.free.pop() {
             slot

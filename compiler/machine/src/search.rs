@@ -1,4 +1,4 @@
-//! The search for fewer operations, in a program that runs.
+//! The search for plans with fewer operations, as a method of an arm in a running program.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -7,22 +7,23 @@ use rne_search::{SearchError, SearchOptions, search};
 
 use crate::CompiledArm;
 
-/// How far a search has come.
+/// The progress of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SearchProgress {
-    /// The part of the time that is over, 0 to 1.
+    /// The elapsed part of the time, 0 to 1.
     pub share: f64,
-    /// Operations of the best torques so far.
+    /// The number of operations of the best torques so far.
     pub operations: usize,
 }
 
 impl CompiledArm {
-    /// Looks for fewer operations for so long, from the plan at hand on: the arm by the plan that was found, which
-    /// [`plan`](Self::plan) has for a file beside the robot file. It is proved to be the same arm.
+    /// Searches for a plan with fewer operations during `time`, starting from the present plan. Returns the arm with
+    /// the plan that was found, which [`plan`](Self::plan) returns for a file next to the robot file. The search proves
+    /// that it is the same arm.
     ///
-    /// `progress` is called often, some hundred times a second, and ends the search by [`ControlFlow::Break`] with what
-    /// it has. `options` name functions of which the graphs are rewritten besides, and the seed of random numbers.
+    /// `progress` is called some hundred times a second. If it returns [`ControlFlow::Break`], the search ends with the
+    /// best plan so far. `options` name the functions whose graphs are also rewritten, and the seed of random numbers.
     ///
     /// ```
     /// use std::ops::ControlFlow;
@@ -44,7 +45,7 @@ impl CompiledArm {
     ///
     /// # Errors
     /// For an arm with run-time parameters, which has no plan; or when the result cannot be proved, which would be a
-    /// mistake of this library.
+    /// bug of this library.
     pub fn search(
         &self,
         time: Duration,
@@ -55,7 +56,7 @@ impl CompiledArm {
         let mut is_over = false;
         let plan = search(self.robot(), self.plan(), options, &mut |so_far| {
             let share = if time.is_zero() { 1.0 } else { start.elapsed().as_secs_f64() / time.as_secs_f64() }.min(1.0);
-            // what has been stopped is asked again, by the next part of the search
+            // after a break, the next part of the search calls this again, so the break is remembered
             is_over |= progress(SearchProgress { share, operations: so_far.best.total() }).is_break() || share >= 1.0;
             (!is_over).then_some(share)
         })?;

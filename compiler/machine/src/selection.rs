@@ -1,4 +1,4 @@
-//! Choice of the machine's operation for a value, by the places of its operands.
+//! Chooses the machine's operation for a value, by the places of its operands.
 
 use rne_codegen::{Contraction, Negated, Operator, Value, ValueId};
 use rne_runtime::machine::{Operation, Slot};
@@ -7,7 +7,7 @@ use crate::dataflow::Dataflow;
 use Operation as O;
 use Place::{Accumulator as A, Constant as K, Slot as S};
 
-/// Where an operand is.
+/// Where an operand is when an operation reads it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Place {
     Accumulator,
@@ -15,11 +15,11 @@ pub(crate) enum Place {
     Constant(f64),
 }
 
-/// The operation that computes a value from operands at these places; `None` when the machine has none: then an operand
-/// must be in a slot.
+/// Returns the operation that computes a value from operands at these places. `None` if the machine has no such
+/// operation: then one operand must be moved to a slot.
 pub(crate) fn operation(dataflow: &Dataflow, id: ValueId, place: impl Fn(ValueId) -> Place) -> Option<Operation> {
     Some(match dataflow.values.get(id) {
-        // arguments are the first values
+        // the arguments are the first values, so the number of the value is that of the input
         Value::Argument => O::Input(u32::try_from(id.index()).ok()?),
         Value::Constant(k) => O::Constant(k),
         Value::Sine(_) | Value::Cosine(_) | Value::Same(_) => return None,
@@ -39,7 +39,7 @@ pub(crate) fn operation(dataflow: &Dataflow, id: ValueId, place: impl Fn(ValueId
     })
 }
 
-/// Orders two operands that commute: one in a slot stands last, a constant very last.
+/// Orders two operands that commute: the accumulator first, then a slot, then a constant.
 fn ordered(x: Place, y: Place) -> (Place, Place) {
     match (x, y) {
         (K(_), _) | (S(_), A) => (y, x),
@@ -47,7 +47,7 @@ fn ordered(x: Place, y: Place) -> (Place, Place) {
     }
 }
 
-/// The operation of an operator on two operands.
+/// Returns the machine's operation for an operator and the places of its two operands.
 fn binary(operator: Operator, x: Place, y: Place) -> Option<Operation> {
     let (x, y) = if matches!(operator, Operator::Sum | Operator::Product) { ordered(x, y) } else { (x, y) };
     Some(match (operator, x, y) {
@@ -58,7 +58,7 @@ fn binary(operator: Operator, x: Place, y: Place) -> Option<Operation> {
         (Operator::Difference, S(x), S(y)) => O::DifferenceSS(x, y),
         (Operator::Difference, A, S(y)) => O::DifferenceAS(y),
         (Operator::Difference, S(x), A) => O::DifferenceSA(x),
-        // x - k is x + (-k), to the bit
+        // x - k has the same bits as x + (-k)
         (Operator::Difference, S(x), K(k)) => O::SumSK(x, -k),
         (Operator::Difference, A, K(k)) => O::SumAK(-k),
         (Operator::Difference, K(k), S(y)) => O::DifferenceKS(y, k),
@@ -76,7 +76,7 @@ fn binary(operator: Operator, x: Place, y: Place) -> Option<Operation> {
     })
 }
 
-/// The operation of an addend and a product, of which one may be negated.
+/// Returns the operation of an addend z plus a product x y, one of which may be negated.
 fn fused(negated: Option<Negated>, z: Place, x: Place, y: Place) -> Option<Operation> {
     let (x, y) = ordered(x, y);
     Some(match (negated, z, x, y) {
@@ -93,7 +93,7 @@ fn fused(negated: Option<Negated>, z: Place, x: Place, y: Place) -> Option<Opera
         (Some(Negated::Factor), S(z), A, S(y)) => O::MinusSAS(z, y),
         (Some(Negated::Factor), K(k), S(x), S(y)) => O::MinusKSS(x, y, k),
         (Some(Negated::Factor), K(k), A, S(y)) => O::MinusKAS(y, k),
-        // z - x k is z + x (-k), to the bit
+        // z - x k has the same bits as z + x (-k)
         (Some(Negated::Factor), A, S(x), K(k)) => O::PlusASK(x, -k),
         (Some(Negated::Factor), S(z), S(x), K(k)) => O::PlusSSK(z, x, -k),
         (Some(Negated::Factor), S(z), A, K(k)) => O::PlusSAK(z, -k),
@@ -103,14 +103,14 @@ fn fused(negated: Option<Negated>, z: Place, x: Place, y: Place) -> Option<Opera
         (Some(Negated::Addend), S(z), A, S(y)) => O::LessSAS(z, y),
         (Some(Negated::Addend), S(z), S(x), K(k)) => O::LessSSK(z, x, k),
         (Some(Negated::Addend), S(z), A, K(k)) => O::LessSAK(z, k),
-        // x y - k is x y + (-k), to the bit
+        // x y - k has the same bits as x y + (-k)
         (Some(Negated::Addend), K(k), S(x), S(y)) => O::PlusKSS(x, y, -k),
         (Some(Negated::Addend), K(k), A, S(y)) => O::PlusKAS(y, -k),
         _ => return None,
     })
 }
 
-/// The operands of a value that can stay constants, wherever the others are.
+/// Returns the operands of a value that can be constants of its instruction, wherever the other operands are.
 pub(crate) fn constants(dataflow: &Dataflow, id: ValueId) -> Vec<ValueId> {
     let place = |left_out: &[ValueId], operand: ValueId| match dataflow.constant(operand) {
         Some(k) if !left_out.contains(&operand) => Place::Constant(k),
@@ -118,7 +118,7 @@ pub(crate) fn constants(dataflow: &Dataflow, id: ValueId) -> Vec<ValueId> {
     };
     let operands = dataflow.operands(id).into_iter();
     let candidates: Vec<ValueId> = operands.filter(|operand| dataflow.constant(*operand).is_some()).collect();
-    // all, all but one, none
+    // first all constants, then all but one, then none
     let mut tries = std::iter::once(Vec::new())
         .chain(candidates.iter().map(|candidate| vec![*candidate]))
         .chain(std::iter::once(candidates.clone()));

@@ -1,7 +1,7 @@
-//! A program in the language of Cranelift.
+//! Translates a program to the intermediate language of Cranelift.
 //!
-//! What is fetched (an input, a constant) is loaded anew at each use: then it is an operand in memory, and needs no
-//! register for as long as it is used.
+//! Inputs and constants are loaded again at each use: each of them is then an operand in memory, and occupies no
+//! register between its uses.
 
 use std::collections::HashMap;
 
@@ -20,7 +20,7 @@ pub(crate) mod sealed {
 
     pub trait Number {
         const TYPE: Type;
-        /// Integers as wide.
+        /// Integer type of the same width.
         const BITS: Type;
 
         fn nearest(value: f64) -> Self;
@@ -49,15 +49,15 @@ pub(crate) mod sealed {
     number!(f64, F64, I64);
 }
 
-/// Numbers that an instruction computes sines and cosines of: as many as a register of Cranelift has, where every
-/// processor of the family has such registers.
+/// Returns of how many numbers one instruction computes sines and cosines: as many as a vector register of Cranelift
+/// has, if every processor of the family has vector registers.
 #[allow(clippy::cast_possible_truncation)] // 16 bytes
 const fn lanes<T>() -> u8 {
     if cfg!(any(target_arch = "x86_64", target_arch = "aarch64")) { 16 / size_of::<T>() as u8 } else { 1 }
 }
 
-/// Writes the function of pointers to the inputs, the outputs and the constants that are returned here. It returns 1,
-/// or 0 with nothing written when an angle is beyond the range of the kernel.
+/// Writes the function, and returns the constants that it reads. The function takes pointers to the inputs, the outputs
+/// and the constants. It returns 1, or 0 with nothing written if an angle is beyond the range of the kernel.
 pub(crate) fn write<T: Number>(
     function: &mut ir::Function,
     target: TargetFrontendConfig,
@@ -105,14 +105,14 @@ struct Translation<'a, T> {
     dataflow: &'a Dataflow,
     kernel: &'a Kernel,
     is_live: Vec<bool>,
-    /// The value that uses each one last.
+    /// For each value the last value that uses it.
     last: Vec<Option<ValueId>>,
     inputs: ir::Value,
     outputs: ir::Value,
     table: ir::Value,
-    /// Contents of the table.
+    /// The numbers in the table of constants.
     constants: Vec<T>,
-    /// Place in the table of a number with these bits, repeated for this many lanes.
+    /// For each number in the table, by its bits and its number of lanes: its place.
     places: HashMap<(u64, u8), usize>,
     computed: Vec<Option<ir::Value>>,
 }
@@ -129,7 +129,7 @@ impl<T: Number> Translation<'_, T> {
             self.compute(id);
         }
         self.turns();
-        // nothing is written before the range of the angles is known
+        // outputs are written only after the check of the angles, so that nothing is written if one is beyond the range
         for ((id, _), indices) in dataflow.values.iter().zip(&outputs) {
             if id.index() >= before {
                 self.compute(id);
@@ -147,7 +147,7 @@ impl<T: Number> Translation<'_, T> {
         self.builder.ins().return_(&[result]);
     }
 
-    /// A value that is computed, if something needs it.
+    /// Writes the operation that computes a value, if something needs it.
     fn compute(&mut self, id: ValueId) {
         if !self.is_live[id.index()] {
             return;
@@ -159,7 +159,7 @@ impl<T: Number> Translation<'_, T> {
                 self.builder.ins().fneg(x)
             }
             Value::Binary(operator, x, y) => {
-                // the second operand is the one that may be in memory
+                // the second operand may be read from memory, so an input or constant goes there
                 let commutes = matches!(operator, Operator::Sum | Operator::Product);
                 let (x, y) = if commutes && self.dataflow.is_fetched(x) { (y, x) } else { (x, y) };
                 let (x, y) = (self.operand(x), self.operand(y));
@@ -171,7 +171,7 @@ impl<T: Number> Translation<'_, T> {
                 }
             }
             Value::Fused(Contraction { factors: [x, y], addend: z, negated }) => {
-                // the result takes the register of the first factor
+                // the result takes the register of the first factor, so a factor that is not used again goes there
                 let is_free =
                     |operand: ValueId| !self.dataflow.is_fetched(operand) && self.last[operand.index()] == Some(id);
                 let (x, y) = if !is_free(x) && is_free(y) { (y, x) } else { (x, y) };
@@ -204,12 +204,12 @@ impl<T: Number> Translation<'_, T> {
                 self.builder.ins().load(T::TYPE, unchanging(), self.inputs, place::<T>(id.index()))
             }
             (Value::Constant(k), None) => self.constant(T::nearest(k), 1),
-            // values are in order of evaluation, and all that are live are computed
+            // values are in order of evaluation, and all live values are computed
             (value, None) => unreachable!("{value:?} is used before it is computed"),
         }
     }
 
-    /// Loads a number of the table into all lanes.
+    /// Loads a number of the table into all lanes of a register.
     fn constant(&mut self, number: T, lanes: u8) -> ir::Value {
         let bits = number.into().to_bits();
         let index = *self.places.entry((bits, lanes)).or_insert_with(|| {
@@ -236,7 +236,7 @@ impl<T: Number> Translation<'_, T> {
         self.builder.ins().fsub(z, product)
     }
 
-    /// All sines and cosines, as many at once as a register has lanes.
+    /// Writes all sines and cosines, as many at once as a register has lanes.
     fn turns(&mut self) {
         let lanes = lanes::<T>();
         let angles: Vec<ir::Value> = self.dataflow.angles.iter().map(|angle| self.operand(*angle)).collect();
@@ -260,7 +260,7 @@ impl<T: Number> Translation<'_, T> {
         }
     }
 
-    /// Numbers in a register, zeros in its other lanes.
+    /// Returns a register with these numbers, and zeros in its other lanes.
     fn register(&mut self, numbers: &[ir::Value], lanes: u8) -> ir::Value {
         if lanes == 1 {
             return numbers[0];
@@ -275,8 +275,8 @@ impl<T: Number> Translation<'_, T> {
         if lanes == 1 { register } else { self.builder.ins().extractlane(register, lane) }
     }
 
-    /// Returns when the kernel is not right for an angle, or one is no number: then the sum of their squares is not
-    /// within the limit.
+    /// Writes a return for angles that are beyond the range of the kernel or NaN: in both cases the sum of their
+    /// squares is not within the limit.
     fn leave_beyond_range(&mut self, registers: &[ir::Value], lanes: u8) {
         let Some((first, others)) = registers.split_first() else { return };
         let first = self.builder.ins().fmul(*first, *first);
@@ -296,7 +296,7 @@ impl<T: Number> Translation<'_, T> {
         self.builder.switch_to_block(within);
     }
 
-    /// The kernel, operation by operation.
+    /// Writes the kernel of sine and cosine, operation by operation.
     fn sines_and_cosines(&mut self, angles: ir::Value, lanes: u8) -> [ir::Value; 2] {
         let kernel = self.kernel;
         let mut results: Vec<Option<ir::Value>> = Vec::with_capacity(kernel.steps.len());
@@ -307,7 +307,7 @@ impl<T: Number> Translation<'_, T> {
             };
             let result = match *step {
                 Step::Angle => angles,
-                // fetched where it is used
+                // a constant is loaded where it is used
                 Step::Constant(_) => {
                     results.push(None);
                     continue;
@@ -354,8 +354,8 @@ impl<T: Number> Translation<'_, T> {
         [kernel.sine, kernel.cosine].map(|step| results[step].unwrap_or(angles))
     }
 
-    /// Selects the sine or the cosine, exchanged by the lowest bit of n, with the sign in the next bit of n or,
-    /// for the cosine, of n + 1.
+    /// Selects the sine or the cosine: the lowest bit of n exchanges both; the sign is the next bit of n, or for the
+    /// cosine that of n + 1.
     fn in_quadrant(&mut self, operands: [ir::Value; 3], is_cosine: bool, lanes: u8) -> ir::Value {
         let (number, bits) = (of_lanes(T::TYPE, lanes), of_lanes(T::BITS, lanes));
         let flags = MemFlags::new().with_endianness(ir::Endianness::Little);
@@ -377,17 +377,17 @@ impl<T: Number> Translation<'_, T> {
     }
 }
 
-/// Flags of memory that exists and does not change while the function runs. Registers may be unaligned.
+/// Returns flags for memory that exists and does not change while the function runs. Vectors may be unaligned.
 fn unchanging() -> MemFlags {
     MemFlags::new().with_notrap().with_readonly().with_can_move()
 }
 
-/// Type of a register with this number of lanes, or of a single number.
+/// Returns the type of a register with this number of lanes, or of a single number.
 fn of_lanes(number: Type, lanes: u8) -> Type {
     number.by(lanes.into()).unwrap_or(number)
 }
 
-/// Where a number of an array stands, in bytes.
+/// Returns the position of a number in an array, in bytes.
 fn place<T>(index: usize) -> i32 {
     i32::try_from(index * size_of::<T>()).expect("arrays have thousands of numbers")
 }

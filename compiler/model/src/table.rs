@@ -1,8 +1,9 @@
-//! The plain types of the table: no owned strings, no allocation, the same on a workstation and on a microcontroller.
+//! The plain types of the table: they own no strings, allocate nothing, and are the same on a workstation and on a
+//! microcontroller.
 
 use crate::{Angle, QuarterTurns};
 
-/// The Denavit-Hartenberg convention of a table. It is never guessed.
+/// The Denavit-Hartenberg convention of a table. A file must name it; it is never guessed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Convention {
     /// Distal (Denavit-Hartenberg-Paul): `Rz(theta) Tz(d) Tx(a) Rx(alpha)`, link frame i at the far end of link i.
@@ -13,7 +14,7 @@ pub enum Convention {
 }
 
 impl Convention {
-    /// The name of its rows in robot files: `standard` or `modified`.
+    /// Returns the name of these rows in robot files: `standard` or `modified`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -26,14 +27,14 @@ impl Convention {
 /// The kind of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
-    /// Turns: the joint variable (rad) is added to `theta`.
+    /// A joint that turns: the joint variable (rad) is added to `theta`.
     Revolute,
-    /// Slides: the joint variable (m) is added to `d`.
+    /// A joint that slides: the joint variable (m) is added to `d`.
     Prismatic,
 }
 
 impl JointKind {
-    /// Its name in robot files: `revolute` or `prismatic`.
+    /// Returns the name of this kind in robot files: `revolute` or `prismatic`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -42,7 +43,7 @@ impl JointKind {
         }
     }
 
-    /// The unit of its position: rad or m. Per second it is that of its velocity.
+    /// Returns the unit of the joint position, rad or m; the unit of its velocity is this per second.
     #[must_use]
     pub const fn position_unit(self) -> &'static str {
         match self {
@@ -51,7 +52,7 @@ impl JointKind {
         }
     }
 
-    /// The unit of what its actuator gives, of a torque or a force: N m or N.
+    /// Returns the unit of the torque or force of the joint: N m or N.
     #[must_use]
     pub const fn effort_unit(self) -> &'static str {
         match self {
@@ -92,7 +93,7 @@ pub struct Inertia<S = f64> {
 }
 
 impl<S: Copy> Inertia<S> {
-    /// The tensor as rows.
+    /// Returns the tensor as rows of a matrix.
     #[must_use]
     pub const fn rows(&self) -> [[S; 3]; 3] {
         [[self.xx, self.xy, self.xz], [self.xy, self.yy, self.yz], [self.xz, self.yz, self.zz]]
@@ -115,20 +116,21 @@ pub struct Link<S = f64> {
     pub com: [S; 3],
     /// Inertia about the centre of mass, in link axes.
     pub inertia: Inertia<S>,
-    /// First moment about `com`, in link axes, kg m: zero for every body, for its moment is mass times `com`. A link
-    /// without mass may have one, as sets of base parameters do; it has no centre of mass, so `com` is the origin of
-    /// the link frame, and `inertia` is about that.
+    /// First moment about `com`, in link axes, kg m. It is zero for every physical body, because `com` is the centre of
+    /// mass. A link without mass may have one, as sets of base parameters do; it has no centre of mass, so `com` is the
+    /// origin of the link frame, and `inertia` is about this origin.
     pub first_moment: [S; 3],
 }
 
 impl Link {
-    /// Whether the table has nothing about the body: no mass, centre of mass, first moment or inertia.
+    /// Returns whether the link has no mass, centre of mass, first moment and inertia.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Whether it has a first moment that no mass accounts for: a base parameter, and no body.
+    /// Returns whether the link has a first moment without mass: it is then a set of base parameters, and no physical
+    /// body.
     #[must_use]
     pub fn has_first_moment(&self) -> bool {
         self.first_moment != [0.0; 3]
@@ -146,7 +148,7 @@ pub struct Row<S = f64> {
     pub link: Link<S>,
 }
 
-/// A motor behind a gear: adds `G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇)` to the joint torque.
+/// A motor with a gear: it adds `G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇)` to the joint torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motor<S = f64> {
     /// Rotor inertia Jm, kg m².
@@ -169,10 +171,10 @@ pub struct Transform<S = f64> {
 }
 
 impl Transform<f64> {
-    /// No displacement.
+    /// The placement that neither moves nor turns.
     pub const IDENTITY: Self = Self { xyz: [0.0; 3], rpy: [Angle::ZERO; 3] };
 
-    /// Whether it displaces and turns nothing; whole turns turn nothing.
+    /// Returns whether the placement neither moves nor turns; whole turns count as none.
     #[must_use]
     pub fn is_identity(&self) -> bool {
         self.xyz == [0.0; 3] && self.rpy.iter().all(|angle| angle.right == Some(QuarterTurns::Zero))
@@ -182,17 +184,17 @@ impl Transform<f64> {
 /// A frame that is fixed to a link, or to frame 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedFrame<S = f64> {
-    /// The joint that moves the link, counted from 0; `None` for frame 0, which no joint moves.
+    /// The joint that moves the link, counted from 0; `None` for frame 0.
     pub on: Option<usize>,
-    /// Link frame of the table → frame. The link frame is at the far end of the link in a standard table, on the joint
-    /// that moves the link in a modified one.
+    /// Placement of the frame in the link frame of the table. The link frame is at the far end of the link in a
+    /// standard table, at the joint that moves the link in a modified one.
     pub placement: Transform<S>,
 }
 
-/// A robot with a number of joints known at compile time, without names: what dynamics needs and no more.
+/// A robot with a number of joints known at compile time, without names: only the numbers that dynamics needs.
 ///
-/// Every field is public and plain, so a `const` can hold one. `S` is the scalar in which the constants are stored:
-/// `f32` keeps double precision off a single-precision target.
+/// Every field is public and plain, so a `const` can be a model. `S` is the scalar in which the constants are stored:
+/// `f32` avoids double precision on a target that has only single precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model<const DOF: usize, S = f64> {
     /// Standard or modified rows.

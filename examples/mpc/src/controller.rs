@@ -9,10 +9,10 @@ use rne::InverseDynamics;
 use crate::model::{DOF, Interval, Joints, Method, Panda, State, tip};
 use crate::program::Program;
 
-/// Intervals of the plan.
+/// Number of intervals of the plan.
 pub const NODES: usize = 20;
 
-/// What the controller is to do.
+/// The task of the controller in one sample.
 pub struct Task {
     /// The measured state.
     pub now: State,
@@ -22,53 +22,53 @@ pub struct Task {
     pub posture: Joints,
     /// Length of an interval, s.
     pub interval: f64,
-    /// External torques, N m: those of a load that the model does not have.
+    /// External torques, N m, for example of a load that the model does not have.
     pub external: Joints,
     /// Weights of the cost.
     pub weights: Weights,
 }
 
-/// Weights of the squares in the cost.
+/// Weights of the squared terms in the cost.
 #[derive(Clone, Copy)]
 pub struct Weights {
-    /// Distance of the tip, 1/m².
+    /// Weight of the distance of the tip from the goal, 1/m².
     pub tip: f64,
-    /// Factor of it at the last node.
+    /// Factor by which the weight of the tip is larger at the last node.
     pub last: f64,
-    /// Distance from the posture, 1/rad².
+    /// Weight of the distance from the preferred posture, 1/rad².
     pub posture: f64,
-    /// Velocities, s²/rad².
+    /// Weight of the velocities, s²/rad².
     pub velocity: f64,
-    /// Torques beyond those that hold the arm, 1/(N m)².
+    /// Weight of the torques, less those that hold the arm, 1/(N m)².
     pub torque: f64,
 }
 
-/// States at the nodes and torques of the intervals between them.
+/// A plan: states at the nodes, and torques of the intervals between them.
 pub struct Plan {
-    /// States.
+    /// States at the nodes.
     pub states: Vec<State>,
-    /// Torques, N m.
+    /// Torques of the intervals, N m.
     pub torques: Vec<Joints>,
 }
 
-/// The model at a node.
+/// The model of the robot at a node of the plan.
 pub struct Node {
-    /// The interval after it, and how its end changes with the state and the torques.
+    /// The interval after the node: its end, and how the end changes with the state and the torques.
     pub interval: Interval,
-    /// Tip, and linear rows of its Jacobian.
+    /// Position of the tip, and the linear rows of its Jacobian.
     pub tip: ([f64; 3], [[f64; DOF]; 3]),
-    /// Torques that hold the arm still.
+    /// Torques that hold the arm at rest, N m.
     pub holding: Joints,
 }
 
-/// What one iteration took.
+/// Time and iterations that one call of the controller needed.
 #[derive(Clone, Copy, Default)]
 pub struct Spent {
-    /// All of it.
+    /// Time of the whole call.
     pub whole: Duration,
-    /// Dynamics, kinematics and their derivatives.
+    /// Time for dynamics, kinematics and their derivatives.
     pub model: Duration,
-    /// Intervals and their derivatives alone.
+    /// Time for the intervals and their derivatives, a part of `model`.
     pub dynamics: Duration,
     /// Iterations of the solver of the quadratic program.
     pub iterations: u32,
@@ -82,19 +82,20 @@ pub struct Controller {
 }
 
 impl Controller {
-    /// A controller whose first plan holds the arm where it is.
+    /// Creates a controller whose first plan holds the arm at `start`.
     #[must_use]
     pub fn new(method: Method, start: &State) -> Self {
         let plan = Plan { states: vec![*start; NODES + 1], torques: vec![Panda.gravity_torques(&start.q); NODES] };
         Self { method, plan, program: Program::default() }
     }
 
-    /// The torques for the next interval.
+    /// Improves the plan and returns the torques for the next interval.
     pub fn step(&mut self, task: &Task) -> (Joints, Spent) {
         let begin = Instant::now();
         self.shift();
         let states = self.plan.states.iter().enumerate();
-        // the last node has no torques, and its interval is not used
+        // the last node is followed by no interval, so these torques are only a placeholder and their interval is not
+        // used
         let torques = |node: usize| self.plan.torques[node.min(NODES - 1)];
         let interval = |(node, state)| Interval::new(self.method, state, &torques(node), &task.external, task.interval);
         let intervals: Vec<Interval> = states.clone().map(interval).collect();
@@ -127,13 +128,13 @@ impl Controller {
         (limited, Spent { whole: begin.elapsed(), model, dynamics, iterations })
     }
 
-    /// The state that the plan has after the first interval.
+    /// Returns the state that the plan predicts after the first interval.
     #[must_use]
     pub fn expected(&self) -> &State {
         &self.plan.states[1]
     }
 
-    /// The plan of the last sample, one interval later; its last interval stands twice.
+    /// Moves the plan of the last sample one interval ahead, and repeats its last state and torques.
     fn shift(&mut self) {
         self.plan.states.remove(0);
         self.plan.torques.remove(0);

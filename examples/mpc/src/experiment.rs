@@ -9,40 +9,41 @@ use crate::plant::Plant;
 
 /// Length of an interval and of a sample, s.
 pub const INTERVAL: f64 = 0.02;
-/// Speed at which the goal of the plan moves to the next goal, m/s: one iteration a sample cannot follow a jump.
+/// Speed at which the goal of the plan moves to the next goal, m/s. With one iteration per sample, the plan cannot
+/// follow a jump.
 const SPEED: f64 = 1.0;
-/// Samples for each goal.
+/// Number of samples for each goal.
 pub const SAMPLES: usize = 100;
-/// Points to reach in the world, m.
+/// The points that the tip must reach, in the world, m.
 pub const GOALS: [[f64; 3]; 2] = [[0.35, 0.45, 0.3], [0.45, -0.4, 0.7]];
-/// The load, kg.
+/// Mass of the load, kg.
 pub const LOAD: f64 = 0.5;
 
 const WEIGHTS: Weights = Weights { tip: 300.0, last: 10.0, posture: 0.05, velocity: 0.2, torque: 1e-3 };
 
 /// One sample of the closed loop.
 pub struct Sample {
-    /// Time at its end, s.
+    /// Time at the end of the sample, s.
     pub time: f64,
-    /// True state at its end.
+    /// True state at the end of the sample.
     pub state: State,
-    /// Torques during it, N m.
+    /// Torques of the actuators during the sample, N m.
     pub tau: Joints,
-    /// The tip, m, and its distance from the goal.
+    /// Position of the tip in the world, m.
     pub tip: [f64; 3],
     /// Distance of the tip from the goal, m.
     pub off: f64,
-    /// What the controller took.
+    /// Time and iterations that the controller needed.
     pub spent: Spent,
-    /// The state that was measured at its begin.
+    /// The state that was measured at the beginning of the sample.
     pub measured: State,
-    /// The external torques at its begin, N m.
+    /// The external torques at the beginning of the sample, N m.
     pub external: Joints,
     /// The goal of the plan, m.
     pub reference: [f64; 3],
 }
 
-/// How far positions (rad), velocities (rad/s) and torques (N m) were beyond their limits at most.
+/// Returns the largest violations of the limits of positions (rad), velocities (rad/s) and torques (N m).
 #[must_use]
 pub fn beyond(samples: &[Sample]) -> [f64; 3] {
     let mut most = [0.0_f64; 3];
@@ -64,7 +65,7 @@ pub fn run(method: Method) -> Vec<Sample> {
     let payload = Payload { mass: LOAD, com: [0.0, 0.0, 0.05], ..Payload::default() };
     let mut plant = Plant { state: start, payload, noise: [1e-4, 5e-3], random: Rng::with_seed(1) };
     let mut controller = Controller::new(method, &start);
-    // a slow one: the load's inertia is an external torque, too, and it answers to the accelerations of the plan
+    // a low gain, because the accelerations of the plan act on the load, and its inertia appears as an external torque
     let mut observer = ObserverState::new(1.0, INTERVAL);
     let mut tau = Panda.gravity_torques(&start.q);
     let mut reference = tip(&start.q).0;
@@ -88,7 +89,8 @@ pub fn run(method: Method) -> Vec<Sample> {
     samples
 }
 
-/// How far the end of an interval is from that of 20 short ones at most, at the states of a motion: rad.
+/// Returns the largest error of the position after an interval, rad, at the states of a motion. The reference is the
+/// end of 20 short intervals.
 #[must_use]
 pub fn model_error(method: Method, samples: &[Sample]) -> f64 {
     let end = |method, state: &State, tau: &Joints, length| {
@@ -103,7 +105,7 @@ pub fn model_error(method: Method, samples: &[Sample]) -> f64 {
     most
 }
 
-/// The point on the way to a goal that is a stride away.
+/// Returns the point at distance `stride` from `from` on the straight line to a goal, or the goal if it is nearer.
 fn towards(from: &[f64; 3], goal: &[f64; 3], stride: f64) -> [f64; 3] {
     let way: [f64; 3] = std::array::from_fn(|axis| goal[axis] - from[axis]);
     let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();

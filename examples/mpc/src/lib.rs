@@ -1,4 +1,4 @@
-//! Model-predictive control of a robot arm with dynamics that are made when it is compiled.
+//! Model-predictive control of a robot arm. The code of its dynamics is generated when the program is compiled.
 
 pub mod controller;
 pub mod experiment;

@@ -18,7 +18,7 @@ use mpc::experiment::{GOALS, INTERVAL, LOAD, SAMPLES, Sample, beyond, model_erro
 use mpc::model::{DOF, Method};
 use mpc::picture::picture;
 
-/// A part of the time of an iteration.
+/// A function that returns a time of an iteration, such as that of the whole call.
 type Part = fn(&Spent) -> f64;
 
 fn main() -> ExitCode {
@@ -70,12 +70,12 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// A number of each motion.
+/// Prints a line with one number for each of the two motions.
 fn row(name: &str, motions: &[Vec<Sample>; 2], of: impl Fn(&[Sample]) -> f64) {
     println!("  {name:<50}{:>24.2}{:>24.2}", of(&motions[0]), of(&motions[1]));
 }
 
-/// The median of a number, and what 99 % of the samples are below.
+/// Returns the median of a time and, in brackets, its 99th percentile.
 fn middle(samples: &[Sample], of: fn(&Spent) -> f64) -> String {
     let mut numbers: Vec<f64> = samples.iter().map(|sample| of(&sample.spent)).collect();
     numbers.sort_by(f64::total_cmp);
@@ -83,7 +83,8 @@ fn middle(samples: &[Sample], of: fn(&Spent) -> f64) -> String {
     format!("{middle:.3} ({high:.3})")
 }
 
-/// The motion, and what the controller was given and took: `casadi_mpc.py` plans again from the same inputs.
+/// Returns the motion as CSV, with the inputs and outputs of the controller. `casadi_mpc.py` plans again from the same
+/// inputs.
 fn table(samples: &[Sample]) -> String {
     let mut table = String::from("t,off,whole,model,goal1,goal2,goal3");
     for joint in 1..=DOF {

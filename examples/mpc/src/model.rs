@@ -5,13 +5,13 @@ use rne::{
     MomentumObserver, PayloadDynamics,
 };
 
-/// Joints.
+/// Number of joints.
 pub const DOF: usize = 7;
 
 /// One number for each joint.
 pub type Joints = [f64; DOF];
 
-/// The Panda of the robots that rne ships.
+/// The Panda arm, one of the robots that rne ships.
 #[derive(
     InverseDynamics, ForwardDynamics, ForwardDynamicsDerivatives, Kinematics, MomentumObserver, PayloadDynamics,
 )]
@@ -37,7 +37,7 @@ impl State {
     }
 }
 
-/// How a plan goes from one node to the next.
+/// The method of integration by which a plan goes from one node to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// Euler's semi-implicit method: one call of the dynamics for an interval.
@@ -46,19 +46,19 @@ pub enum Method {
     RungeKutta,
 }
 
-/// Rows of a matrix with a column for each position, velocity and torque at the begin of an interval.
+/// Rows of a matrix with a column for each position, velocity and torque at the beginning of an interval.
 pub type Rows = [[f64; 3 * DOF]; DOF];
 
-/// The linear model of an interval: derivatives by positions, velocities and torques at its begin.
+/// The linear model of an interval: derivatives with respect to positions, velocities and torques at its beginning.
 pub enum Interval {
-    /// Accelerations and their derivatives.
+    /// The accelerations and their derivatives.
     Euler(Joints, Box<AccelerationDerivatives<DOF, f64>>),
-    /// The state at the end, and the derivatives of its positions and velocities.
+    /// The state at the end of the interval, and the derivatives of its positions and velocities.
     RungeKutta(State, Box<[Rows; 2]>),
 }
 
 impl Interval {
-    /// The model at a state, for torques to which the external ones are added.
+    /// Linearises an interval at a state. The external torques are added to the torques of the actuators.
     #[must_use]
     pub fn new(method: Method, state: &State, tau: &Joints, external: &Joints, interval: f64) -> Self {
         match method {
@@ -70,7 +70,7 @@ impl Interval {
         }
     }
 
-    /// The state at the end.
+    /// Returns the state at the end of the interval.
     #[must_use]
     pub fn end(&self, state: &State, interval: f64) -> State {
         match self {
@@ -80,15 +80,16 @@ impl Interval {
     }
 }
 
-/// The four slopes, and their derivatives by the chain rule: of a slope at x, where x has the derivatives S, those of
-/// the velocities are the lower rows of S, and those of the accelerations ∂q̈/∂x S + ∂q̈/∂τ.
+/// Integrates an interval by the method of Runge and Kutta and differentiates it by the chain rule. Its four slopes are
+/// taken at states x that have the derivatives S. The derivatives of a slope's velocities are the lower rows of S, and
+/// those of its accelerations are ∂q̈/∂x S + ∂q̈/∂τ.
 fn runge_kutta(start: &State, tau: &Joints, external: &Joints, interval: f64) -> Interval {
     let unit: [Rows; 2] = std::array::from_fn(|part| {
         std::array::from_fn(|row| std::array::from_fn(|column| if column == part * DOF + row { 1.0 } else { 0.0 }))
     });
     let (mut state, mut moved) = (*start, unit);
     let (mut end, mut by) = (*start, Box::new(unit));
-    // the part of the interval after which the next slope is taken, and the weight of this one
+    // the fraction of the interval at which the next slope is taken, and the weight of this slope
     for (ahead, weight) in [(0.5, 1.0), (0.5, 2.0), (1.0, 2.0), (0.0, 1.0)] {
         let (qdd, of) = accelerations(&state, tau, external);
         let mut slope: Box<[Rows; 2]> = Box::new([moved[1], [[0.0; 3 * DOF]; DOF]]);
@@ -117,7 +118,8 @@ fn runge_kutta(start: &State, tau: &Joints, external: &Joints, interval: f64) ->
     Interval::RungeKutta(end, by)
 }
 
-/// Accelerations of the arm and their derivatives, for torques to which the external ones are added.
+/// Returns the accelerations of the arm and their derivatives. The external torques are added to the torques of the
+/// actuators.
 #[must_use]
 pub fn accelerations(state: &State, tau: &Joints, external: &Joints) -> (Joints, AccelerationDerivatives<DOF, f64>) {
     let tau = std::array::from_fn(|joint| tau[joint] + external[joint]);
@@ -125,7 +127,7 @@ pub fn accelerations(state: &State, tau: &Joints, external: &Joints) -> (Joints,
     (qdd, Panda.forward_dynamics_derivatives(&state.q, &state.qd, &tau))
 }
 
-/// The tip in the world, m, and the linear rows of its Jacobian.
+/// Returns the position of the tip in the world, m, and the linear rows of its Jacobian.
 #[must_use]
 pub fn tip(q: &Joints) -> ([f64; 3], [[f64; DOF]; 3]) {
     let [x, y, z, ..] = Panda.jacobian(q);

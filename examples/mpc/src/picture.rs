@@ -1,4 +1,5 @@
-//! A picture of a motion: positions, velocities and torques beside their limits, and the distance of the tip.
+//! A picture of a motion: positions, velocities and torques with their limits, and the distance of the tip from its
+//! goal.
 
 use rne_plot::{Panel, PanelCurve, panels};
 
@@ -8,7 +9,7 @@ use crate::model::{DOF, Panda};
 
 const NAMES: [&str; DOF] = ["joint 1", "joint 2", "joint 3", "joint 4", "joint 5", "joint 6", "joint 7"];
 
-/// An SVG. Each joint is in parts of its limits, so that 1 is a limit for all of them.
+/// Returns the picture as SVG. The values of each joint are divided by its limits, so that 1 is a limit for all joints.
 #[must_use]
 pub fn picture(samples: &[Sample]) -> String {
     let time: Vec<f64> = samples.iter().map(|sample| sample.time).collect();
@@ -40,7 +41,7 @@ pub fn picture(samples: &[Sample]) -> String {
     panels("Motion of a Panda under model-predictive control", "Panda, model-predictive control", &about, &time, &drawn)
 }
 
-/// A panel with the first joints' names; the tip, which belongs to no joint, has that of the first one.
+/// Returns a panel with a curve per joint. The panel of the tip has one curve, which gets the name of the first joint.
 fn panel<'a>(title: &str, note: String, curves: &'a [Vec<f64>], limits: Vec<f64>) -> Panel<'a> {
     let curves = NAMES.iter().zip(curves).map(|(name, values)| PanelCurve { name, values }).collect();
     Panel { title: title.to_owned(), note, curves, limits, bounds: Vec::new(), bands: Vec::new() }

@@ -5,11 +5,11 @@ use rne::{Payload, PayloadDynamics};
 
 use crate::model::{Joints, Panda, State};
 
-/// The arm.
+/// The simulated arm.
 pub struct Plant {
     /// Its true state.
     pub state: State,
-    /// What it carries.
+    /// The load that it carries.
     pub payload: Payload<f64>,
     /// Standard deviations of the measured positions, rad, and velocities, rad/s.
     pub noise: [f64; 2],
@@ -18,7 +18,8 @@ pub struct Plant {
 }
 
 impl Plant {
-    /// Moves for an interval while the torques stay the same: the method of Runge and Kutta, in steps of 1 ms.
+    /// Integrates the motion during an interval with constant torques, by the method of Runge and Kutta in steps of 1
+    /// ms.
     pub fn advance(&mut self, tau: &Joints, interval: f64) {
         let steps = (interval / 1e-3).round().max(1.0);
         let step_length = interval / steps;
@@ -45,7 +46,7 @@ impl Plant {
         self.state = state;
     }
 
-    /// The state as the sensors have it.
+    /// Returns the state as the sensors measure it, with noise.
     pub fn measured(&mut self) -> State {
         let [position, velocity] = self.noise;
         let State { q, qd } = self.state;
@@ -53,7 +54,7 @@ impl Plant {
         State { q: noisy(q, position), qd: noisy(qd, velocity) }
     }
 
-    /// A number of the standard normal distribution, by Box and Muller.
+    /// Returns a random number of the standard normal distribution, by the method of Box and Muller.
     fn normal(&mut self) -> f64 {
         let (radius, angle) =
             ((-2.0 * (1.0 - self.random.f64()).ln()).sqrt(), self.random.f64() * std::f64::consts::TAU);

@@ -11,14 +11,14 @@ use osqp::{CscMatrix, Problem, Settings, Status};
 use crate::controller::{NODES, Node, Plan, Task};
 use crate::model::{DOF, Interval, Joints, Panda};
 
-/// Iterations of the solver after which its solution is taken as it is.
+/// Largest number of iterations of the solver. Its solution is then used as it is.
 const MOST_ITERATIONS: u32 = 100;
-/// Variables of a node: positions, velocities, torques.
+/// Number of variables of a node: positions, velocities, torques.
 const WIDTH: usize = 3 * DOF;
-/// The last node has no torques.
+/// Number of all variables; the last node has no torques.
 const VARIABLES: usize = NODES * WIDTH + 2 * DOF;
 
-/// Elements of a matrix, in the order in which they are written.
+/// Elements of a sparse matrix, in the order in which they were added.
 #[derive(Default)]
 struct Elements {
     rows: Vec<usize>,
@@ -33,7 +33,7 @@ impl Elements {
         self.values.push(value);
     }
 
-    /// For each element its place among those of the matrix, which are sorted by columns, then by rows.
+    /// Returns the place of each element when the elements are sorted by columns, then by rows.
     fn places(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.values.len()).collect();
         order.sort_by_key(|&at| (self.columns[at], self.rows[at]));
@@ -64,7 +64,7 @@ impl Elements {
     }
 }
 
-/// All numbers of the program.
+/// All numbers of the quadratic program.
 #[derive(Default)]
 struct Data {
     cost: Elements,
@@ -74,7 +74,7 @@ struct Data {
     upper: Vec<f64>,
 }
 
-/// The program, with what its solver keeps from one iteration to the next.
+/// The quadratic program, and data that the solver keeps from one iteration to the next.
 #[derive(Default)]
 pub struct Program {
     kept: Option<Kept>,
@@ -85,11 +85,11 @@ struct Kept {
     places: [Vec<usize>; 2],
 }
 
-/// Changes of a plan.
+/// The solution of the program: changes of all variables of a plan.
 pub struct Change(Vec<f64>);
 
 impl Change {
-    /// The changes of the positions, velocities or torques (`part` 0, 1, 2) of a node.
+    /// Returns the changes of the positions, velocities or torques (`part` 0, 1, 2) of a node.
     #[must_use]
     pub fn of(&self, node: usize, part: usize) -> Joints {
         std::array::from_fn(|joint| self.0[node * WIDTH + part * DOF + joint])
@@ -97,7 +97,8 @@ impl Change {
 }
 
 impl Program {
-    /// Solves the program; `None` if the solver finds no solution. Beside it the iterations of the solver.
+    /// Solves the program. Returns the solution, `None` if the solver finds none, and the number of iterations of the
+    /// solver.
     ///
     /// # Panics
     /// If a number of the plan is not finite.
@@ -114,14 +115,14 @@ impl Program {
                 kept.solver.update_A(constraints);
                 kept.solver.update_lin_cost(&data.linear);
                 kept.solver.update_bounds(&data.lower, &data.upper);
-                // the plan has moved to the last solution: no change is the best guess
+                // the plan already contains the last solution, so the best initial guess is no change
                 kept.solver.warm_start_x(&[0.0; VARIABLES]);
                 kept
             }
             none => {
                 let places = [data.cost.places(), data.constraints.places()];
                 let (cost, constraints) = matrices(&places);
-                // an iteration follows at the next sample: more digits are worth nothing
+                // a low accuracy suffices, because the next sample continues with another iteration
                 let settings = Settings::default()
                     .verbose(false)
                     .eps_abs(1e-4)
@@ -145,7 +146,7 @@ impl Program {
     }
 }
 
-/// Where a variable stands.
+/// Returns the index of a variable.
 const fn at(node: usize, part: usize, joint: usize) -> usize {
     node * WIDTH + part * DOF + joint
 }
@@ -159,7 +160,8 @@ impl Data {
         data
     }
 
-    /// The tip at its goal, rest, and torques that hold the arm; Gauss and Newton's Hessian.
+    /// Adds the costs: distance of the tip from its goal, distance from the posture, velocities, and torques other than
+    /// those that hold the arm. The Hessian is that of Gauss and Newton.
     fn costs(&mut self, plan: &Plan, nodes: &[Node], task: &Task) {
         for (node, Node { tip: (place, jacobian), .. }) in nodes.iter().enumerate() {
             let state = &plan.states[node];
@@ -185,8 +187,9 @@ impl Data {
         }
     }
 
-    /// Euler: δq̇⁺ = δq̇ + h (∂q̈/∂q δq + ∂q̈/∂q̇ δq̇ + ∂q̈/∂τ δτ) + gap, and δq⁺ = δq + h δq̇⁺ + gap, which has fewer
-    /// elements than δq̇⁺ in it. Runge and Kutta: both rows of positions, velocities and torques.
+    /// Adds the linear equations between nodes. Euler: δq̇⁺ = δq̇ + h (∂q̈/∂q δq + ∂q̈/∂q̇ δq̇ + ∂q̈/∂τ δτ) + gap, and
+    /// δq⁺ = δq + h δq̇⁺ + gap, which has fewer elements than with δq̇⁺ inserted. Runge and Kutta: both equations
+    /// contain positions, velocities and torques.
     fn dynamics(&mut self, plan: &Plan, nodes: &[Node], task: &Task) {
         for joint in 0..DOF {
             for (part, gap) in
@@ -244,8 +247,8 @@ impl Data {
         self.upper.push(right);
     }
 
-    /// Positions, velocities and torques within their limits. Where the measured state is
-    /// beyond one, the plan comes back: half of the rest with each interval.
+    /// Adds the limits of positions, velocities and torques. If the measured state violates a limit, the plan must
+    /// halve the violation in each interval.
     fn limits(&mut self, plan: &Plan, task: &Task) {
         let mut bound = |column: usize, value: f64, (lower, upper): (f64, f64)| {
             self.constraints.put(self.lower.len(), column, 1.0);

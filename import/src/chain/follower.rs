@@ -9,7 +9,8 @@ use crate::source::{quoted, some};
 use crate::urdf::{Gear, Joint, Mimic};
 
 impl Walk<'_> {
-    /// The position at which a joint is held, if it is held. One that follows a held one is held by it.
+    /// Returns the position at which a joint is locked, if it is locked. A joint that follows a locked joint is locked
+    /// by it.
     pub(super) fn held(&mut self, index: usize) -> Result<Option<f64>, Report> {
         if !self.selection.lock_others && !self.locks.contains_key(&index) {
             return Ok(None);
@@ -20,13 +21,14 @@ impl Walk<'_> {
         Ok(Some(value))
     }
 
-    /// The position at which a joint is held by the joints that it follows.
+    /// Returns the position of a joint that follows a locked joint, through the joints in between.
     fn held_by(&self, (mimics, leader): (Vec<&Mimic>, usize)) -> f64 {
         let start = self.locks.get(&leader).copied().unwrap_or(0.0);
         mimics.iter().rev().fold(start, |value, mimic| mimic.multiplier * value + mimic.offset)
     }
 
-    /// A joint that is held by name elsewhere than where the held joint that it follows has it: no state of the robot.
+    /// Remarks on a joint that is locked by name at another position than the one where the locked joint that it
+    /// follows puts it: the robot cannot have both.
     fn look_at_locked(&mut self, index: usize, value: f64) {
         let joint = &self.urdf.joints[index];
         let leader = joint.mimic.as_ref().filter(|_| self.locks.contains_key(&index)).and_then(|mimic| {
@@ -45,8 +47,8 @@ impl Walk<'_> {
         }
     }
 
-    /// The joints that decide where a joint is: those that it follows, one after the other, up to one that is held by
-    /// name or follows none.
+    /// Returns the joints that a joint follows one after the other, up to the first that is locked by name or follows
+    /// none, and the index of this first one.
     pub(super) fn follows(&self, index: usize) -> Result<(Vec<&Mimic>, usize), Report> {
         let joints = &self.urdf.joints;
         let (mut mimics, mut leader) = (Vec::new(), index);
@@ -80,7 +82,8 @@ impl Walk<'_> {
         Ok((mimics, leader))
     }
 
-    /// The moving joint of the chain that a joint follows, if it does, however it is held itself.
+    /// Returns the moving joint of the chain that a joint follows, if it follows one, even if the joint itself is
+    /// locked.
     pub(super) fn moving_leader(&self, index: usize) -> Option<usize> {
         let mimic = self.urdf.joints[index].mimic.as_ref()?;
         let (mimics, leader) = self.follows(mimic.leader?).ok()?;
@@ -88,8 +91,8 @@ impl Walk<'_> {
         (moves && mimic.multiplier != 0.0).then_some(leader)
     }
 
-    /// Looks whether a joint off the chain follows a moving joint of the chain. A table cannot say that it moves, so it
-    /// is refused at the end of the walk, unless it is held by name or nothing that it carries has mass.
+    /// Checks whether a joint outside the chain follows a moving joint of the chain. A table cannot describe this
+    /// motion, so the joint is refused at the end of the walk, unless it is locked by name or carries no mass.
     pub(super) fn look_at_follower(&mut self, index: usize) {
         let Some(leader) = self.moving_leader(index) else { return };
         let joint = &self.urdf.joints[index];
@@ -106,8 +109,8 @@ impl Walk<'_> {
         });
     }
 
-    /// Keeps how a joint of a whole robot follows another one: `place` is its own in the chain. One that follows a held
-    /// joint is refused, because it does not move.
+    /// Stores how a joint of a whole robot follows another one; `place` is the index of the follower in the chain. A
+    /// joint that follows a locked joint is refused, because it does not move.
     pub(super) fn look_at_coupling(&mut self, index: usize, place: usize) -> Result<(), Report> {
         self.places.insert(index, place);
         let joint = &self.urdf.joints[index];
@@ -140,7 +143,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Keeps how a joint follows others by gears. It must follow joints that move and follow none.
+    /// Stores how a joint follows others by gears. These must move and must not be followers themselves.
     fn look_at_gear(&mut self, gear: &Gear, place: usize) -> Result<(), Report> {
         let joints = &self.urdf.joints;
         let follows =
@@ -162,13 +165,13 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Gives the joints of the chain that follow another one their couplings.
+    /// Gives each follower of the chain its coupling.
     pub(super) fn couple(&self, chain: &mut Chain) {
         for Coupled { place, follows, offset, rotor } in &self.coupled {
             let placed = |&(joint, ratio): &(usize, f64)| Some((*self.places.get(&joint)?, ratio));
             let mut follows: Vec<(usize, f64)> = follows.iter().filter_map(placed).collect();
             follows.sort_by_key(|(joint, _)| *joint);
-            // the rotor of a follower turns with the joint that it follows: that is a larger rotor there
+            // the rotor of a follower turns with the followed joint, so its inertia is added to the rotor there
             if let ([(leader, ratio)], true) = (&follows[..], *rotor != 0.0) {
                 let motor = chain.joints[*leader].motor.get_or_insert(NO_MOTOR);
                 motor.inertia += ratio * ratio * rotor / (motor.gear_ratio * motor.gear_ratio);
@@ -180,14 +183,14 @@ impl Walk<'_> {
     }
 }
 
-/// A joint that follows another one.
+/// A joint that follows others.
 pub(super) struct Coupled {
-    /// Its place in the chain.
+    /// The index of the follower in the chain.
     place: usize,
-    /// The joints of the URDF that it follows, which follow none, and the ratios.
+    /// The joints of the URDF that it follows, which are no followers themselves, and the ratios.
     follows: Vec<(usize, f64)>,
     offset: f64,
-    /// The inertia of its rotor at the joint.
+    /// The inertia of the follower's rotor, at its joint.
     rotor: f64,
 }
 

@@ -6,17 +6,17 @@ use super::walk::Walk;
 use crate::source::{names, quoted, some};
 use crate::urdf::Joint;
 
-/// The help against a joint that no row of a table can describe.
+/// The help for a joint that no row of a table can describe.
 const SEVERAL: &str = "a row of the table is one revolute or prismatic joint: write the joint as several of them, such \
                        as a ball as three hinges about x, y and z";
 
-/// The remedy against a joint that must not move.
+/// Returns the remedy for a joint that must not move: to lock it.
 pub(super) fn lock(joint: &str) -> Remedy {
     Remedy::LockJoint { joint: one_line(joint) }
 }
 
 impl Walk<'_> {
-    /// A joint of the chain must be one that a table has.
+    /// Refuses a joint of the chain of a kind that a table does not have.
     pub(super) fn refuse(&self, joint: &Joint) -> Result<(), Report> {
         let error = |message: String, help: String| Err(self.urdf.source.error(&joint.span, message, help));
         let name = quoted(&joint.name);
@@ -41,7 +41,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Refuses movable joints off the chain that nobody holds.
+    /// Refuses movable joints outside the chain that are not locked.
     pub(super) fn refuse_loose(&self) -> Result<(), Report> {
         let Some(&first) = self.loose.first() else { return Ok(()) };
         let (joints, whole) = (&self.urdf.joints, self.selection.whole);

@@ -1,4 +1,4 @@
-//! Remarks on the links and joints that a walk meets.
+//! Remarks on links and joints that the walk through the tree meets.
 
 use rne_model::{Remedy, Transform, one_line, six_digits};
 
@@ -9,7 +9,7 @@ use crate::remark::Remark;
 use crate::source::{names, quoted};
 
 impl Walk<'_> {
-    /// Remarks on a moving joint of the chain.
+    /// Adds the remarks on a moving joint of the chain.
     pub(super) fn remark(&mut self, index: usize) {
         self.told.joints.insert(index);
         let joint = &self.urdf.joints[index];
@@ -28,18 +28,19 @@ impl Walk<'_> {
         }
     }
 
-    /// Says that a base with mass stands still.
+    /// Adds a remark if the mass of the fixed base is left out.
     pub(super) fn remark_on_standing_base(&mut self) {
         if self.standing > 0.0 {
             let mass = six_digits(self.standing);
             let remark = Remark::from(format!("the base stands still: its mass of {mass} kg is left out"));
-            // another remark says how a base floats that the file lets float
+            // if a link floats in the file, another remark already says how the base can float
             let remark = if self.urdf.floats.is_none() { remark.remedy(Remedy::Float) } else { remark };
             self.told.remarks.push(remark);
         }
     }
 
-    /// Tells whether the link that floats in the file is a floating base, whose joint is at `placement` in the world.
+    /// Adds a remark and records whether the link that floats in the file becomes a floating base; `placement` is that
+    /// of its joint in the world, or `None` if it does not.
     pub(super) fn look_at_floating(&mut self, placement: Option<Pose>) {
         let Some(link) = self.urdf.floats else { return };
         let name = quoted(&self.urdf.links[link].name);
@@ -47,7 +48,7 @@ impl Walk<'_> {
         let then = if floats { "so the robot has a floating base" } else { "and rne fixes it where the file has it" };
         self.told.remarks.push(format!("the link {name} floats in the file, {then}"));
         self.told.floats = Some(floats);
-        // the free joint of an MJCF file counts from the world, wherever its body is in the file
+        // the position of an MJCF free joint is counted from the world, not from the body's place in the file
         if let Some(placement) = placement.map(transform).filter(|it| *it != Transform::IDENTITY)
             && self.urdf.gravity.is_none()
         {
@@ -61,7 +62,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Says that the tip is one of several ends.
+    /// Adds a remark that the tip is one of several ends.
     pub(super) fn remark_on_other_ends(&mut self, others: &[usize]) {
         if others.is_empty() {
             return;

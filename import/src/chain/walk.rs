@@ -1,4 +1,4 @@
-//! The walk through the tree of links, which lumps what is fixed to a link into it.
+//! Walks through the tree of links and merges all links that are fixed to a link into it.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -13,7 +13,7 @@ use crate::snap::Snapping;
 use crate::source::quoted;
 use crate::urdf::{Joint, Kind, Urdf};
 
-/// A walk through the tree.
+/// A walk through the tree of links.
 pub(super) struct Walk<'a> {
     pub(super) urdf: &'a Urdf,
     pub(super) selection: &'a Selection,
@@ -21,23 +21,23 @@ pub(super) struct Walk<'a> {
     /// The joints of the chain that move.
     pub(super) moving: BTreeSet<usize>,
     pub(super) snapping: Snapping,
-    /// Movable joints off the chain that nobody holds.
+    /// Movable joints outside the chain that are not locked.
     pub(super) loose: Vec<usize>,
-    /// Joints off the chain that follow one of it, and which.
+    /// Joints outside the chain, each with the joint of the chain that it follows.
     pub(super) followers: Vec<(usize, usize)>,
-    /// Joints of a whole robot that follow another one: their place in the chain, and how.
+    /// Joints of a whole robot that follow others.
     pub(super) coupled: Vec<Coupled>,
-    /// The places in the chain of the joints that move.
+    /// For each moving joint of the URDF, its index in the chain.
     pub(super) places: HashMap<usize, usize>,
-    /// The links, where they are fixed to the chain.
+    /// The frames of the links, each with its placement on the chain.
     pub(super) frames: Vec<ChainFrame>,
-    /// The mass of the links that stand still with the base, kg.
+    /// Total mass of the links that stand still with the base, kg.
     pub(super) standing: f64,
     pub(super) told: Extracted,
 }
 
 impl<'a> Walk<'a> {
-    /// A walk that has not begun. `path` has the joints from the link `base` to the link `tip`.
+    /// Prepares a walk. `path` has the joints from the link `base` to the link `tip`.
     pub(super) fn new(
         urdf: &'a Urdf,
         selection: &'a Selection,
@@ -71,7 +71,7 @@ impl<'a> Walk<'a> {
         })
     }
 
-    /// World → base: the joints up to there are held.
+    /// Returns the placement of the base in the world; the joints from the root to the base are locked.
     pub(super) fn base(&mut self, base: usize) -> Result<Pose, Report> {
         let before = path(self.urdf, self.urdf.root, base)?;
         let mut pose = Pose::identity();
@@ -81,7 +81,7 @@ impl<'a> Walk<'a> {
         Ok(pose)
     }
 
-    /// The placement of what a held joint carries.
+    /// Returns the placement of the link after a locked or fixed joint, in the frame of the link before it.
     fn across(&mut self, index: usize) -> Result<Pose, Report> {
         let joint = &self.urdf.joints[index];
         self.told.joints.insert(index);
@@ -106,13 +106,13 @@ impl<'a> Walk<'a> {
             kind if kind.has_one_freedom() => {
                 Pose { rotation: Rotation::about(self.axis(joint), value), translation: Vector::ZERO }
             }
-            // Planar, floating, spherical: held where they are at zero.
+            // Planar, floating and spherical joints are locked at zero.
             _ => Pose::identity(),
         };
         Ok(place * moved)
     }
 
-    /// Whether a link, or a link after it, has mass or inertia.
+    /// Returns whether a link, or a link after it, has mass or inertia.
     pub(super) fn carries_mass(&self, link: usize) -> bool {
         let mut open = vec![link];
         while let Some(index) = open.pop() {
@@ -129,14 +129,15 @@ impl<'a> Walk<'a> {
         Pose::new(joint.xyz, self.snapping.rpy(&format!("joint {}", joint.name), joint.rpy))
     }
 
-    /// The direction of a joint that `along` or `locks` has found to have one; the default where it has none.
+    /// Returns the unit vector of a joint axis, or the default x if the axis has no direction. `along` and `locks` have
+    /// refused a zero axis where it matters.
     fn axis(&mut self, joint: &Joint) -> Vector {
         let direction = Vector::decimal(joint.axis).direction().unwrap_or_else(|| Vector::unit(0));
         self.snapping.axis(&format!("joint {}", joint.name), joint.axis, direction)
     }
 
     pub(super) fn along(&mut self, base: usize, path: &[usize], chain: &mut Chain) -> Result<(), Report> {
-        // The frame of the current link in that of the last one that moves.
+        // The frame of the current link in the frame of the last moving link.
         let mut pose = Pose::identity();
         self.aside(base, path.first().copied());
         self.frames_of_base(base, pose, path.first().copied());
@@ -169,7 +170,7 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    /// The joint that moves a link of the robot.
+    /// Adds a joint that moves a link of the robot to the chain.
     fn moving_joint(
         &mut self,
         index: usize,
@@ -184,7 +185,7 @@ impl<'a> Walk<'a> {
         let place = pose * self.place(joint);
         let axis = self.axis(joint);
         let [viscous, friction] = joint.friction;
-        // a follower has no motor: what moves it is that of the joint that it follows
+        // a follower has no motor: the motor of the joint that it follows moves it
         let (inertia, gear_ratio) = (joint.rotor_inertia, joint.gear_ratio);
         let (viscous, friction) = (viscous / (gear_ratio * gear_ratio), friction / gear_ratio.abs());
         let has_motor = joint.friction != [0.0; 2] || [inertia, gear_ratio] != [0.0, 1.0];
@@ -213,7 +214,7 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    /// The loops that moving joints close. One of which no joint moves is left out.
+    /// Returns the closed loops that moving joints are in. A loop that no joint moves is left out, with a remark.
     pub(super) fn loops(&mut self, base: usize) -> Result<Vec<ChainLoop>, Report> {
         let mut loops = Vec::new();
         for (index, closed) in self.urdf.loops.iter().enumerate() {
@@ -247,9 +248,10 @@ impl<'a> Walk<'a> {
         Ok(loops)
     }
 
-    /// All links after the base, branch by branch.
+    /// Adds all links after the base, branch by branch.
     pub(super) fn whole(&mut self, base: usize, tip: usize, chain: &mut Chain) -> Result<(), Report> {
-        // joints to cross, with the joint that moves the link before and the place of that link in its frame
+        // stack of: a joint to cross, the joint that moves the link before it, and the placement of this link in the
+        // frame of the last moving link
         let mut open: Vec<(Option<usize>, Option<usize>, Pose)> = vec![(None, None, Pose::identity())];
         while let Some((crossed, mut on, mut pose)) = open.pop() {
             if let Some(index) = crossed {
@@ -283,7 +285,7 @@ impl<'a> Walk<'a> {
             open.extend(joints.map(|&joint| (Some(joint), on, pose)));
         }
         let error = |message: String| Err(self.urdf.source.error(&self.urdf.links[base].span, message, None));
-        // joints that nobody holds are the mistake
+        // movable joints that are not locked are refused elsewhere, with a better message
         if !self.loose.is_empty() {
             return Ok(());
         }
@@ -297,8 +299,8 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    /// The body of a link alone, seen from the frame in which it stands at `pose`; `on` is the joint that moves it,
-    /// `None` on a floating base.
+    /// Returns mass and inertia of a link alone, in the frame in which its placement is `pose`. `on` is the joint that
+    /// moves the link, `None` on a floating base.
     fn body(&mut self, index: usize, (on, pose): (Option<usize>, Pose)) -> Body {
         let link = &self.urdf.links[index];
         self.told.links.insert(index);
@@ -313,9 +315,8 @@ impl<'a> Walk<'a> {
         Body::at(link.mass, Pose::new(link.xyz, rpy), link.inertia).seen_from(pose)
     }
 
-    /// The link and all that is fixed to it, but for what hangs on the joint `next`, seen from the frame in which the
-    /// link stands at `pose`.
-    /// `on` is the joint that moves them.
+    /// Merges a link with all links that are fixed to it, except those after the joint `next`, and returns mass and
+    /// inertia in the frame in which the placement of the link is `pose`. `on` is the joint that moves them.
     fn lump(&mut self, link: usize, (on, pose): (usize, Pose), next: Option<usize>) -> Result<Body, Report> {
         let mut body = Body::NONE;
         let mut open = vec![(link, pose)];
@@ -331,10 +332,10 @@ impl<'a> Walk<'a> {
         Ok(body)
     }
 
-    /// Collects the frames on the base: the link and all links that fixed joints fix to it, but for what hangs on the
+    /// Collects the frames of the base link and of all links that fixed joints attach to it, except those after the
     /// joint `next`.
     fn frames_of_base(&mut self, link: usize, pose: Pose, next: Option<usize>) {
-        // what is snapped beside the arm changes no torque, and is not told
+        // snapped angles on the base change no torque, so no remark lists them
         let mut snapping = Snapping { is_on: self.snapping.is_on, ..Snapping::default() };
         let mut open = vec![(link, pose)];
         while let Some((index, pose)) = open.pop() {
@@ -351,7 +352,8 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// A joint on a link that stands still moves by itself, unless it follows a joint of the chain.
+    /// Records the joints after a link that stands still as joints that do not belong to the arm, except those after
+    /// the joint `next`. Joints among them that follow a joint of the chain are checked.
     fn aside(&mut self, link: usize, next: Option<usize>) {
         let mut open = vec![link];
         while let Some(index) = open.pop() {
@@ -367,7 +369,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Whether a position is within limits, to a millionth: limits are rounded, too.
+/// Returns whether a position is within limits up to 1e-6, because limits are rounded, too.
 fn is_within(value: f64, lower: f64, upper: f64) -> bool {
     (lower - 1e-6..=upper + 1e-6).contains(&value)
 }

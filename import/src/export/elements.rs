@@ -1,4 +1,4 @@
-//! The elements of a URDF as text.
+//! Writes the elements of a URDF as text.
 
 use std::fmt::Write as _;
 
@@ -9,12 +9,12 @@ use crate::body::Body;
 use crate::chain::ChainJoint;
 use crate::geometry::{Pose, rounded};
 
-/// The names of joints that are taken.
+/// The names of joints that are used already.
 #[derive(Default)]
 pub(super) struct Names(Vec<String>);
 
 impl Names {
-    /// The name of a joint as an attribute; that of another fixed joint gets a stroke.
+    /// Returns the name of a joint as an attribute value; a name that is used already gets a stroke (') at its end.
     pub(super) fn unique(&mut self, name: &str) -> String {
         let mut name = one_line(name);
         while matches!(name.as_str(), "world_to_base" | "to_tip") || self.0.contains(&name) {
@@ -25,7 +25,7 @@ impl Names {
     }
 }
 
-/// Text for a comment of XML, which must not contain `--`.
+/// Returns a text for an XML comment, which must not contain `--`.
 pub(super) fn comment(text: &str) -> String {
     let mut text = one_line(text);
     while text.contains("--") {

@@ -4,14 +4,15 @@ use rne_model::Motor;
 
 /// The friction of a joint as a URDF has it.
 pub(super) struct Friction {
-    /// N m s/rad or N s/m.
+    /// Viscous friction at the joint, N m s/rad or N s/m.
     pub(super) damping: f64,
-    /// N m or N.
+    /// Coulomb friction at the joint, N m or N.
     pub(super) friction: f64,
 }
 
 impl Friction {
-    /// Through the gear: G² B and |G| Tc, of the mean Tc of both directions; `None` where that overflows.
+    /// Computes the friction at the joint, after the gear: G² B, and |G| Tc with the mean Tc of both directions; `None`
+    /// where this overflows.
     pub(super) fn at_joint(motor: &Motor) -> Option<Self> {
         let Motor { gear_ratio, viscous, coulomb: [positive, negative], .. } = *motor;
         let mean = 0.5 * positive - 0.5 * negative;
@@ -19,7 +20,7 @@ impl Friction {
         (damping.is_finite() && friction.is_finite()).then_some(Self { damping, friction })
     }
 
-    /// The value, where it exists.
+    /// Computes the friction at the joint; `None` where there is none, or where it overflows.
     pub(super) fn of(motor: &Motor) -> Option<Self> {
         Self::at_joint(motor).filter(|at_joint| at_joint.damping != 0.0 || at_joint.friction != 0.0)
     }

@@ -1,11 +1,11 @@
-//! Losses of a URDF, in sentences.
+//! Remarks on what a URDF cannot express of a robot.
 
 use rne_model::{Joint, Motor, Robot, exact_digits, one_line};
 
 use super::friction::Friction;
 use crate::chain::Chain;
 
-/// Says what the URDF of a robot has not. `gravity` is in the axes of its root link, whose name is `root`.
+/// Returns remarks on what the URDF of a robot lacks. `gravity` is in the axes of its root link, whose name is `root`.
 pub(super) fn remarks(robot: &Robot, chain: &Chain, gravity: [f64; 3], root: &str) -> Vec<String> {
     let mut remarks = Vec::new();
     let [x, y, z] = gravity;
@@ -37,7 +37,7 @@ pub(super) fn remarks(robot: &Robot, chain: &Chain, gravity: [f64; 3], root: &st
     remarks
 }
 
-/// The numbers of motors that a URDF cannot hold.
+/// Lists the data of motors that a URDF cannot contain.
 fn of_motors(robot: &Robot) -> Vec<String> {
     let mut remarks = Vec::new();
     let motors = || robot.joints.iter().filter_map(|joint| Some((one_line(&joint.name), joint.motor?)));

@@ -1,4 +1,4 @@
-//! Remarks on an import, and the notes of a robot file that repeat them.
+//! Remarks on an import, and the notes of the robot file that repeat them.
 
 use std::collections::BTreeSet;
 
@@ -20,7 +20,7 @@ pub(super) fn snapping(snapped: &[Snapped], Difference { position, torque, .. }:
     format!("{SNAPPED}{count}; torques move by up to {torque:.1e} of the largest, the tip by {position:.1e} m")
 }
 
-/// Notes for the reader of the robot file.
+/// Returns the notes that are written into the robot file.
 pub(super) fn notes(told: &Extracted, change: Option<&Difference>) -> Option<String> {
     let mut notes = Vec::new();
     for (joint, value) in &told.held {
@@ -32,7 +32,7 @@ pub(super) fn notes(told: &Extracted, change: Option<&Difference>) -> Option<Str
 }
 
 impl Urdf {
-    /// The remarks of the file, of its way to the robot, and on the robot.
+    /// Returns all remarks: on the file, on its conversion to a chain, and on the robot.
     pub(super) fn remarks_on(&self, told: &mut Extracted, robot: &Robot, table: &Table) -> Vec<Remark> {
         let mut all: Vec<Remark> = self.ignored(told).into_iter().map(Remark::from).collect();
         all.append(&mut told.remarks.0);
@@ -42,7 +42,7 @@ impl Urdf {
         all
     }
 
-    /// Unknown names in the chain, and beside the links and joints.
+    /// Remarks on unknown elements and attributes in links and joints of the chain, and outside of links and joints.
     fn ignored(&self, told: &Extracted) -> Vec<String> {
         let links = told.links.iter().map(|&link| &self.links[link].unknown);
         let joints = told.joints.iter().map(|&joint| &self.joints[joint].unknown);
@@ -54,7 +54,7 @@ impl Urdf {
         vec![format!("the import ignores these parts, which it does not know: {kinds}")]
     }
 
-    /// Origins that were probably meant in other units.
+    /// Remarks on origins whose numbers are probably in other units.
     fn suspicious_numbers(&self) -> Vec<String> {
         let joints = self.joints.iter().map(|joint| ("joint", &joint.name, joint.xyz, joint.rpy));
         let links = self.links.iter().map(|link| ("the inertia of", &link.name, link.xyz, link.rpy));
@@ -74,8 +74,8 @@ impl Urdf {
         remarks
     }
 
-    /// Links with inertias that no body has, with the place of each. The robot file may hide them: it has one body of
-    /// links that are fixed to each other.
+    /// Remarks on links whose inertia no physical body has, with the place of each. The robot file may hide them,
+    /// because it merges links that are fixed to each other.
     fn impossible_parts(&self, told: &Extracted) -> Vec<String> {
         let links = told.lumped.iter().flatten().chain([&told.base]);
         let links = links.filter_map(|name| self.links.iter().find(|link| link.name == *name));
@@ -94,8 +94,8 @@ impl Urdf {
     }
 }
 
-/// Says which frame of the robot file is the base link, `link`, where it is not frame 0 by name and place. `start` is
-/// frame 0 in the axes of this link; `frames` has the links and their names as frames.
+/// Returns a remark on which frame of the robot file is the base link `link`, if that is not frame 0 in name and place.
+/// `start` is frame 0 in the axes of this link; `frames` has the links with their names as frames.
 pub(super) fn base_remark(link: &str, frames: &[(String, String)], start: Transform) -> Option<String> {
     let (_, name) = frames.iter().find(|(known, _)| known == link)?;
     let is_frame_0 = start == Transform::IDENTITY;
@@ -116,7 +116,7 @@ pub(super) fn base_remark(link: &str, frames: &[(String, String)], start: Transf
     ))
 }
 
-/// A remark on the rotors, which belong to the arm only on request.
+/// Returns a remark on the rotors of motors, whose inertia belongs to the arm only if the caller asks for it.
 pub(super) fn rotors(robot: &Robot) -> Option<Remark> {
     let has_rotor = |joint: &&Joint| joint.motor.is_some_and(|motor| motor.inertia != 0.0);
     let joints: Vec<&str> = robot.joints.iter().filter(has_rotor).map(|joint| joint.name.as_str()).collect();
@@ -125,7 +125,7 @@ pub(super) fn rotors(robot: &Robot) -> Option<Remark> {
     (count > 0).then(|| Remark::from(text()).remedy(Remedy::Rotors))
 }
 
-/// Remarks on a table.
+/// Returns remarks on a table.
 pub(crate) fn remarks(robot: &Robot, table: &Table) -> Vec<String> {
     let mut remarks = Vec::new();
     for ([first, second], tilt) in &table.levelled {

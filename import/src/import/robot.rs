@@ -1,4 +1,4 @@
-//! The robot of a chain and its table, and the names that a robot file takes.
+//! Makes a robot from a chain and its table, and names that a robot file accepts.
 
 use rne_model::{
     Angle, Bodies, ClosedLoops, Convention, FixedFrame, FloatingBase, InertiaReference, Joint, JointKind, Robot, Row,
@@ -10,7 +10,7 @@ use crate::frames::transform;
 use crate::geometry::Pose;
 use crate::table::Table;
 
-/// The robot of a chain and its table, without texts.
+/// Makes a robot from a chain and its table, without title, source and notes.
 pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Robot {
     let start = chain.base * table.start;
     let gravity = start.rotation.transpose() * (chain.base.rotation * chain.gravity);
@@ -46,7 +46,7 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         gravity: gravity.rounded(10.0),
         base: transform(start),
         tool: transform(table.tool),
-        // the importer names it
+        // the import sets the name later
         floating_base: chain
             .floating_base
             .map(|body| FloatingBase { name: String::new(), link: body.to_link_at(Pose::identity()) }),
@@ -65,7 +65,7 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
     }
 }
 
-/// A name for a robot file.
+/// Converts a name to an identifier that a robot file accepts.
 pub(crate) fn identifier(name: &str) -> String {
     let mut identifier = String::new();
     for c in name.chars().take(60) {

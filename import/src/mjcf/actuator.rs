@@ -1,4 +1,4 @@
-//! Actuators of joints: their limits of force, rotors and damping.
+//! Reads the actuators of joints: force limits, rotors and damping.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ use super::{LeftOut, is_there};
 use crate::source::quoted;
 use crate::urdf::Urdf;
 
-/// Gives joints what their actuators say. The force at a joint is that of its actuator times the gear.
+/// Gives joints the data of their actuators. The force at a joint is the force of its actuator times the gear ratio.
 pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, urdf: &mut Urdf) -> Result<(), Report> {
     let joints: HashMap<String, usize> =
         urdf.joints.iter().enumerate().map(|(index, joint)| (joint.name.clone(), index)).collect();
@@ -32,7 +32,7 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
         };
         let gear = actuator.first("gear", 6)?.unwrap_or(1.0);
         let force = actuator.range("forcerange", "forcelimited")?;
-        // the control of a motor is its force
+        // the control signal of a motor is its force, so its range limits the force
         let control = if element.name == "motor" { actuator.range("ctrlrange", "ctrllimited")? } else { None };
         let narrower = |one: (f64, f64), other: (f64, f64)| (one.0.max(other.0), one.1.min(other.1));
         let range = match (force, control) {
@@ -58,7 +58,7 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
         }
     }
     for (joint, range) in &limits {
-        // of several actuators of a joint, none alone limits its torque
+        // the torque of a joint with several actuators is their sum, so no single range limits it
         let is_alone = limits.iter().filter(|(other, _)| other == joint).count() == 1;
         let Some(range) = range.filter(|_| is_alone) else { continue };
         let joint = &mut urdf.joints[*joint];

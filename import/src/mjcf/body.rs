@@ -1,4 +1,4 @@
-//! The bodies of an MJCF file as links, with their joints and sites.
+//! Reads the bodies of an MJCF file as links, with their joints and sites.
 
 use std::collections::{BTreeSet, HashSet};
 
@@ -13,46 +13,46 @@ use crate::geometry::{Pose, Vector};
 use crate::source::{Source, quoted};
 use crate::urdf::{Joint, Kind, Link, Urdf};
 
-/// The link of the world.
+/// The name of the link that is the world.
 pub(super) const WORLD: &str = "world";
 
-/// The remark on bodies that a motion capture moves.
+/// The remark on bodies that motion capture moves.
 pub(super) const MOCAP: &str = "bodies that a motion capture moves (`mocap`) are fixed";
 
-/// The help where MuJoCo must compile the model.
+/// The help for parts that only MuJoCo's compiler can evaluate.
 pub(super) const COMPILED: &str = "in Python, rne.from_mujoco(mujoco.MjModel.from_xml_path(FILE)) takes the compiled \
                                    model; or mujoco.mj_saveLastXML(FILE, model) saves it as a file for rne, if \
                                    `compiler` has `saveinertial=\"true\"`: without this, some versions of MuJoCo lose \
                                    `inertiagrouprange`, and with it the right inertias";
 
-/// More links than any robot has.
+/// Largest number of links, more than any robot has.
 const MAX_LINKS: usize = 20_000;
 
-/// An element of a body, and the frame of the body in which it stands.
+/// An element of a body, and the frame in which it is, relative to the body.
 #[derive(Clone, Copy)]
 pub(super) struct Content<'a> {
     pub(super) element: &'a Element,
     pub(super) frame: Pose,
-    /// The class of elements that name none.
+    /// The default class of elements that name no class.
     pub(super) class: usize,
 }
 
-/// Bodies that are read one after the other, each before those in it.
+/// The bodies that have been read so far; each body is read before the bodies in it.
 pub(super) struct Bodies<'a> {
     pub(super) settings: &'a Settings<'a>,
     pub(super) left_out: &'a mut LeftOut,
     pub(super) urdf: Urdf,
-    /// The names of links and of joints that are taken.
+    /// The names of links that are used already, and those of joints.
     pub(super) links: HashSet<String>,
     pub(super) joints: HashSet<String>,
-    /// Sites, with the links on which they are.
+    /// Sites, each with the link that carries it.
     sites: Vec<(usize, Content<'a>)>,
     /// Links that a free joint moves.
     pub(super) floating: Vec<usize>,
 }
 
 impl<'a> Bodies<'a> {
-    /// All bodies of the file below a link `world`.
+    /// Reads all bodies of the file as links below a link `world`.
     pub(super) fn read(
         settings: &'a Settings<'a>,
         left_out: &'a mut LeftOut,
@@ -84,7 +84,7 @@ impl<'a> Bodies<'a> {
         Ok(bodies.urdf)
     }
 
-    /// The elements of a body, and those of its frames (`frame`).
+    /// Returns the elements of a body, including those inside its elements `frame`.
     fn contents(
         &self,
         of: &'a Element,
@@ -108,12 +108,12 @@ impl<'a> Bodies<'a> {
         Ok(())
     }
 
-    /// The class of the elements in a body or a frame.
+    /// Returns the default class for the elements in a body or a frame.
     fn childclass(&self, element: &Element, class: usize) -> Result<usize, Report> {
         element.text("childclass").map_or(Ok(class), |name| self.settings.class(name, &element.span))
     }
 
-    /// The bodies and sites on a link.
+    /// Reads the bodies on a link, and stores its sites.
     fn below(&mut self, link: usize, contents: &[Content<'a>]) -> Result<(), Report> {
         for content in contents {
             match content.element.name.as_str() {
@@ -125,7 +125,7 @@ impl<'a> Bodies<'a> {
         Ok(())
     }
 
-    /// A body on the link `parent`, and all on it.
+    /// Reads a body on the link `parent`, and everything on this body.
     fn body(&mut self, parent: usize, Content { element, frame, class }: Content<'a>) -> Result<(), Report> {
         let body = self.settings.plain(element);
         body.refuse_slips(&["name", "pos", "quat", "axisangle", "xyaxes", "zaxis", "euler", "childclass"], &[])?;
@@ -149,7 +149,7 @@ impl<'a> Bodies<'a> {
         self.below(link, &contents)
     }
 
-    /// A new link, without mass.
+    /// Adds a link without mass.
     pub(super) fn link(&mut self, name: String, of: &Element) -> Result<usize, Report> {
         if !self.links.insert(name.clone()) {
             return Err(twice(self.settings.source, of, &name));
@@ -162,7 +162,7 @@ impl<'a> Bodies<'a> {
         Ok(self.urdf.links.len() - 1)
     }
 
-    /// Fixes a link to another one.
+    /// Adds a fixed joint between two links.
     pub(super) fn fixed(&mut self, parent: usize, child: usize, place: Pose) {
         let link = &self.urdf.links[child];
         let (xyz, rpy) = placed(place);
@@ -179,7 +179,7 @@ impl<'a> Bodies<'a> {
         self.urdf.joints.push(joint);
     }
 
-    /// Sites, as links without mass. One that has the name of a body gets another one.
+    /// Adds sites as links without mass. A site with the name of a body gets another name.
     fn add_sites(&mut self) -> Result<(), Report> {
         let mut seen = BTreeSet::new();
         for (link, Content { element, frame, class }) in std::mem::take(&mut self.sites) {
@@ -201,7 +201,7 @@ impl<'a> Bodies<'a> {
         Ok(())
     }
 
-    /// The masses, so that they add up to the prescribed one.
+    /// Scales the masses and inertias of all links so that the sum of the masses is the one that the file prescribes.
     fn scale_masses(&mut self) {
         let all: f64 = self.urdf.links.iter().map(|link| link.mass).sum();
         let Some(total) = self.settings.compiler.total_mass.filter(|_| all > 0.0) else { return };
@@ -214,7 +214,7 @@ impl<'a> Bodies<'a> {
         }
     }
 
-    /// Makes the body that floats and carries all joints the base of the robot.
+    /// Makes the floating body that carries all joints the base of the robot.
     fn find_base(&mut self) {
         self.urdf.find_floating(&self.floating);
         for &link in self.floating.iter().filter(|&&link| self.urdf.floats != Some(link)) {
@@ -227,19 +227,19 @@ impl<'a> Bodies<'a> {
     }
 }
 
-/// Position and orientation of an element.
+/// Returns the position and orientation of an element.
 pub(super) fn pose(element: Classed) -> Result<Pose, Report> {
     let position = element.vector("pos")?.unwrap_or_default();
     Ok(Pose { rotation: element.rotation()?, translation: Vector::decimal(position) })
 }
 
-/// A pose as numbers.
+/// Returns a pose as a translation and roll, pitch, yaw.
 pub(super) fn placed(pose: Pose) -> ([f64; 3], [f64; 3]) {
     let size = pose.translation.to_f64().into_iter().map(f64::abs).fold(1.0, f64::max);
     (pose.translation.rounded(size), pose.rotation.to_rpy())
 }
 
-/// The one limit of a torque that is within a range; the smaller one of two that differ.
+/// Converts a range of torque to one limit for both directions: the smaller magnitude, with a remark if they differ.
 pub(super) fn effort(left_out: &mut LeftOut, joint: &str, (low, high): (f64, f64)) -> Option<f64> {
     let limit = low.abs().min(high.abs());
     if low != -high {

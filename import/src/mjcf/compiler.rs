@@ -1,4 +1,4 @@
-//! The element `compiler`: how the numbers of the file are meant.
+//! Reads the element `compiler`, which says how to interpret numbers of the file.
 
 use rne_model::Report;
 
@@ -7,25 +7,26 @@ use super::settings::{Classed, Settings};
 use crate::geometry::Rotation;
 use crate::source::{Source, quoted};
 
-/// The settings of the compiler that matter here.
+/// The settings of the compiler that dynamics needs.
 #[derive(Clone, Debug)]
 pub(super) struct Compiler {
     pub(super) is_degrees: bool,
-    /// Three letters: about which axes Euler's angles turn, those of the frame (lower case) or those around it.
+    /// Three letters: the axes about which Euler angles turn, in lower case for rotating axes and in upper case for
+    /// fixed axes.
     euler: [u8; 3],
     pub(super) autolimits: bool,
     pub(super) inertia_from_geoms: FromGeoms,
-    /// Groups of geoms that count for inertias.
+    /// The range of groups of geoms that count for inertias.
     pub(super) groups: [f64; 2],
-    /// Whether a tensor that no body can have becomes the mean of its moments about every axis.
+    /// Whether an inertia that no physical body has is replaced by the mean of its moments about every axis.
     pub(super) balances: bool,
-    /// Least mass and principal moment of a body.
+    /// The smallest mass and the smallest principal moment that a body gets.
     pub(super) least: [f64; 2],
-    /// The mass of all bodies, kg, if it is prescribed.
+    /// The total mass of all bodies, kg, if the file prescribes it.
     pub(super) total_mass: Option<f64>,
 }
 
-/// The bodies whose inertia is that of their geoms.
+/// Which bodies get their inertia from their geoms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum FromGeoms {
     /// No body.
@@ -107,12 +108,12 @@ impl Compiler {
         Ok(())
     }
 
-    /// An angle of the file, rad.
+    /// Converts an angle of the file to rad.
     pub(super) fn radians(&self, angle: f64) -> f64 {
         if self.is_degrees { angle.to_radians() } else { angle }
     }
 
-    /// The orientation of Euler's angles, rad.
+    /// Returns the rotation of Euler angles, rad.
     pub(super) fn euler(&self, angles: [f64; 3]) -> Rotation {
         self.euler.iter().zip(angles).fold(Rotation::identity(), |before, (letter, angle)| {
             let turn = match letter.to_ascii_lowercase() {
@@ -125,7 +126,7 @@ impl Compiler {
     }
 }
 
-/// The message of a name that is there twice.
+/// Makes the error for a name that is used twice.
 pub(super) fn twice(source: &Source, element: &Element, name: &str) -> Report {
     let place = within(source, &element.span, name);
     let message = format!("there are two elements `{}` with the name {}", element.name, quoted(name));

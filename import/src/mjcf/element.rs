@@ -1,4 +1,4 @@
-//! The elements of an MJCF file, with those of the files that it includes in their places.
+//! Reads the elements of an MJCF file, and puts those of included files in their places.
 
 use std::collections::BTreeSet;
 use std::io::Read as _;
@@ -12,46 +12,48 @@ use rne_model::{Report, open_file};
 use crate::source::{Source, quoted};
 use crate::urdf::xml::MAX_BYTES;
 
-/// Bodies are nested as deep as joints follow each other; a robot file has 64 joints.
+/// Largest depth of elements. Bodies are nested as deep as joints follow each other, and a robot file has at most 64
+/// joints.
 const MAX_DEPTH: usize = 256;
-/// More elements than any robot has.
+/// Largest number of elements, more than any robot has.
 const MAX_ELEMENTS: usize = 200_000;
 
 /// An element of the file.
 #[derive(Debug, Default)]
 pub(super) struct Element {
     pub(super) name: String,
-    /// The place of its tag.
+    /// The place of the element's tag in the text.
     pub(super) span: Range<usize>,
-    /// Names and values.
+    /// The names and the values of the attributes.
     pub(super) attributes: Vec<(String, String)>,
     pub(super) children: Vec<Element>,
 }
 
 impl Element {
-    /// The value of an attribute of its own.
+    /// Returns the value of an attribute that the element itself has.
     pub(super) fn text(&self, attribute: &str) -> Option<&str> {
         self.attributes.iter().find(|(name, _)| name == attribute).map(|(_, value)| value.as_str())
     }
 
-    /// The children of a name.
+    /// Returns the children with a name.
     pub(super) fn children(&self, name: &str) -> impl Iterator<Item = &Self> {
         self.children.iter().filter(move |child| child.name == name)
     }
 
-    /// The elements in the sections of a name, which may be there several times.
+    /// Returns the elements inside all sections of a name; the file may have several such sections.
     pub(super) fn below(&self, section: &str) -> impl Iterator<Item = &Self> {
         self.children(section).flat_map(|section| &section.children)
     }
 }
 
-/// The place of a part of a tag in the text.
+/// Returns the place of a part of a tag in the text.
 pub(super) fn within(source: &Source, tag: &Range<usize>, part: &str) -> Range<usize> {
     let found = source.text.get(tag.clone()).filter(|_| !part.is_empty()).and_then(|tag| tag.find(part));
     found.map_or(tag.clone(), |at| tag.start + at..tag.start + at + part.len())
 }
 
-/// The root element of the text, with included files in their places; their texts are appended to that of the source.
+/// Reads the root element of the text. Elements of included files are put in their places, and the texts of these files
+/// are appended to that of the source.
 pub(super) fn read(source: &mut Source) -> Result<Element, Report> {
     let mut number = 0;
     let mut root = parse(source, 0, &mut number)?;
@@ -60,7 +62,7 @@ pub(super) fn read(source: &mut Source) -> Result<Element, Report> {
     Ok(root)
 }
 
-/// Puts the elements of included files in the places of the elements `include`.
+/// Replaces each element `include` by the elements of the included file.
 fn include(
     source: &mut Source,
     element: &mut Element,
@@ -95,7 +97,7 @@ fn include(
     Ok(())
 }
 
-/// The levels of elements in an element, itself included.
+/// Returns the number of levels of an element, counting itself.
 fn height(element: &Element) -> usize {
     1 + element.children.iter().map(height).max().unwrap_or(0)
 }
@@ -105,7 +107,8 @@ fn too_deep(source: &Source, place: &Range<usize>) -> Report {
     source.error(place, message, None)
 }
 
-/// The text of an included file and what messages call it. MuJoCo searches it in the folder of the main file.
+/// Reads an included file, and returns its text and its name in messages. MuJoCo searches the file in the folder of the
+/// main file.
 fn open(source: &Source, place: &Range<usize>, file: &str) -> Result<(String, String), Report> {
     let error = |message: String, help: Option<String>| Err(source.error(place, message, help));
     if source.file.starts_with('<') || source.file == "-" {
@@ -130,7 +133,7 @@ fn open(source: &Source, place: &Range<usize>, file: &str) -> Result<(String, St
     Ok((text.strip_prefix('\u{FEFF}').map_or(text.clone(), str::to_owned), name))
 }
 
-/// The root element of the text from `start`.
+/// Parses the root element of the text, beginning at `start`.
 fn parse(source: &Source, start: usize, number: &mut usize) -> Result<Element, Report> {
     let text = &source.text[start..];
     let mut reader = Reader::from_str(text);
@@ -187,7 +190,7 @@ fn parse(source: &Source, start: usize, number: &mut usize) -> Result<Element, R
     }
 }
 
-/// An element of a tag, without children.
+/// Makes an element from a tag, without children.
 fn element(source: &Source, tag: &BytesStart, place: &Range<usize>) -> Result<Element, Report> {
     let name = String::from_utf8_lossy(tag.name().as_ref()).into_owned();
     let mut attributes: Vec<(String, String)> = Vec::new();

@@ -1,4 +1,5 @@
-//! The section `equality`: joints that follow others, and closed loops, which MuJoCo closes by `connect` and `weld`.
+//! Reads the section `equality`: joints that follow others, and closed loops, which MuJoCo closes by `connect` and
+//! `weld`.
 
 use rne_model::{Cut, Report};
 
@@ -11,7 +12,7 @@ use crate::geometry::{Pose, Rotation, Vector, decimal};
 use crate::source::quoted;
 use crate::urdf::{Joint, Kind, Mimic, Urdf};
 
-/// Couples joints and closes loops by the equalities of the file.
+/// Applies the equalities of the file: some couple joints, others close loops.
 pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, urdf: &mut Urdf) -> Result<(), Report> {
     for element in root.below("equality") {
         let equality = settings.classed(element, 0)?;
@@ -37,13 +38,14 @@ pub(super) fn read(settings: &Settings, left_out: &mut LeftOut, root: &Element, 
     Ok(())
 }
 
-/// Whether the options of the file switch all equalities off.
+/// Returns whether the options of the file disable all equalities.
 fn are_disabled(root: &Element) -> bool {
     let flags = root.children("option").flat_map(|option| option.children.iter().filter(|flag| flag.name == "flag"));
     flags.filter_map(|flag| flag.text("equality")).last() == Some("disable")
 }
 
-/// Couples a joint to another one: position = reference + polynomial of the other joint's position from its reference.
+/// Couples a joint to another one. MuJoCo's equality is: position - reference = polynomial of (other position - its
+/// reference).
 fn couple(equality: Classed, left_out: &mut LeftOut, urdf: &mut Urdf) -> Result<(), Report> {
     let find = |attribute: &str| {
         let Some(name) = equality.text(attribute) else { return Ok(None) };
@@ -90,7 +92,7 @@ fn couple(equality: Classed, left_out: &mut LeftOut, urdf: &mut Urdf) -> Result<
     Ok(())
 }
 
-/// Adds the loop of a `connect`, which is a spherical joint, or of a `weld`.
+/// Adds the closed loop of a `connect`, whose cut joint is spherical, or of a `weld`.
 fn close(equality: Classed, left_out: &mut LeftOut, urdf: &mut Urdf) -> Result<(), Report> {
     let element = equality.element;
     let matter = ["name", "class", "body1", "body2", "site1", "site2", "anchor", "relpose", "active"];
@@ -114,7 +116,7 @@ fn close(equality: Classed, left_out: &mut LeftOut, urdf: &mut Urdf) -> Result<(
     let mut links = [0; 2];
     for (link, name) in links.iter_mut().zip(names) {
         let find = |name: &str| urdf.links.iter().position(|link| link.is_site == are_sites && link.name == name);
-        // a site that has the name of a body has got another one
+        // a site with the name of a body was renamed when it was read
         let other = || find(&format!("{name}_site")).filter(|_| are_sites);
         let Some(known) = find(name).or_else(other) else {
             let what = if are_sites { "site" } else { "body" };
@@ -128,7 +130,8 @@ fn close(equality: Classed, left_out: &mut LeftOut, urdf: &mut Urdf) -> Result<(
     urdf.add_loop(Loop { name, span: element.span.clone(), cut, ends }, equality.settings.source)
 }
 
-/// The places of the cut joint on the two links of a loop. `of_one` is the pose of the second link in the first one.
+/// Returns the places of the cut joint on the two links of a loop. `of_one` is the placement of the second link in the
+/// frame of the first one.
 fn places(equality: Classed, cut: Cut, are_sites: bool, of_one: Pose) -> Result<[Pose; 2], Report> {
     let (anchor, relative) = (equality.vector::<3>("anchor")?, equality.numbers("relpose", 7, 7)?);
     Ok(match (cut, anchor, relative) {
@@ -142,7 +145,7 @@ fn places(equality: Classed, cut: Cut, are_sites: bool, of_one: Pose) -> Result<
                 return Err(equality.error("relpose", "its quaternion has no direction"));
             };
             let translation = Vector::decimal([pose[0], pose[1], pose[2]]);
-            // the point at this pose of the first body is that at the anchor of the second one
+            // this pose on the first body and the anchor of the second body must coincide
             let anchor = anchor.map_or(Vector::ZERO, Vector::decimal);
             [Pose { rotation, translation }, Pose { rotation: Rotation::identity(), translation: anchor }]
         }
@@ -159,7 +162,7 @@ fn places(equality: Classed, cut: Cut, are_sites: bool, of_one: Pose) -> Result<
 }
 
 impl Urdf {
-    /// The place of a link in the world where all joints are at their references.
+    /// Returns the placement of a link in the world when all joints are at their reference positions.
     fn at_reference(&self, link: usize) -> Pose {
         let place = |&joint: &usize| {
             let joint = &self.joints[joint];
@@ -169,7 +172,7 @@ impl Urdf {
     }
 }
 
-/// The motion of a joint from 0 to a position.
+/// Returns the motion of a joint from position 0 to a position.
 fn moved(joint: &Joint, position: f64) -> Pose {
     let axis = Vector::decimal(joint.axis).direction().unwrap_or(Vector::unit(2));
     if joint.kind == Kind::Prismatic {
@@ -179,7 +182,7 @@ fn moved(joint: &Joint, position: f64) -> Pose {
     }
 }
 
-/// Fixes a joint at a position.
+/// Replaces a joint by a fixed one at a position.
 fn hold(urdf: &mut Urdf, joint: usize, position: f64) {
     let joint = &mut urdf.joints[joint];
     let place = Pose::new(joint.xyz, joint.rpy) * moved(joint, position);

@@ -1,4 +1,4 @@
-//! Mass and inertia of geoms: spheres, capsules, cylinders, boxes and ellipsoids.
+//! Computes mass and inertia of geoms: spheres, capsules, cylinders, boxes and ellipsoids.
 
 use std::f64::consts::PI;
 
@@ -11,10 +11,10 @@ use crate::body::Body;
 use crate::geometry::{Pose, Rotation, Vector, decimal};
 use crate::source::quoted;
 
-/// Density of a geom that says none, kg/m³.
+/// Density of a geom that gives neither mass nor density, kg/m³.
 const DENSITY: f64 = 1000.0;
 
-/// The sum of the geoms of a body; `None` without geoms in the groups of the compiler.
+/// Adds up the geoms of a body; `None` if no geom is in the groups that count.
 pub(super) fn inertial(settings: &Settings, name: &str, contents: &[Content]) -> Result<Option<Inertial>, Report> {
     let mut body = Body::NONE;
     let mut number = 0;
@@ -34,7 +34,8 @@ pub(super) fn inertial(settings: &Settings, name: &str, contents: &[Content]) ->
     Ok((number > 0).then_some(Inertial { mass, com, rpy: [0.0; 3], inertia }))
 }
 
-/// Mass, frame at the centre and inertia of a geom of the body `of`; `None` where it has no mass.
+/// Returns the mass, the frame at the centre, and the inertia of a geom of the body `of`; `None` where the geom has no
+/// mass.
 fn solid(geom: Classed, of: &str) -> Result<Option<(f64, Pose, Inertia)>, Report> {
     let (mass, density) = (geom.number("mass")?, geom.number("density")?.unwrap_or(DENSITY));
     let kind = geom.text("type").unwrap_or("sphere");
@@ -77,7 +78,7 @@ fn solid(geom: Classed, of: &str) -> Result<Option<(f64, Pose, Inertia)>, Report
     Ok(Some((mass, place, Inertia { xx, yy, zz, ..Inertia::default() })))
 }
 
-/// Volume of a solid, m³, and its principal moments of inertia about its centre divided by its mass, m².
+/// Returns the volume of a solid, m³, and its principal moments of inertia about its centre divided by its mass, m².
 fn unit_density(kind: &str, sizes: &[f64]) -> (f64, [f64; 3]) {
     let square = |length: f64| length * length;
     match *sizes {
@@ -89,7 +90,7 @@ fn unit_density(kind: &str, sizes: &[f64]) -> (f64, [f64; 3]) {
         [radius, half, ..] if kind == "capsule" => {
             let (ends, middle) = (4.0 / 3.0 * PI * radius.powi(3), 2.0 * PI * square(radius) * half);
             let (ends_part, middle_part) = (ends / (ends + middle), middle / (ends + middle));
-            // the centre of half a sphere is 3/8 of the radius from its disc
+            // the centre of mass of a hemisphere is 3/8 of the radius from its flat side
             let away = 0.4 * square(radius) + square(half) + 0.75 * half * radius;
             let across = ends_part * away + middle_part * (square(radius) / 4.0 + square(half) / 3.0);
             let along = ends_part * 0.4 * square(radius) + middle_part * square(radius) / 2.0;
@@ -104,7 +105,8 @@ fn unit_density(kind: &str, sizes: &[f64]) -> (f64, [f64; 3]) {
     }
 }
 
-/// The frame between two points, whose z axis points from the second to the first one, and half their distance.
+/// Returns the frame in the middle between two points, whose z axis points from the second to the first one, and half
+/// their distance.
 pub(super) fn between(element: Classed, [a, b, c, d, e, f]: [f64; 6]) -> Result<(Pose, f64), Report> {
     let (from, to) = (Vector::decimal([a, b, c]), Vector::decimal([d, e, f]));
     let way = from - to;

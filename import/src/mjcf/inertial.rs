@@ -1,4 +1,4 @@
-//! Mass, centre and inertia of a body: those of its `inertial`, or of its geoms.
+//! Computes mass, centre of mass and inertia of a body, from its element `inertial` or from its geoms.
 
 use rne_model::{Inertia, Report};
 
@@ -19,7 +19,7 @@ pub(super) struct Inertial {
     pub(super) inertia: Inertia,
 }
 
-/// The inertia of a body at `place` in its parent, as MuJoCo's compiler has it.
+/// Computes the inertia of a body as MuJoCo's compiler does; `place` is the placement of the body in its parent.
 pub(super) fn read(
     settings: &Settings,
     name: &str,
@@ -39,7 +39,8 @@ pub(super) fn read(
     let inertial = match (of_geoms, written.first()) {
         (Some(inertial), _) => inertial,
         (None, Some(content)) => explicit(settings.plain(content.element), name, content)?,
-        // what the least mass gives to such a body, MuJoCo puts at the numbers of its `pos` in its own frame
+        // such a body has only the least mass; MuJoCo puts it at the coordinates of the body's `pos`, but in the frame
+        // of the body itself
         (None, None) => {
             let (com, rpy) = placed(place);
             Inertial { com, rpy, ..Inertial::default() }
@@ -48,7 +49,7 @@ pub(super) fn read(
     adjusted(settings, name, body, inertial)
 }
 
-/// An element `inertial`.
+/// Reads an element `inertial`.
 fn explicit(element: Classed, name: &str, content: &Content) -> Result<Inertial, Report> {
     element.refuse_slips(
         &["pos", "quat", "mass", "diaginertia", "fullinertia", "axisangle", "xyaxes", "zaxis", "euler"],
@@ -80,7 +81,7 @@ fn explicit(element: Classed, name: &str, content: &Content) -> Result<Inertial,
     Ok(Inertial { mass, com, rpy, inertia })
 }
 
-/// The inertia with the least values of the compiler, and balanced where it says so.
+/// Applies the compiler settings: smallest values, and balancing where the file asks for it.
 fn adjusted(settings: &Settings, name: &str, body: &Element, mut inertial: Inertial) -> Result<Inertial, Report> {
     let [mass, least] = settings.compiler.least;
     inertial.mass = inertial.mass.max(mass);

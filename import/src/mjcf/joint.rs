@@ -1,4 +1,4 @@
-//! The joints of a body, with massless links between those of one body.
+//! Reads the joints of a body; if a body has several, massless links are put between them.
 
 use rne_model::{Limits, Report};
 
@@ -11,7 +11,7 @@ use crate::geometry::{Pose, Rotation, Vector, decimal};
 use crate::source::quoted;
 use crate::urdf::{Joint, Kind};
 
-/// The attributes of a joint that matter.
+/// The attributes of a joint that are read.
 const JOINT: [&str; 15] = [
     "name",
     "class",
@@ -30,12 +30,12 @@ const JOINT: [&str; 15] = [
     "actuatorfrclimited",
 ];
 
-/// The other attributes of a joint that are known.
+/// The attributes of a joint that are known and ignored.
 const JOINT_PASSED_OVER: [&str; 6] = ["springref", "springyield", "margin", "group", "user", "actuatorgravcomp"];
 
 impl<'a> Bodies<'a> {
-    /// The joints of a body, from the link `parent` to that of the body, which is at `place` where all are at their
-    /// reference.
+    /// Adds the joints of a body, from the link `parent` to the link of the body. `place` is the placement of the body
+    /// when all joints are at their reference positions.
     pub(super) fn joints(
         &mut self,
         parent: usize,
@@ -88,7 +88,7 @@ impl<'a> Bodies<'a> {
         Ok(link)
     }
 
-    /// The link of a body with a free joint, fixed where the file has the body.
+    /// Adds the link of a body with a free joint, fixed where the file has the body.
     fn free_body(
         &mut self,
         joint: Classed<'a>,
@@ -111,14 +111,14 @@ impl<'a> Bodies<'a> {
         Ok(link)
     }
 
-    /// A free name for the massless link that a joint moves where another joint of the same body follows it.
+    /// Returns an unused name for the massless link that a joint moves when the same body has a further joint.
     fn link_between(&self, joint: &str) -> String {
         let numbered = (2..).map(|number| format!("{joint}_link_{number}"));
         let mut names = std::iter::once(format!("{joint}_link")).chain(numbered);
         names.find(|name| !self.links.contains(name)).unwrap_or_default()
     }
 
-    /// A hinge, slide or ball of the body `of`, without its place.
+    /// Reads a hinge, slide or ball joint of the body `of`, without its placement.
     fn joint(&mut self, joint: Classed<'a>, of: &str) -> Result<Joint, Report> {
         joint.refuse_slips(&JOINT, &JOINT_PASSED_OVER)?;
         let kind = match joint.text("type").unwrap_or("hinge") {

@@ -1,4 +1,4 @@
-//! The values of elements: their own ones, or those of their classes (`default`).
+//! Finds the values of attributes: those of the element itself, else those of its default class (`default`).
 
 use std::ops::Range;
 
@@ -27,26 +27,26 @@ const ACTUATORS: [&str; 12] = [
     "pid",
 ];
 
-/// Settings and classes of the file.
+/// The settings and default classes of the file.
 pub(super) struct Settings<'a> {
     pub(super) source: &'a Source,
     pub(super) compiler: Compiler,
     classes: Vec<Class<'a>>,
 }
 
-/// A class of values; that at 0 is the one of all elements.
+/// A class of default values; the class 0 is that of all elements.
 struct Class<'a> {
     name: &'a str,
     parent: Option<usize>,
     elements: Vec<&'a Element>,
 }
 
-/// An element with its class.
+/// An element together with its default class.
 #[derive(Clone, Copy)]
 pub(super) struct Classed<'a> {
     pub(super) element: &'a Element,
     pub(super) settings: &'a Settings<'a>,
-    /// The class whose values stand for those that the element lacks.
+    /// The class whose values replace attributes that the element lacks.
     class: Option<usize>,
 }
 
@@ -62,7 +62,7 @@ impl<'a> Settings<'a> {
         Ok(settings)
     }
 
-    /// Takes the values of a class and of the classes in it.
+    /// Reads the default values of a class and of the classes inside it.
     fn take(&mut self, class: usize, default: &'a Element) -> Result<(), Report> {
         for element in &default.children {
             if element.name != "default" {
@@ -86,7 +86,7 @@ impl<'a> Settings<'a> {
         Ok(())
     }
 
-    /// The class of a name.
+    /// Returns the class of a name.
     pub(super) fn class(&self, name: &str, place: &Range<usize>) -> Result<usize, Report> {
         self.classes.iter().position(|class| class.name == name).ok_or_else(|| {
             let message = format!("there is no class {}", quoted(name));
@@ -99,13 +99,14 @@ impl<'a> Settings<'a> {
         })
     }
 
-    /// An element that takes what it lacks from its class, or else from `class`.
+    /// Gives an element the class that it names, else `class`.
     pub(super) fn classed(&'a self, element: &'a Element, class: usize) -> Result<Classed<'a>, Report> {
         let class = element.text("class").map_or(Ok(class), |name| self.class(name, &element.span))?;
         Ok(Classed { element, settings: self, class: Some(class) })
     }
 
-    /// Whether an attribute is true in the values of a kind of elements, in the class of an element.
+    /// Returns whether an attribute is true in the default values of one kind of elements, in the class of the element
+    /// `of`.
     pub(super) fn default_flag(&self, kind: &str, attribute: &str, of: Classed<'_>) -> Option<bool> {
         let classes = std::iter::successors(of.class, |&class| self.classes[class].parent);
         let value = classes.into_iter().find_map(|class| {
@@ -115,14 +116,14 @@ impl<'a> Settings<'a> {
         value.map(|value| value != "false")
     }
 
-    /// An element without class.
+    /// Gives an element no class.
     pub(super) fn plain(&'a self, element: &'a Element) -> Classed<'a> {
         Classed { element, settings: self, class: None }
     }
 }
 
 impl<'a> Classed<'a> {
-    /// The value of an attribute and the element that has it.
+    /// Returns the value of an attribute and the element that has it.
     fn find(self, attribute: &str) -> Option<(&'a Element, &'a str)> {
         if let Some(value) = self.element.text(attribute) {
             return Some((self.element, value));
@@ -145,7 +146,7 @@ impl<'a> Classed<'a> {
         self.find(attribute).map(|(_, value)| value)
     }
 
-    /// A mistake in the value of an attribute.
+    /// Makes an error about the value of an attribute.
     pub(super) fn error(self, attribute: &str, fault: &str) -> Report {
         let (element, value) = self.find(attribute).unwrap_or((self.element, ""));
         let source = self.settings.source;
@@ -153,15 +154,15 @@ impl<'a> Classed<'a> {
         source.error(&within(source, &element.span, value), message, None)
     }
 
-    /// A mistake of the element.
+    /// Makes an error about the element.
     pub(super) fn refused(self, message: impl Into<String>, help: impl Into<Help>) -> Report {
         self.settings.source.error(&self.element.span, message, help)
     }
 
-    /// The numbers of an attribute: `least` at least and `most` at most.
+    /// Reads the numbers of an attribute, from `least` to `most` of them.
     pub(super) fn numbers(self, attribute: &str, least: usize, most: usize) -> Result<Option<Vec<f64>>, Report> {
         let Some(value) = self.text(attribute) else { return Ok(None) };
-        // a range may be open at an end
+        // a limit of a range may be infinite
         let most_of_all = if attribute.ends_with("range") { f64::INFINITY } else { LARGEST };
         let numbers: Vec<f64> = value
             .split_whitespace()
@@ -187,12 +188,12 @@ impl<'a> Classed<'a> {
         Ok(self.vector(attribute)?.map(|[number]| number))
     }
 
-    /// The first number of an attribute that may have several.
+    /// Returns the first number of an attribute that may have several.
     pub(super) fn first(self, attribute: &str, most: usize) -> Result<Option<f64>, Report> {
         Ok(self.numbers(attribute, 1, most)?.map(|numbers| numbers[0]))
     }
 
-    /// Whether an attribute is true; `None` where it is missing or `auto`.
+    /// Returns whether an attribute is true; `None` where it is missing or `auto`.
     pub(super) fn flag(self, attribute: &str) -> Result<Option<bool>, Report> {
         match self.text(attribute) {
             None | Some("auto") => Ok(None),
@@ -202,14 +203,15 @@ impl<'a> Classed<'a> {
         }
     }
 
-    /// Two limits, where `limited` says so, or both are there and say so by themselves.
+    /// Returns the two limits of a range if the attribute `limited` is true; if it is missing, where the compiler's
+    /// `autolimits` lets a range mean limits.
     pub(super) fn range(self, range: &str, limited: &str) -> Result<Option<(f64, f64)>, Report> {
         let ends = self.vector(range)?.map(|[low, high]| (end_of_range(low), end_of_range(high)));
         let is_limited = self.flag(limited)?.unwrap_or(self.settings.compiler.autolimits);
         Ok(ends.filter(|(low, high)| is_limited && low < high))
     }
 
-    /// Angles, rad.
+    /// Reads angles and converts them to rad.
     pub(super) fn angles<const N: usize>(self, attribute: &str) -> Result<Option<[f64; N]>, Report> {
         let Some(angles) = self.vector::<N>(attribute)? else { return Ok(None) };
         let angles = angles.map(|angle| self.settings.compiler.radians(angle));
@@ -219,7 +221,7 @@ impl<'a> Classed<'a> {
         Ok(Some(angles))
     }
 
-    /// The orientation of the element's frame in the frame around it.
+    /// Returns the orientation of the element's frame in the frame around it.
     pub(super) fn rotation(self) -> Result<Rotation, Report> {
         let ways: Vec<&str> = ["quat", "axisangle", "xyaxes", "zaxis", "euler"]
             .into_iter()
@@ -247,7 +249,8 @@ impl<'a> Classed<'a> {
         Rotation::quaternion(quaternion).ok_or_else(|| no_direction("quat"))
     }
 
-    /// Remembers attributes that are not known, and refuses those that look like slips of what matters here.
+    /// Refuses unknown attributes that are probably misspellings of attributes that are read, which `matter` has.
+    /// `others` are known, too.
     pub(super) fn refuse_slips(self, matter: &[&str], others: &[&str]) -> Result<(), Report> {
         for (name, _) in &self.element.attributes {
             if matter.contains(&name.as_str()) || others.contains(&name.as_str()) {

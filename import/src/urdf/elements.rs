@@ -1,4 +1,4 @@
-//! From the elements of a URDF to its links and joints, with the checks that they are one tree.
+//! Turns the elements of a URDF into links and joints, and checks that they are one tree.
 
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
@@ -10,7 +10,7 @@ use crate::source::{Help, names, quoted};
 use crate::transmission::Transmission;
 use crate::urdf::xml::{Seen, end_of_range};
 
-/// The help where the links are not one tree.
+/// The help for links that are not one tree.
 const CONNECT: &str = "connect all links with joints to one tree";
 
 impl Urdf {
@@ -90,15 +90,16 @@ impl Urdf {
         Ok(())
     }
 
-    /// The error for a second element `what` of one name. `first` is the place of the other one.
+    /// Makes the error for a second element `what` with the same name; `first` is the place of the first one.
     fn taken(&self, what: &str, name: &str, first: &Range<usize>, span: &Range<usize>) -> Report {
-        // lines count from 1
+        // line numbers begin with 1
         let line = 1 + self.source.text.as_bytes().iter().take(first.start).filter(|&&byte| byte == b'\n').count();
         let message = format!("the {what} {} is already defined in line {line}", quoted(name));
         self.source.error(span, message, format!("names of {what}s must differ"))
     }
 
-    /// The link that the element `end` of `owner` names, as `find` finds it; `help` says how to write the element.
+    /// Returns the link that the element `end` of `owner` names; `find` looks it up, `help` says how to write the
+    /// element.
     pub(crate) fn named_link(
         &self,
         seen: &Seen,
@@ -116,7 +117,7 @@ impl Urdf {
         })
     }
 
-    /// The one link that no joint moves; from there every link is reached, or some joints form a circle.
+    /// Finds the only link that no joint moves. Refuses joints that form a circle, which cannot be reached from there.
     pub(super) fn find_root(&mut self) -> Result<(), Report> {
         let roots: Vec<usize> = (0..self.links.len()).filter(|&link| self.links[link].parent.is_none()).collect();
         let [root] = roots[..] else {
@@ -148,7 +149,7 @@ impl Urdf {
             return Err(self.source.error(&self.links[lost].span, message, CONNECT));
         }
         self.root = root;
-        // links with mass are bodies of their own, and no world
+        // a link with mass is a body of its own and not the world
         let is_world = |link: usize| !self.links[link].has_mass();
         let is_placed = |&joint: &usize| self.joints[joint].kind == Kind::Fixed && is_world(self.joints[joint].parent);
         let floating = |joint: &&Joint| {
@@ -162,8 +163,8 @@ impl Urdf {
         Ok(())
     }
 
-    /// The elements `coupling` of URDF+ (arXiv 2411.19753): from the link that carries both ends, the positions of the
-    /// joints to the successor add up to those of the joints to the predecessor times the ratio.
+    /// Reads the elements `coupling` of URDF+ (arXiv 2411.19753). Counted from the link that carries both ends, the sum
+    /// of the positions of the joints to the successor is the ratio times the sum for the joints to the predecessor.
     pub(super) fn take_gears(&mut self, couplings: &[Seen]) -> Result<(), Report> {
         for seen in couplings {
             let error = |message: String, help: &str| Err(self.source.error(&seen.span, message, help));
@@ -222,14 +223,14 @@ impl Urdf {
 }
 
 impl Joint {
-    /// A joint between two links, as its elements say.
+    /// Makes a joint between two links from its elements.
     fn of(seen: &Seen, parent: usize, child: usize) -> Self {
         let kind = seen.text("joint", "type").and_then(Kind::of).unwrap_or(Kind::Fixed);
         let number = |element, attribute| seen.number(element, attribute).unwrap_or(0.0);
         let limit = |attribute| end_of_range(number("limit", attribute));
         let (lower, upper) = (limit("lower"), limit("upper"));
         let both = lower.is_finite() && upper.is_finite() && lower < upper;
-        // zero stands where nothing was measured
+        // files have a limit of 0 where none is known
         let positive = |limit: f64| (limit > 0.0 && limit.is_finite()).then_some(limit);
         let mimic = seen.text("mimic", "joint").map(|joint| Mimic {
             joint: joint.to_owned(),
@@ -265,7 +266,7 @@ impl Joint {
     }
 }
 
-/// The places in their list of things with these names.
+/// Returns a map from names to indices.
 fn by_name<'a>(names: impl Iterator<Item = &'a String>) -> HashMap<String, usize> {
     names.enumerate().map(|(index, name)| (name.clone(), index)).collect()
 }

@@ -1,7 +1,7 @@
-//! The values of a URDF that matter to dynamics, where they stand, and what no reader should let pass.
+//! Reads the values of a URDF that dynamics needs, with their places, and refuses text that no reader should accept.
 //!
-//! Links, inertias and joints are read; everything else, such as meshes, is passed over. Every value has been checked
-//! when it is here: a number is a number, and what is required is there.
+//! Links, inertias and joints are read; everything else, such as meshes, is skipped. Every value has been checked: a
+//! number is a number, and required values are there.
 
 mod elements;
 
@@ -15,70 +15,71 @@ use rne_model::{Report, did_you_mean};
 use self::elements::{ELEMENTS, Element, PASSED_OVER, PASSED_OVER_ATTRIBUTES, fault, passed_over};
 use crate::source::{Source, quoted};
 
-/// Far more than the description of any arm.
+/// Largest size of a text, far more than the description of any arm needs.
 pub(crate) const MAX_BYTES: usize = 16 << 20;
-/// The elements that dynamics needs are nested four deep.
+/// Largest depth of elements; those that dynamics needs are nested four deep.
 const MAX_DEPTH: usize = 64;
-/// More links than any robot has.
+/// Largest number of links or joints, more than any robot has.
 const MAX_ELEMENTS: usize = 20_000;
-/// No number of an arm is larger, in SI units.
+/// Largest number that is accepted; no number of an arm in SI units is larger.
 pub(crate) const LARGEST: f64 = 1e9;
 
-/// A limit of a joint, infinite if it has no limit: for this, programs write their largest number, such as 1.8e308.
+/// Returns the limit of a joint; infinity for very large numbers such as 1.8e308, which programs write for a joint
+/// without limit.
 pub(crate) fn end_of_range(value: f64) -> f64 {
     if value.abs() < LARGEST { value } else { f64::INFINITY.copysign(value) }
 }
 
-/// More kinds of unknown elements and attributes than any description has.
+/// Largest number of kinds of unknown elements and attributes, more than any description has.
 const MAX_UNKNOWN: usize = 1000;
 
-/// The relevant values of the text, and the links and joints in the order of the text.
+/// The values of a text that dynamics needs; links and joints are in the order of the text.
 #[derive(Default)]
 pub(crate) struct Scanned {
-    /// The values beside links and joints, and the robot's own name.
+    /// The values outside of links and joints, with the name of the robot.
     pub(crate) robot: Seen,
     pub(crate) links: Vec<Seen>,
     pub(crate) joints: Vec<Seen>,
-    /// Gears between links, of URDF+.
+    /// Gears between links; only URDF+ has them.
     pub(crate) couplings: Vec<Seen>,
-    /// Closed loops, of URDF+.
+    /// Closed loops; only URDF+ has them.
     pub(crate) loops: Vec<Seen>,
-    /// Kinds of elements and attributes that are not known, in words.
+    /// Kinds of unknown elements and attributes, in words.
     pub(crate) unknown: Vec<String>,
 }
 
 /// The values of a link, a joint, a coupling or a loop.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Seen {
-    /// The place of its tag.
+    /// The place of the tag in the text.
     pub(crate) span: Range<usize>,
-    /// The elements in it that matter, at any depth, and the places of their tags.
+    /// The relevant elements inside it, at any depth, with the places of their tags.
     pub(crate) elements: BTreeMap<&'static str, Range<usize>>,
     /// The values of their attributes, by element and attribute.
     values: HashMap<(&'static str, &'static str), String>,
-    /// Unknown names in it, as indices of [`Scanned::unknown`].
+    /// Unknown names inside it, as indices into [`Scanned::unknown`].
     pub(crate) unknown: BTreeSet<usize>,
 }
 
 impl Seen {
-    /// The text of an attribute.
+    /// Returns the text of an attribute.
     pub(crate) fn text(&self, element: &'static str, attribute: &'static str) -> Option<&str> {
         self.values.get(&(element, attribute)).map(String::as_str)
     }
 
-    /// The number of an attribute.
+    /// Returns the number of an attribute.
     pub(crate) fn number(&self, element: &'static str, attribute: &'static str) -> Option<f64> {
         self.text(element, attribute)?.trim().parse().ok()
     }
 
-    /// The three numbers of an attribute.
+    /// Returns the three numbers of an attribute.
     pub(crate) fn vector(&self, element: &'static str, attribute: &'static str) -> Option<[f64; 3]> {
         let mut numbers = self.text(element, attribute)?.split_whitespace().map(|word| word.parse().ok());
         Some([numbers.next()??, numbers.next()??, numbers.next()??])
     }
 }
 
-/// The name of the root element of a text, as far as it is XML.
+/// Returns the name of the root element of a text, if its beginning is XML.
 pub(crate) fn root_name(text: &str) -> Option<String> {
     let mut reader = Reader::from_str(text);
     loop {
@@ -92,7 +93,7 @@ pub(crate) fn root_name(text: &str) -> Option<String> {
     }
 }
 
-/// Reads the text once.
+/// Reads the whole text in one pass.
 pub(crate) fn scan(source: &Source) -> Result<Scanned, Report> {
     let bytes = source.text.len();
     if bytes > MAX_BYTES {
@@ -106,7 +107,7 @@ pub(crate) fn scan(source: &Source) -> Result<Scanned, Report> {
         let start = usize::try_from(reader.buffer_position()).unwrap_or(0);
         let event = reader.read_event();
         let end = usize::try_from(reader.buffer_position()).unwrap_or(0);
-        // No byte order mark and no blanks before the tag in what is underlined.
+        // The span without the byte order mark and blanks before the tag.
         let start = start + source.text.get(start..end).and_then(|text| text.find('<')).unwrap_or(0);
         let place = start..end.max(start);
         match event {
@@ -149,17 +150,18 @@ pub(crate) fn scan(source: &Source) -> Result<Scanned, Report> {
 struct Scanner<'a> {
     source: &'a Source,
     scanned: Scanned,
-    /// Kinds of what is not known: whether it is an attribute, the element that has it, its name.
+    /// The unknown names found so far: whether it is an attribute, the element that has it, and its name; with its
+    /// index.
     kinds: HashMap<(bool, &'static str, String), usize>,
     open: Vec<Open>,
     has_robot: bool,
 }
 
-/// An element that is open.
+/// An element that is not closed yet.
 struct Open {
-    /// `None` where neither it nor what it holds matters.
+    /// The element, or `None` if neither it nor anything inside it is relevant.
     element: Option<&'static Element>,
-    /// The elements that matter in it.
+    /// The relevant elements inside it.
     children: Vec<&'static str>,
 }
 
@@ -192,7 +194,7 @@ impl Scanner<'_> {
         Ok(())
     }
 
-    /// The element that matters, if this is one.
+    /// Returns the relevant element of this name, if it is one.
     fn element(&mut self, name: &str, place: &Range<usize>) -> Result<Option<&'static Element>, Report> {
         let parent = match self.open.last() {
             None => None,
@@ -240,7 +242,8 @@ impl Scanner<'_> {
         Ok(element)
     }
 
-    /// The record of an element: that of its link, its joint or the robot.
+    /// Returns the record to which an element belongs: that of its link, its joint, its loop, its coupling, or the
+    /// robot.
     fn owner(&mut self, element: &Element) -> &mut Seen {
         let Scanned { robot, links, joints, couplings, loops, .. } = &mut self.scanned;
         let is_in_loop = self.open.iter().filter_map(|open| open.element).any(|open| open.name == "loop");
@@ -255,8 +258,8 @@ impl Scanner<'_> {
         owner.unwrap_or(robot)
     }
 
-    /// Refuses what is not known where it looks like a slip of a name that matters, and remembers the rest. `what` it
-    /// is, and the word between it and the element that has it.
+    /// Refuses an unknown name that is probably a misspelling of a relevant one, and records any other. `what` is
+    /// `element` or `attribute`, `between` is the word between the name and the element that has it.
     fn unknown(
         &mut self,
         of: &'static Element,
@@ -291,10 +294,10 @@ impl Scanner<'_> {
         Ok(())
     }
 
-    /// Keeps the attributes of a tag that matter.
+    /// Stores the relevant attributes of a tag.
     fn take(&mut self, element: &'static Element, tag: &BytesStart, place: &Range<usize>) -> Result<(), Report> {
         let mut values: Vec<Option<String>> = element.attributes.iter().map(|_| None).collect();
-        // whether one of thousands stands twice takes long to find out; those that matter are few
+        // checking thousands of attributes for repetition takes long, so only the few relevant ones are checked below
         for attribute in tag.attributes().with_checks(false) {
             let attribute =
                 attribute.map_err(|error| self.source.error(place, format!("this is not XML: {error}"), None))?;
@@ -313,7 +316,7 @@ impl Scanner<'_> {
                 continue;
             };
             let raw = String::from_utf8_lossy(&attribute.value).into_owned();
-            // XML takes every blank of an attribute for a space
+            // XML reads every tab or line break in an attribute as a space
             let value = quick_xml::escape::unescape(&raw.replace(['\t', '\n', '\r'], " "))
                 .map_err(|error| self.source.error(place, format!("`{key}` cannot be read: {error}"), None))?
                 .into_owned();
@@ -332,7 +335,7 @@ impl Scanner<'_> {
                 return Err(self.source.error(place, message, None));
             }
         }
-        // the two origins of a loop
+        // in a loop, `origin` is inside `predecessor` or `successor`, which tells the two apart
         let of = if matches!(element.parent, "predecessor" | "successor") { element.parent } else { element.name };
         for (attribute, value) in element.attributes.iter().zip(values) {
             if let Some(value) = value {
@@ -345,7 +348,7 @@ impl Scanner<'_> {
         Ok(())
     }
 
-    /// The place of a part of a tag in the text.
+    /// Returns the place of a part of a tag in the text.
     fn within(&self, tag: &Range<usize>, part: &str) -> Range<usize> {
         let found = self.source.text.get(tag.clone()).and_then(|tag| tag.find(part));
         found.map_or(tag.clone(), |at| tag.start + at..tag.start + at + part.len())

@@ -90,15 +90,17 @@ pub enum Part {
 impl ArmLog {
     /// Opens logs of a robot and surveys them.
     ///
-    /// # Errors When a log cannot be read; when its joints or their units are not those of the robot; when it has no
-    /// efforts or no states; when the low-pass filter is not possible.
+    /// # Errors
+    /// When a log cannot be read; when its joints or their units are not those of the robot; when it has no efforts or
+    /// no states; when the low-pass filter is not possible.
     pub fn open(paths: &[PathBuf], robot: &Robot, options: &ArmLogOptions) -> Result<Self, ArmLogError> {
         Self::open_with_progress(paths, robot, options, &mut |_| ())
     }
 
     /// Opens logs like [`ArmLog::open`] and reports the fraction that was read, 0 to 1, of each of two surveys.
     ///
-    /// # Errors The errors of [`ArmLog::open`].
+    /// # Errors
+    /// The errors of [`ArmLog::open`].
     pub fn open_with_progress(
         paths: &[PathBuf],
         robot: &Robot,
@@ -229,7 +231,8 @@ impl ArmLog {
 
     /// Passes motions to `take` like [`ArmLog::pass`] and reports the fraction that was read, 0 to 1.
     ///
-    /// # Errors The errors of [`ArmLog::pass`].
+    /// # Errors
+    /// The errors of [`ArmLog::pass`].
     pub fn pass_with_progress<E>(
         &self,
         part: Part,
@@ -242,7 +245,8 @@ impl ArmLog {
     /// Passes the motions of a part without the ends of runs to `take`, each with the number of its run, from 0, and
     /// reports the fraction that was read, 0 to 1.
     ///
-    /// # Errors The errors of [`ArmLog::pass`].
+    /// # Errors
+    /// The errors of [`ArmLog::pass`].
     pub fn pass_runs<E>(
         &self,
         part: Part,

@@ -1,11 +1,11 @@
-//! Why a log cannot be read.
+//! The errors of reading a log.
 
 use std::fmt;
 use std::path::Path;
 
 use crate::remedy::{Remedy, Setting};
 
-/// Why a log cannot be read, or not as it was asked for: the file, the mistake, and remedies as data.
+/// The reason why a log cannot be read, or not with these options: the file, the message, and remedies as data.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LogError {
     file: String,
@@ -15,40 +15,40 @@ pub struct LogError {
 }
 
 impl LogError {
-    /// Something is wrong with the file.
+    /// Makes an error for a mistake in the file.
     pub(crate) fn file(path: &Path, what: impl fmt::Display) -> Self {
         Self { file: path.display().to_string(), what: what.to_string(), of_request: false, remedies: Vec::new() }
     }
 
-    /// The file is in order and does not have what was asked for, or more must be said.
+    /// Makes an error for a valid file that does not have what the options ask for, or that needs more options.
     pub(crate) fn request(path: &Path, what: impl fmt::Display) -> Self {
         Self { of_request: true, ..Self::file(path, what) }
     }
 
-    /// The error with an option to give as another remedy.
+    /// Adds a remedy: to give this option.
     pub(crate) fn give(self, setting: Setting) -> Self {
         self.remedy(Remedy::Give(setting))
     }
 
-    /// The error with an option to leave out as another remedy.
+    /// Adds a remedy: to leave out this option.
     pub(crate) fn leave_out(self, setting: Setting) -> Self {
         self.remedy(Remedy::LeaveOut(setting))
     }
 
-    /// The error with another remedy.
+    /// Adds a remedy.
     pub(crate) fn remedy(mut self, remedy: Remedy) -> Self {
         self.remedies.push(remedy);
         self
     }
 
-    /// Options that help: any of them, or each in turn.
+    /// The changes of options that help. One of them may be enough, or each is needed in turn.
     #[must_use]
     pub fn remedies(&self) -> &[Remedy] {
         &self.remedies
     }
 
-    /// Whether the file is in order and the request is not: a topic or a joint that it does not have, a unit that must
-    /// be said.
+    /// Whether the file is valid but the options do not fit it: a topic or a joint that it does not have, or a unit
+    /// that must be given.
     #[must_use]
     pub fn is_of_request(&self) -> bool {
         self.of_request

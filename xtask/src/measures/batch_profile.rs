@@ -1,4 +1,4 @@
-//! Instructions in the loops of a batch, counted in the machine code of examples/batch_speed.
+//! Counts the instructions in the loops of a batch, in the machine code of examples/batch_speed.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -39,14 +39,14 @@ impl BatchProfile {
     }
 }
 
-/// A table of the loops.
+/// Returns a table of the loops.
 fn table(program: Option<&Path>) -> Result<String> {
     if !machine::has("objdump") {
         return Err(Missing::error("there is no objdump (apt-get install binutils)"));
     }
     let shell = machine::shell()?;
     let program = if let Some(program) = program {
-        // as the caller names it, who may be in another folder
+        // relative to the caller's folder, because objdump runs in that of the repository
         std::path::absolute(program)?
     } else {
         cmd!(shell, "cargo build --quiet --release --example batch_speed").quiet().run()?;
@@ -58,7 +58,7 @@ fn table(program: Option<&Path>) -> Result<String> {
     text.push_str("|---:|---:|---:|---:|---:|---:|\n");
     for code in functions(&listing) {
         for Row { instructions, arithmetic, loads, stores, copies } in loops(&code).into_iter().filter_map(row) {
-            #[allow(clippy::cast_precision_loss)] // counts are small
+            #[allow(clippy::cast_precision_loss)] // small counts are exact
             let cycles = arithmetic as f64 / 2.0 / STATES;
             let cells = [instructions, arithmetic, loads, stores, copies].map(|count| count.to_string()).join(" | ");
             let _ = writeln!(text, "| {cells} | {cycles:.1} |");
@@ -67,10 +67,10 @@ fn table(program: Option<&Path>) -> Result<String> {
     Ok(text)
 }
 
-/// An instruction and its address.
+/// The address of an instruction, and its text.
 type Instruction<'a> = (&'a str, &'a str);
 
-/// Every function of a listing that uses registers of 512 bits.
+/// Returns the functions of a disassembly that use 512-bit registers.
 fn functions(listing: &str) -> Vec<Vec<Instruction<'_>>> {
     let mut found: Vec<Vec<Instruction<'_>>> = Vec::new();
     for line in listing.lines() {
@@ -87,7 +87,7 @@ fn functions(listing: &str) -> Vec<Vec<Instruction<'_>>> {
     found
 }
 
-/// The innermost loops: from the target of a jump back to the jump.
+/// Returns the innermost loops, each from the target of a backward jump to this jump.
 fn loops<'a>(code: &'a [Instruction<'a>]) -> Vec<&'a [Instruction<'a>]> {
     let at: HashMap<&str, usize> = code.iter().enumerate().map(|(index, (address, _))| (*address, index)).collect();
     let target = |instruction: &str| {
@@ -102,7 +102,7 @@ fn loops<'a>(code: &'a [Instruction<'a>]) -> Vec<&'a [Instruction<'a>]> {
     found.iter().filter(|found| !has_inner(found)).map(|&(start, end)| &code[start..=end]).collect()
 }
 
-/// Counts of instructions in a loop.
+/// Numbers of instructions in a loop, by kind.
 #[derive(Debug, PartialEq, Eq)]
 struct Row {
     instructions: usize,
@@ -112,14 +112,14 @@ struct Row {
     copies: usize,
 }
 
-/// Nothing, when a loop does not compute in double precision.
+/// Counts the instructions of a loop; `None` if it does not compute in double precision.
 fn row(code: &[Instruction<'_>]) -> Option<Row> {
     static STORE: LazyLock<Regex> =
         LazyLock::new(|| Regex::new(r"%zmm\d+(\{%k\d\})?,[^,]*\([^()]*\)$").expect("a regular expression"));
     let vector: Vec<&str> = code.iter().map(|(_, text)| *text).filter(|text| text.contains(REGISTER)).collect();
     let is_store = |text: &str| STORE.is_match(text);
     let is_load = |text: &str| text.contains('(') && !is_store(text);
-    // a load that does nothing else takes no place where it is computed
+    // a load without arithmetic does not use an arithmetic unit
     let is_plain_load =
         |text: &str| is_load(text) && ["vmov", "vbroadcast", "vpbroadcast"].iter().any(|name| text.starts_with(name));
     let is_copy = |text: &str| text.starts_with("vmov") && !text.contains('(') && !text.contains("{%k");

@@ -1,28 +1,29 @@
-//! Instruction counts: read from the harness's output and from the baseline, compared, printed as tables.
+//! Counts of instructions: reads them from the output of the harness and from a baseline, compares them, and prints
+//! tables.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Growth of a count that is an error, in per cent.
+/// The largest growth of a count that is no error, per cent.
 const TOLERANCE: u64 = 2;
 
-/// Whose count: robot, form and function.
+/// What was counted: robot, form and function.
 pub(crate) type Key = [String; 3];
 
-/// Instructions of calls, in the order in which they were counted.
+/// Counts of instructions per call, in the order in which they were measured.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Counts(Vec<(Key, u64)>);
 
-/// Counts beside a baseline.
+/// The result of a comparison with a baseline.
 pub(crate) struct Comparison {
-    /// A table, and the counts that are no more.
+    /// A table of all counts, and a list of those that are no longer measured.
     pub(crate) text: String,
     /// Whether a count grew by more than the tolerance.
     pub(crate) has_grown: bool,
 }
 
 impl Counts {
-    /// From the output of gungraun: a line `instructions::GROUP::FUNCTION ROBOT_FORM:…`, and below it
+    /// Reads the output of gungraun: lines `instructions::GROUP::FUNCTION ROBOT_FORM:…`, each followed by
     /// `Instructions: COUNT|…`.
     pub(crate) fn of_harness(log: &str) -> Self {
         let mut counts = Vec::new();
@@ -47,7 +48,7 @@ impl Counts {
         Some([robot, form, function].map(str::to_owned))
     }
 
-    /// From a baseline: lines `ROBOT FORM FUNCTION COUNT`.
+    /// Reads a baseline: lines `ROBOT FORM FUNCTION COUNT`.
     pub(crate) fn of_baseline(text: &str) -> Self {
         let lines = text.lines().filter(|line| !line.starts_with('#'));
         let count = |line: &str| match line.split_whitespace().collect::<Vec<_>>()[..] {
@@ -57,7 +58,7 @@ impl Counts {
         Self(lines.filter_map(count).collect())
     }
 
-    /// As lines of a baseline.
+    /// Returns the counts as lines of a baseline.
     pub(crate) fn baseline(&self) -> String {
         self.0.iter().fold(String::new(), |mut text, (key, count)| {
             let _ = writeln!(text, "{} {count}", key.join(" "));
@@ -69,14 +70,14 @@ impl Counts {
         self.0.is_empty()
     }
 
-    /// Beside those of a baseline.
+    /// Compares the counts with those of a baseline.
     pub(crate) fn beside(&self, baseline: &Self) -> Comparison {
         let mut before: BTreeMap<&Key, u64> = baseline.0.iter().map(|(key, count)| (key, *count)).collect();
         let mut text = row(["robot", "form", "function", "baseline", "now", ""]);
         let mut has_grown = false;
         for (key, now) in &self.0 {
             let old = before.remove(key);
-            #[allow(clippy::cast_precision_loss)] // counts are small
+            #[allow(clippy::cast_precision_loss)] // small counts are exact
             let growth = old.map(|old| 100.0 * (*now as f64 / old as f64 - 1.0));
             let is_too_much = old.is_some_and(|old| 100 * now > (100 + TOLERANCE) * old);
             has_grown |= is_too_much;
@@ -94,7 +95,7 @@ impl Counts {
         Comparison { text, has_grown }
     }
 
-    /// As a table in Markdown: a line for each robot and form, a column for each function.
+    /// Returns a table in Markdown: one row per robot and form, one column per function.
     pub(crate) fn markdown(&self) -> String {
         let mut rows: Vec<[&str; 2]> = self.0.iter().map(|([robot, form, _], _)| [robot.as_str(), form]).collect();
         let mut seen = Vec::new();
@@ -120,7 +121,7 @@ impl Counts {
     }
 }
 
-/// Functions of the harness and their titles.
+/// The functions that the harness measures, with the titles of their columns.
 const COLUMNS: [(&str, &str); 8] = [
     ("inverse_dynamics", "inverse_dynamics"),
     ("inverse_dynamics_f32", "in f32"),

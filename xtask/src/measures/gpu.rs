@@ -1,4 +1,4 @@
-//! Kernels of PTX, assembled: registers, numbers that find no register, instructions.
+//! Assembles kernels of PTX and counts registers, bytes that are spilled to memory, and instructions.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -41,7 +41,7 @@ const PACKAGE: &str = "nvidia-cuda-nvcc-cu12==12.*";
 const PROCESSORS: [&str; 3] = ["sm_70", "sm_80", "sm_90"];
 const MOST_REGISTERS: usize = 128;
 
-/// Functions beside the torques of arms: robot files, and what is taken of them.
+/// Functions besides the torques of arms: pairs of a robot file and a function of it.
 const OTHERS: [(&str, &str); 8] = [
     ("robots/panda.yaml", "mass_matrix"),
     ("robots/panda.yaml", "forward_dynamics"),
@@ -53,10 +53,10 @@ const OTHERS: [(&str, &str); 8] = [
     ("benches/trees/g1_floating.yaml", "floating_forward_dynamics"),
 ];
 
-/// A kernel on a processor.
+/// Measures of a kernel that was assembled for a processor.
 struct Assembled {
     registers: usize,
-    /// Bytes that are written to memory because no register is free.
+    /// Bytes that are written to memory because too few registers are free.
     spilled: usize,
     instructions: usize,
 }
@@ -102,7 +102,7 @@ impl Gpu {
                     row(|one| one.instructions)
                 );
                 println!("{line}");
-                // the page has torques and rollouts of one arm, and what spills
+                // the page shows torques and rollouts of one arm, and every kernel that spills
                 let is_shown = robot == "panda" && ["inverse_dynamics", "rollout"].contains(&function);
                 if is_shown || found.iter().any(|one| one.spilled > 0) {
                     let _ = writeln!(table, "{line}");
@@ -140,7 +140,7 @@ impl Gpu {
     }
 }
 
-/// The files of all shipped arms, by their names.
+/// Returns the paths of all shipped robot files, sorted by name.
 fn shipped_arms() -> Result<Vec<String>> {
     let mut paths = Vec::new();
     for entry in fs::read_dir(machine::root().join("robots")).context("robots/")? {
@@ -153,7 +153,7 @@ fn shipped_arms() -> Result<Vec<String>> {
     Ok(paths)
 }
 
-/// Assembles a file of kernels; returns that of a function, or the rollout, that takes columns.
+/// Assembles a file of kernels. Returns the measures of the kernel that reads columns, of a function or a rollout.
 fn assembled(ptxas: &Path, processor: &str, function: &str, text: &Path, folder: &Path) -> Result<Assembled> {
     let code = folder.join("kernel.cubin");
     let output = Command::new(ptxas)
@@ -184,7 +184,7 @@ fn assembled(ptxas: &Path, processor: &str, function: &str, text: &Path, folder:
     })
 }
 
-/// Instructions of the kernel whose name ends so, in a file of format ELF: each has 16 bytes.
+/// Counts the instructions of the kernel whose name ends with `end`, in an ELF file. Each instruction has 16 bytes.
 fn instructions(code: &[u8], end: &[u8]) -> Option<usize> {
     let number = |at: usize, bytes: usize| -> Option<usize> {
         let bytes = code.get(at..at + bytes)?;

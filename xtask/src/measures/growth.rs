@@ -1,4 +1,4 @@
-//! Measures of generated code by the number of joints: benches/growth.
+//! Measures how generated code grows with the number of joints: benches/growth.
 
 use anyhow::Result;
 use clap::Args;
@@ -45,13 +45,14 @@ impl Growth {
     }
 }
 
-/// The tables as text.
+/// Returns the tables as text.
 pub(crate) fn measured(joints: &[u16]) -> Result<String> {
     let shell = machine::shell()?;
     Ok(command(&shell, &words(joints)).read()?)
 }
 
-/// Cargo compiles macros without optimisation in all profiles, so that of development measures what a build does.
+/// Returns the command that measures in the development profile. Cargo compiles macros without optimisation in all
+/// profiles, so this is what a build of a user takes.
 fn command<'a>(shell: &'a xshell::Shell, words: &[String]) -> Cmd<'a> {
     let manifest = "--manifest-path=benches/Cargo.toml";
     cmd!(
@@ -65,7 +66,7 @@ fn words(joints: &[u16]) -> Vec<String> {
     joints.iter().map(u16::to_string).collect()
 }
 
-/// As the installed command line is built.
+/// Returns the command that measures in the release profile, with which the command line is installed.
 fn printing(shell: &xshell::Shell, arms: u16) -> Cmd<'_> {
     let arms = arms.to_string();
     let options = ["--manifest-path=benches/Cargo.toml", "--no-default-features", "--features", "growth"];

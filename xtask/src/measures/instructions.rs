@@ -1,4 +1,5 @@
-//! Exact instruction counts of benches/instructions.rs (gungraun, callgrind), compared with the committed baseline.
+//! Compares exact counts of instructions with the committed baseline. benches/instructions.rs measures them with
+//! gungraun and callgrind.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -67,9 +68,9 @@ impl Instructions {
         Ok(Verdict::Holds)
     }
 
-    /// Runs the harness.
+    /// Runs the harness and returns the counts.
     pub(crate) fn count(&self) -> Result<Counts> {
-        let target = machine::target_folder("benches/target")?; // the harness starts the runner from another folder
+        let target = machine::target_folder("benches/target")?; // absolute: the runner starts in another folder
         if !machine::has("valgrind") {
             if !self.install {
                 return Err(Missing::error("there is no valgrind (apt-get install valgrind)"));
@@ -94,7 +95,7 @@ impl Instructions {
         Ok(counts)
     }
 
-    /// The runner, in the target folder.
+    /// Returns the path of gungraun-runner in the target folder; installs it if that was asked for.
     fn runner(&self, target: &Path) -> Result<PathBuf> {
         let version = locked_version("gungraun-runner")?;
         let tools = target.join("tools");
@@ -110,7 +111,7 @@ impl Instructions {
         }
         let log = target.join("gungraun-runner.log");
         let file = fs::File::create(&log).with_context(|| log.display().to_string())?;
-        // Its speed does not matter, that of its build does: hence --debug, without debug information.
+        // The runner need not be fast, but its build should be: hence --debug, without debug information.
         let status = Command::new("cargo")
             .args(["install", "gungraun-runner", "--version", &version, "--locked", "--debug", "--root"])
             .arg(&tools)
@@ -128,7 +129,7 @@ impl Instructions {
     }
 }
 
-/// The version of a package in benches/Cargo.lock.
+/// Returns the version of a package in benches/Cargo.lock.
 fn locked_version(package: &str) -> Result<String> {
     let lock = machine::read("benches/Cargo.lock")?;
     let mut lines = lock.lines().skip_while(|line| *line != format!("name = \"{package}\"")).skip(1);
@@ -136,7 +137,7 @@ fn locked_version(package: &str) -> Result<String> {
     Ok(version.with_context(|| format!("benches/Cargo.lock has no {package}"))?.to_owned())
 }
 
-/// The compiler and its host.
+/// Returns the version of the compiler and the platform on which it runs.
 pub(crate) fn compiler() -> Result<String> {
     let shell = machine::shell()?;
     let version = cmd!(shell, "rustc --version").quiet().read()?;

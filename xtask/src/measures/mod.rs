@@ -1,4 +1,4 @@
-//! Counts and times of the generated code.
+//! Tasks that count and time the generated code.
 
 pub(crate) mod batch_profile;
 pub(crate) mod counts;

@@ -1,4 +1,4 @@
-//! Measures docs/measured/performance.md again: the blocks that name a machine and a date.
+//! Repeats the measurements of docs/measured/performance.md, whose blocks name a machine and a date.
 
 use std::fs;
 
@@ -87,7 +87,7 @@ impl Block {
         }
     }
 
-    /// The text of the block.
+    /// Measures and returns the text of the block.
     fn measure(self) -> Result<String> {
         let shell = machine::shell()?;
         Ok(match self {
@@ -128,7 +128,7 @@ impl Block {
     }
 }
 
-/// Where and when, as a paragraph.
+/// Returns a paragraph with the date, the machine, the compiler and the commit.
 fn here(shell: &Shell) -> Result<String> {
     let processors = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = processors.lines().find(|line| line.starts_with("model name")).and_then(|line| line.split_once(": "));
@@ -149,7 +149,7 @@ fn here(shell: &Shell) -> Result<String> {
     Ok(format!("{date}, {machine}; {rustc}; rne at {commit}.\n\n"))
 }
 
-/// Processor time does not depend on the load.
+/// Removes the load average from a paragraph, because processor time does not depend on the load.
 fn without_load(text: &str) -> String {
     match (text.find(", load average "), text.find(" measurement;")) {
         (Some(start), Some(end)) => text[..start].to_owned() + &text[end + " measurement".len()..],
@@ -157,26 +157,26 @@ fn without_load(text: &str) -> String {
     }
 }
 
-/// One empty line between paragraphs, none at the end.
+/// Removes repeated empty lines between paragraphs, and all at the end.
 fn without_empty_lines(text: &str) -> String {
     let mut lines: Vec<&str> = text.trim_end().lines().collect();
     lines.dedup_by(|line, before| line.is_empty() && before.is_empty());
     lines.join("\n") + "\n"
 }
 
-/// The lines of a text that the page has.
+/// Returns the lines of a text that satisfy a condition.
 fn kept(text: &str, is_kept: impl Fn(&str) -> bool) -> String {
     text.lines().filter(|line| is_kept(line)).flat_map(|line| [line, "\n"]).collect()
 }
 
-/// Whether a line is no row of a function on a vector unit, or one of the arm and the unit that are shown.
+/// Whether the page shows a line: all lines except rows of other arms and other vector units than the chosen ones.
 fn is_of_one_arm(line: &str) -> bool {
     let unit = line.split_whitespace().nth(1).unwrap_or_default();
     !["SSE2", "AVX2", "AVX-512"].contains(&unit) || (unit == "AVX2" && line.starts_with("panda "))
 }
 
-/// Whether a line is a call from Python that takes more than ten microseconds or 1.5 times that of Pinocchio, or the
-/// titles, or `inverse_dynamics`, with which the others are compared.
+/// Whether the page shows a line: a call from Python that takes more than ten microseconds or 1.5 times as long as
+/// Pinocchio's, a title, or `inverse_dynamics`, with which the others are compared.
 fn is_slower_or_long(line: &str) -> bool {
     let words: Vec<&str> = line.split_whitespace().collect();
     let (function, time, peer) = match words[..] {
@@ -188,13 +188,13 @@ fn is_slower_or_long(line: &str) -> bool {
     function == "inverse_dynamics" || time > 10.0 || time > 1.5 * peer
 }
 
-/// Whether a line is no row of a chain of joints, or one that is shown.
+/// Whether the page shows a line: all lines except rows of chains with other numbers of joints than 1, 10 and 50.
 fn is_of_1_10_or_50_joints(line: &str) -> bool {
     let joints = line.strip_prefix("| ").and_then(|line| line.split(' ').next()?.parse::<u16>().ok());
     joints.is_none_or(|joints| [1, 10, 50].contains(&joints))
 }
 
-/// Tables without the increments beside each column: the lines below the tables have the growth.
+/// Removes the increments beside each column of a table, because the lines below the tables show the growth.
 fn without_increments(text: &str) -> String {
     let row = |line: &str| {
         let cells = line.trim_matches('|').split('|').enumerate();
@@ -204,12 +204,12 @@ fn without_increments(text: &str) -> String {
     text.lines().map(|line| if line.starts_with('|') { row(line) } else { format!("{line}\n") }).collect()
 }
 
-/// The output of a command, as a block of text.
+/// Runs a command and returns its output as a block of text.
 fn listing(command: Cmd<'_>) -> Result<String> {
     Ok(format!("```text\n{}\n```\n", command.quiet().read()?))
 }
 
-/// A page with another text in one of its blocks.
+/// Returns a page with a new text in one of its blocks.
 pub(crate) fn replaced(page: &str, name: &str, text: &str) -> Result<String> {
     let start = format!("<!-- begin: measured {name},");
     ensure!(page.lines().any(|line| line.starts_with(&start)), "the page has no block `{name}`");

@@ -1,4 +1,4 @@
-//! A plain build beside one for x86-64-v3: two programs that run in turn.
+//! Compares a plain build with one for x86-64-v3, as two programs that run alternately.
 
 use std::fmt::Write;
 
@@ -7,13 +7,13 @@ use xshell::cmd;
 
 use crate::machine;
 
-/// How often each of the two runs.
+/// How often each of the two programs runs.
 const RUNS: usize = 15;
 
-/// Output of a run: nanoseconds by name, with the processor asked and inlined.
+/// The times of a run by name, ns: first with a test of the processor in each call, then inlined.
 type Times = Vec<(String, [f64; 2])>;
 
-/// Builds both, runs them in turn and writes a table.
+/// Builds both programs, runs them alternately and returns a table.
 pub(crate) fn table() -> Result<String> {
     let shell = machine::shell()?;
     let folder = machine::target_folder("benches/target")?;
@@ -47,13 +47,13 @@ fn read(text: &str) -> Result<Times> {
     times.collect()
 }
 
-/// The robot of which the table has every row in double precision.
+/// The robot and number type of which the table shows every row.
 const SHOWN: &str = "panda f64 ";
-/// How far the ratio of a row is from one that is in the table, of whatever robot.
+/// The table shows a row of any other robot if its ratio differs from 1 by more than this.
 const DIFFERENT: f64 = 0.15;
 
-/// A line for a robot, a scalar and a kind of call: medians, and the median of the ratios of a run to the next. Rows of
-/// other robots are left out where both builds are about as fast.
+/// Returns a table with a row per robot, number type and kind of call: medians of the times, and the median of the
+/// ratios of neighbouring runs. Rows of other robots are left out if both builds are about equally fast.
 fn of_runs([plain, v3]: &[Vec<Times>; 2]) -> String {
     let mut table =
         String::from("| robot, scalar, calls | inline | plain | v3 | plain/v3 |\n|---|---:|---:|---:|---:|\n");

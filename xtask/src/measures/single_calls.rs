@@ -1,18 +1,19 @@
-//! Wall times of single calls: divan's tree as a table.
+//! Turns divan's output, a tree of wall times of single calls, into a table.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Kinds of calls in the tree that the table has.
+/// The kinds of calls in the tree that the table shows.
 const KINDS: [&str; 2] = ["independent", "chained"];
 
-/// Competitors in the tree, and their titles.
+/// The implementations that are compared in the tree, with their titles.
 const COLUMNS: [(&str, &str); 3] = [("seven_steps", "seven_steps"), ("reduced", "reduced"), ("arm", "`rne::Arm`")];
 
-/// A line per robot, measurement and scalar, a column per competitor: median and, in brackets, the fastest, in ns.
+/// Returns a table with a row per robot, kind of call and number type, and a column per implementation. Each cell has
+/// the median and, in brackets, the fastest time, ns.
 ///
-/// The tree has robots, kinds of calls and competitors on three levels; `_f32` behind a competitor's name is the
-/// scalar.
+/// The tree has robots, kinds of calls and implementations on three levels. `_f32` at the end of an implementation's
+/// name means single precision.
 pub(crate) fn table(tree: &str) -> String {
     let mut robots: Vec<&str> = Vec::new();
     let mut cells = BTreeMap::new();
@@ -38,7 +39,7 @@ pub(crate) fn table(tree: &str) -> String {
     }
     let titles = COLUMNS.map(|(_, title)| title).join(" | ");
     let mut text = format!("| robot | calls | scalar | {titles} |\n|---|---|---|{}\n", "---:|".repeat(COLUMNS.len()));
-    // divan sorts by name; the PUMA 560 comes first everywhere else
+    // divan sorts by name, but in all other tables the PUMA 560 comes first
     for robot in robots.iter().rev() {
         for kind in KINDS {
             for scalar in ["f64", "f32"] {
@@ -51,7 +52,7 @@ pub(crate) fn table(tree: &str) -> String {
     text
 }
 
-/// A time such as `57.4 ns` or `1.2 µs` in nanoseconds, with a decimal below 100.
+/// Converts a time such as `57.4 ns` or `1.2 µs` to nanoseconds, with one decimal below 100.
 fn nanoseconds(text: &str) -> Option<String> {
     let (number, unit) = text.trim().split_once(' ')?;
     let number: f64 = number.parse().ok()?;

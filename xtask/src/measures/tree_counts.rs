@@ -1,4 +1,4 @@
-//! Operations of robots with branches beside those of Khalil's algorithm.
+//! Compares numbers of operations for robots with branches with those of Khalil's algorithm.
 
 use anyhow::Result;
 use clap::Args;
@@ -8,7 +8,7 @@ use crate::Verdict;
 use crate::machine::{self, Missing};
 use crate::measures::performance;
 
-/// Robots that are counted: shipped ones, and those of benches/trees.
+/// Robots whose operations are counted: shipped ones, and those of benches/trees.
 const ROBOTS: [&str; 15] = [
     "robots/trees/hyq.yaml",
     "benches/trees/anymal_c.yaml",
@@ -27,10 +27,10 @@ const ROBOTS: [&str; 15] = [
     "benches/trees/mini_cheetah_floating.yaml",
 ];
 
-/// Robots with closed loops that are counted.
+/// Robots with closed loops whose operations are counted.
 const LOOPS: [&str; 3] = ["docs/four_bar.yaml", "benches/trees/loops/g1_ankle.yaml", "benches/trees/loops/delta.yaml"];
 
-/// Where their table is.
+/// The document with the table of robots with closed loops.
 const PAGE: &str = "docs/control/closed-loops.md";
 
 /// Counts the operations of robots with branches beside Khalil's algorithm

@@ -1,4 +1,4 @@
-//! The README's first two commands on a machine that has nothing but what the README asks for.
+//! Runs the first two commands of the README on a machine with nothing but the programs that the README asks for.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -97,7 +97,7 @@ const TOOLS: [&str; 59] = [
     "true",
 ];
 
-/// The commands of Rust; those of rustup are shims, which need its own folder.
+/// The commands of Rust. They are linked from the toolchain itself, because those of rustup need rustup's folder.
 const RUST: [&str; 3] = ["cargo", "rustc", "rustdoc"];
 
 impl Bare {
@@ -145,7 +145,7 @@ impl Bare {
     }
 }
 
-/// The first two commands of the README, which need only Rust and cc: `cargo run` and `cargo test`.
+/// Reads the first two commands of the README, which need only Rust and cc: `cargo run` and `cargo test`.
 fn commands_of_readme() -> Result<Vec<String>> {
     let readme = machine::read("README.md")?;
     let (_, block) = readme.split_once("```sh\n").context("README.md has no block of commands")?;
@@ -157,14 +157,14 @@ fn commands_of_readme() -> Result<Vec<String>> {
     Ok(commands)
 }
 
-/// Cargo's folder, where its registry is.
+/// Returns Cargo's folder, which contains the registry.
 fn cargo_home() -> Result<PathBuf> {
     let of_home = || Some(Path::new(&std::env::var_os("HOME")?).join(".cargo"));
     std::env::var_os("CARGO_HOME").map(PathBuf::from).or_else(of_home).context("there is neither CARGO_HOME nor HOME")
 }
 
-/// Links the programs of a bare machine into a folder. A program that is not here is left out: not every system has all
-/// of coreutils.
+/// Links the programs of a bare machine into a folder. A program that is not installed here is left out, because not
+/// every system has all of coreutils.
 fn link_programs(folder: &Path, sysroot: &Path) -> Result<()> {
     for name in RUST {
         symlink(sysroot.join("bin").join(name), folder.join(name))?;

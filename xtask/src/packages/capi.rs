@@ -1,4 +1,4 @@
-//! The C library: laid out below a prefix, and the programs of C and C++ that use it there.
+//! The C library: installs it below a prefix, and compiles and runs programs of C and C++ against it.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,18 +10,18 @@ use xshell::{Shell, cmd};
 use crate::Verdict;
 use crate::machine::{self, Missing};
 
-/// System libraries that a static library of Rust needs.
+/// System libraries with which a program must link a static library of Rust.
 const SYSTEM: &str = "-lgcc_s -lutil -lrt -lpthread -lm -ldl -lc";
 
-/// Packages of Debian: a checker of memory, and two programs that find an installed library.
+/// Debian packages for the tests: valgrind, which checks memory accesses, and two programs that find installed
+/// libraries.
 const PACKAGES: [&str; 3] = ["valgrind", "cmake", "pkg-config"];
 
-/// Sanitizers that a program is compiled with: accesses outside its memory, memory that is not freed, and behaviour
-/// that C does not define.
+/// Options for the sanitizers that find accesses outside of memory, memory that is not freed, and undefined behaviour.
 const SANITIZERS: [&str; 4] =
     ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer", "-g"];
 
-/// Warnings that examples must not have.
+/// Warnings that the compilation of the examples must not give.
 const STRICT: [&str; 4] = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"];
 
 /// The folder of headers that replace those of ros2_control, for the example of a controller.
@@ -71,12 +71,12 @@ impl Capi {
     }
 }
 
-/// Where the library is laid out unless another place is named.
+/// Returns the default prefix of the installed library.
 pub(crate) fn prefix() -> Result<PathBuf> {
     Ok(machine::target_folder("target")?.join("capi/prefix"))
 }
 
-/// The library, built and laid out below a prefix; the absolute path of that.
+/// Builds the library and installs it below a prefix. Returns the absolute path of the prefix.
 pub(crate) fn built(prefix: &Path) -> Result<PathBuf> {
     let shell = machine::shell()?;
     let (folder, (profile, built)) = (machine::target_folder("target")?, machine::profile()?);
@@ -91,12 +91,12 @@ pub(crate) fn built(prefix: &Path) -> Result<PathBuf> {
     Ok(prefix)
 }
 
-/// File name of the shared library on this system.
+/// Returns the file name of the shared library on this system.
 fn shared() -> String {
     format!("librne{}", std::env::consts::DLL_SUFFIX)
 }
 
-/// Copies what was built, and writes what finds it.
+/// Copies header and libraries below the prefix, and writes the files with which pkg-config and CMake find them.
 fn lay_out(built: &Path, prefix: &Path) -> Result<()> {
     let copy = |from: &Path, to: &str| -> Result<()> {
         let to = prefix.join(to);
@@ -115,7 +115,7 @@ fn lay_out(built: &Path, prefix: &Path) -> Result<()> {
         [("lib/pkgconfig", "rne.pc"), ("lib/cmake/rne", "rneConfig.cmake"), ("lib/cmake/rne", "rneConfigVersion.cmake")]
     {
         let text = machine::read(&format!("doors/c/cmake/{file}.in"))?;
-        // CMake separates by semicolons
+        // a list in CMake is separated by semicolons
         let system = if file == "rne.pc" { SYSTEM.to_owned() } else { SYSTEM.replace(' ', ";") };
         let text = text.replace("@VERSION@", version).replace("@SHARED@", &shared).replace("@SYSTEM@", &system);
         fs::create_dir_all(prefix.join(folder))?;
@@ -124,7 +124,7 @@ fn lay_out(built: &Path, prefix: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Compiles the programs against the prefix and runs them.
+/// Compiles the programs against the prefix and runs them. Returns whether all of them succeed.
 fn holds(shell: &Shell, prefix: &Path, programs: &Path) -> Result<bool> {
     let library = prefix.join("lib");
     let mut flags = vec![format!("-I{}", prefix.join("include").display()), format!("-L{}", library.display())];
@@ -174,14 +174,14 @@ fn holds(shell: &Shell, prefix: &Path, programs: &Path) -> Result<bool> {
             holds &= is_clean(shell, &program)?;
         }
     }
-    // the static one
+    // one program with the static library
     let program = programs.join("torque_static");
     let source = "doors/c/examples/torque.c";
     cmd!(shell, "cc -std=c11 {STRICT...} -I{include} {source} {archive} {system...} -o {program}").quiet().run()?;
     Ok(holds & runs(shell, &program, false)?)
 }
 
-/// Whether both compilers have them, and what they make runs here.
+/// Whether both compilers support the sanitizers and the program that they make runs here.
 fn has_sanitizers(shell: &Shell, folder: &Path) -> Result<bool> {
     let (source, program) = (folder.join("empty.c"), folder.join("empty"));
     fs::write(&source, "int main(void) { return 0; }\n")?;
@@ -192,7 +192,7 @@ fn has_sanitizers(shell: &Shell, folder: &Path) -> Result<bool> {
     }))
 }
 
-/// Runs a program that has the sanitizers: they find nothing.
+/// Runs a program that was compiled with the sanitizers. Returns whether they find nothing.
 fn is_clean(shell: &Shell, program: &Path) -> Result<bool> {
     let name = program.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let run = cmd!(shell, "{program}").env("ASAN_OPTIONS", "detect_leaks=1:strict_string_checks=1");
@@ -205,7 +205,7 @@ fn is_clean(shell: &Shell, program: &Path) -> Result<bool> {
     Ok(holds)
 }
 
-/// Runs a program as it is, and under valgrind: no error, and nothing lost.
+/// Runs a program, and runs it again under valgrind if it is installed. Returns whether there is no error and no leak.
 fn runs(shell: &Shell, program: &Path, has_valgrind: bool) -> Result<bool> {
     let name = program.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let output = cmd!(shell, "{program}").quiet().ignore_status().output()?;
@@ -230,7 +230,7 @@ fn runs(shell: &Shell, program: &Path, has_valgrind: bool) -> Result<bool> {
     Ok(holds)
 }
 
-/// The examples by find_package(rne), shared and static.
+/// Builds and tests the examples with CMake, which finds the library by find_package(rne), both shared and static.
 fn cmake(shell: &Shell, prefix: &Path, programs: &Path) -> Result<bool> {
     if !machine::has("cmake") {
         println!("cmake: skipped, it is not there");

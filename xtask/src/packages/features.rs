@@ -1,4 +1,4 @@
-//! Does the library build with every set of its features?
+//! Checks that the library builds with every set of its features.
 
 use anyhow::{Context, Result};
 use clap::Args;
@@ -22,7 +22,7 @@ pub(crate) struct Features {
     pairs: bool,
 }
 
-/// For a nightly compiler.
+/// A feature that needs a nightly compiler, so it is not tested.
 const UNSTABLE: &str = "core_float_math";
 
 /// The part of `cargo metadata` that is used.
@@ -41,7 +41,7 @@ impl Features {
     pub(crate) fn run(&self) -> Result<Verdict> {
         let shell = machine::shell()?;
         let metadata = cmd!(shell, "cargo metadata --no-deps --format-version 1").quiet().read()?;
-        // JSON is YAML
+        // every JSON document is a YAML document
         let Metadata { packages } = serde_yaml::from_str(&metadata)?;
         let facade = packages.into_iter().find(|package| package.name == "rne").context("the facade")?;
         let names: Vec<String> =
@@ -50,7 +50,8 @@ impl Features {
         let sets = sets(&names, self.pairs);
         for set in &sets {
             let check = cmd!(shell, "cargo check --quiet --package rne --no-default-features --features {set}");
-            // flags that make warnings errors would make all dependencies anew
+            // flags that turn warnings into errors would rebuild all dependencies, so the output is searched for
+            // warnings instead
             let output = machine::without_flags(check).quiet().ignore_status().output()?;
             if !output.status.success() || !output.stderr.is_empty() {
                 eprint!("{}", String::from_utf8_lossy(&output.stderr));
@@ -65,7 +66,8 @@ impl Features {
     }
 }
 
-/// Nothing, each, all; and each pair, for some of what goes wrong takes two.
+/// Returns the sets of features: none, each alone, all, and with `pairs` each pair, because some errors need two
+/// features.
 fn sets(names: &[String], pairs: bool) -> Vec<String> {
     let mut sets = vec![String::new(), names.join(",")];
     for (index, name) in names.iter().enumerate() {

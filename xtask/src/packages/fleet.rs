@@ -1,4 +1,4 @@
-//! The dynamics as functions of query engines, `doors/datafusion/`: a workspace of its own.
+//! Tests the dynamics as functions of query engines, `doors/datafusion/`, a workspace of its own.
 
 use anyhow::Result;
 use clap::Args;

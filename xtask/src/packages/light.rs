@@ -1,4 +1,4 @@
-//! Costs before a user's first result: crates to compile, compilers to install, bytes to load.
+//! Measures the costs before a user's first result: crates to compile, compilers to install, bytes to load.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -29,20 +29,21 @@ pub(crate) struct Light {
     crates: bool,
 }
 
-/// Crates behind `cargo run` with default features, ours among them.
+/// Largest number of crates that `cargo run` compiles with default features, including those of this repository.
 const CRATES_OF_RUN: usize = 120;
-/// Crates behind a derive in a user's own crate with default features, ours among them.
+/// Largest number of crates that a derive in a user's own crate compiles, with default features, including those of
+/// this repository.
 const CRATES_OF_DERIVE: usize = 50;
-/// The release binary with default features, without symbols.
+/// Largest size of the release binary with default features, without symbols, bytes.
 const BINARY_BYTES: usize = 16_000_000;
 
-/// Crates that compile or find C for a build script.
+/// Crates with which build scripts compile C or find C libraries.
 const COMPILERS_OF_C: [&str; 5] = ["cc", "cmake", "pkg-config", "bindgen", "vcpkg"];
 
-/// The kinds of targets that other crates use.
+/// The kinds of targets that other crates can use.
 const LIBRARIES: [Option<&str>; 2] = [Some("lib"), Some("proc-macro")];
 
-/// All of a user's crate.
+/// The whole source of a user's crate.
 const DERIVE: &str = "\
 /// The arm.
 #[derive(rne::InverseDynamics)]
@@ -50,13 +51,13 @@ const DERIVE: &str = "\
 pub struct Puma560;
 ";
 
-/// Crates of a build.
+/// The crates that a build compiles.
 #[derive(Default)]
 struct Build {
-    /// How often the library of a crate is compiled, by name and version: more than once where two sides of the build
-    /// ask for other features.
+    /// How often the library of each crate is compiled, by name and version. It is more than once if two parts of the
+    /// build ask for different features.
     crates: BTreeMap<String, usize>,
-    /// Crates that compile C or link a library that is not Rust's.
+    /// Crates that compile C or link a library that is not written in Rust.
     c: BTreeSet<String>,
     executable: Option<PathBuf>,
 }
@@ -90,7 +91,7 @@ impl Light {
 }
 
 impl Build {
-    /// Builds, and reads what cargo says of each crate, whether it is compiled now or was before.
+    /// Runs a build and reads cargo's messages about each crate, also about those that had been compiled before.
     fn of(build: Cmd<'_>) -> Result<Self> {
         let messages = machine::without_flags(build.args(["--quiet", "--message-format", "json"])).quiet().read()?;
         let mut found = Self::default();
@@ -123,7 +124,8 @@ impl Build {
     }
 }
 
-/// `name@version` of what cargo calls `…/index#name@version`, or `…/name#version` where it stands in a folder.
+/// Returns `name@version` of a package that cargo calls `…/index#name@version`, or `…/name#version` if it is in a local
+/// folder.
 fn name(package: &str) -> String {
     let (place, name) = package.rsplit_once('#').unwrap_or(("", package));
     if name.contains('@') {
@@ -132,7 +134,7 @@ fn name(package: &str) -> String {
     format!("{}@{name}", place.rsplit('/').next().unwrap_or_default())
 }
 
-/// A crate that has nothing but `rne` and derives a robot.
+/// Builds a crate that depends on `rne` alone and derives a robot.
 fn derive(shell: &Shell) -> Result<Build> {
     let folder = tempfile::tempdir()?;
     fs::create_dir(folder.path().join("src"))?;
@@ -144,7 +146,7 @@ fn derive(shell: &Shell) -> Result<Build> {
     Build::of(cmd!(shell, "cargo build --manifest-path {manifest}"))
 }
 
-/// The bytes of a binary without its symbols.
+/// Returns the size of a binary without its symbols, bytes.
 fn stripped(shell: &Shell, binary: &Path) -> Result<u64> {
     let folder = tempfile::tempdir()?;
     let out = folder.path().join("stripped");

@@ -1,4 +1,4 @@
-//! Packages that users install, and their costs.
+//! Tasks about packages that users install, and about their costs.
 
 pub(crate) mod bare;
 pub(crate) mod capi;

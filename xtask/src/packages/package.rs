@@ -1,4 +1,4 @@
-//! Are the packages complete, and does a crate build that has nothing else?
+//! Checks that the packages are complete, and that a crate builds from the packages alone.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -27,8 +27,8 @@ pub(crate) struct Package {
     keep: bool,
 }
 
-/// The crates that are published, by the order in which they depend on each other.
-const CRATES: [&str; 22] = [
+/// The crates that are published, in the order of their dependencies.
+pub(crate) const CRATES: [&str; 21] = [
     "rne-functions",
     "rne-model",
     "rne-robots",
@@ -38,7 +38,6 @@ const CRATES: [&str; 22] = [
     "rne-emit",
     "rne-macro",
     "rne-machine",
-    "rne-gpu",
     "rne-diagnose",
     "rne-inspection",
     "rne-symbolic",
@@ -69,16 +68,18 @@ impl Package {
     pub(crate) fn run(&self) -> Result<Verdict> {
         let shell = machine::shell()?;
         let target = machine::target_folder("target")?;
-        // a folder that never was before: of a package of this version, cargo takes for this one what it built in the
-        // same folder, and what it unpacked from there into its own
+        // A new folder in each run: otherwise cargo would reuse what it built and unpacked there from an older package
+        // of the same version.
         let build = tempfile::Builder::new().prefix("packaged-").tempdir_in(&target)?;
         let build = build.path();
         let packaged = build.join("package");
-        // not built one by one: the two crates below are made of all of them, as they are packaged
+        let licences = Licences::copied(&shell)?;
+        // `--no-verify`, because the two builds below compile all packages anyway
         let published = CRATES.iter().flat_map(|name| ["--package", name]);
         machine::without_flags(cmd!(shell, "cargo package {published...} --allow-dirty --no-verify --quiet"))
             .env("CARGO_TARGET_DIR", build)
             .run()?;
+        drop(licences);
 
         let folder = tempfile::tempdir()?;
         let version = version()?;
@@ -102,7 +103,7 @@ impl Package {
         let derived = machine::without_flags(cmd!(shell, "cargo run --quiet --manifest-path {manifest}"))
             .env("CARGO_TARGET_DIR", build)
             .read()?;
-        // a packaged crate is a workspace of its own; the patches come by a file beside it
+        // a packaged crate is a workspace of its own, so it gets the patches from a separate file of configuration
         let config = folder.path().join("patch.toml");
         fs::write(&config, &patch)?;
         let command_line = folder.path().join(format!("rne-cli-{version}/Cargo.toml"));
@@ -127,14 +128,41 @@ impl Package {
     }
 }
 
-/// The version that all published crates share.
+/// Copies of the licences beside the manifest of each package. They exist while packages are made, because the repository
+/// has the licences once.
+pub(crate) struct Licences(Vec<PathBuf>);
+
+impl Licences {
+    pub(crate) fn copied(shell: &Shell) -> Result<Self> {
+        let manifests = cmd!(shell, "git ls-files */Cargo.toml").quiet().read()?;
+        let mut copies = Self(Vec::new());
+        for folder in manifests.lines().filter_map(|manifest| Path::new(manifest).parent()) {
+            for name in ["LICENSE-APACHE", "LICENSE-MIT"] {
+                let copy = shell.current_dir().join(folder).join(name);
+                fs::copy(shell.current_dir().join(name), &copy)?;
+                copies.0.push(copy);
+            }
+        }
+        Ok(copies)
+    }
+}
+
+impl Drop for Licences {
+    fn drop(&mut self) {
+        for copy in &self.0 {
+            let _ = fs::remove_file(copy);
+        }
+    }
+}
+
+/// Returns the version that all published crates share.
 fn version() -> Result<String> {
     let manifest = machine::read("Cargo.toml")?;
     let line = manifest.lines().find_map(|line| line.strip_prefix("version = "));
     Ok(line.context("Cargo.toml has a version")?.trim_matches('"').to_owned())
 }
 
-/// Unpacks a package into a folder; where it is then.
+/// Unpacks a package into a folder and returns the path of its content.
 fn unpacked(shell: &Shell, package: &Path, folder: &Path) -> Result<PathBuf> {
     if !package.is_file() {
         bail!("there is no package {}", package.display());
@@ -144,7 +172,7 @@ fn unpacked(shell: &Shell, package: &Path, folder: &Path) -> Result<PathBuf> {
     Ok(folder.join(name))
 }
 
-/// The numbers of a text that is a list with words around it.
+/// Returns the numbers in a text, without the words, brackets and commas around them.
 fn numbers(text: &str) -> Result<Vec<f64>> {
     let words = text.split(|c: char| c.is_whitespace() || "[]{},:".contains(c));
     let numbers = words.filter(|word| word.starts_with(|c: char| c.is_ascii_digit() || c == '-'));

@@ -1,4 +1,4 @@
-//! The playground: the page of `rne report` with the compiler inside, `doors/playground/`.
+//! Builds the playground, `doors/playground/`: the page of `rne report` with the compiler inside.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -22,10 +22,11 @@ use crate::page;
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// Largest size of the page, bytes: a test of the repository judges it, so that nobody is kept from a page that works.
+/// The largest size of the page, bytes. Only a test of the repository checks it, so that a larger page can still be
+/// built.
 const LARGEST: usize = 1_300_000;
 
-/// The scripts of the page, in their order; what stands around them uses each once.
+/// The scripts of the page, in their order. Each is inserted once.
 const SCRIPTS: [&str; 4] = ["compiler.js", "editor.js", "share.js", "playground.js"];
 
 /// Builds the playground, one page of HTML with the compiler as WebAssembly inside, and serves it
@@ -61,7 +62,7 @@ pub(crate) struct Playground {
 }
 
 impl Playground {
-    /// Builds the page and serves it to nobody.
+    /// Builds the page without serving it.
     pub(crate) fn built(install: bool) -> Result<Verdict> {
         Self { install, no_serve: true, port: 0, test: false }.run()
     }
@@ -93,7 +94,7 @@ impl Playground {
     }
 }
 
-/// Sees to it that the compiler of the repository can build for WebAssembly.
+/// Checks that the compiler of the repository can build for WebAssembly. With `install`, it gets the missing target.
 fn target(install: bool) -> Result<()> {
     let has = || {
         let mut asks = Command::new("rustc");
@@ -117,7 +118,7 @@ fn target(install: bool) -> Result<()> {
     Err(Missing::error(format!("the target {TARGET} cannot be had (rustup target add {TARGET} says why)")))
 }
 
-/// The compiler as a module of WebAssembly.
+/// Builds the compiler as a module of WebAssembly.
 fn module(folder: &Path) -> Result<Vec<u8>> {
     let shell = machine::shell()?;
     let manifest = "doors/playground/Cargo.toml";
@@ -125,7 +126,7 @@ fn module(folder: &Path) -> Result<Vec<u8>> {
     let fetched = machine::without_flags(fetched).quiet().ignore_status().output()?;
     let said = String::from_utf8_lossy(&fetched.stderr);
     if said.contains("lock file") {
-        // nothing that a network would mend
+        // not caused by the network, so it is an error and not skipped
         anyhow::bail!("doors/playground/Cargo.lock is not that of its manifest: {}", said.trim());
     }
     if !fetched.status.success() {
@@ -134,7 +135,7 @@ fn module(folder: &Path) -> Result<Vec<u8>> {
     let build =
         cmd!(shell, "cargo build --quiet --locked --release --lib --manifest-path {manifest} --target {TARGET}");
     let build = build.arg("--target-dir").arg(folder);
-    // where the sources lie is in the places of panics, and nobody's business
+    // messages of panics contain the paths of sources, which must not reveal the folders of this machine
     let sources = format!("--remap-path-prefix={}=", machine::root().display());
     let home =
         std::env::var("CARGO_HOME").ok().or_else(|| std::env::var("HOME").ok().map(|home| format!("{home}/.cargo")));
@@ -144,7 +145,7 @@ fn module(folder: &Path) -> Result<Vec<u8>> {
     fs::read(&path).with_context(|| path.display().to_string())
 }
 
-/// A shipped robot as the menu has it.
+/// A shipped robot in the menu of the page.
 #[derive(Serialize)]
 struct Shipped {
     name: String,
@@ -152,7 +153,7 @@ struct Shipped {
     text: String,
 }
 
-/// The robot files of the folder `robots/`, by their names.
+/// Reads the robot files in the folder `robots/`, sorted by name.
 fn shipped() -> Result<Vec<Shipped>> {
     let folder = machine::root().join("robots");
     let mut robots = Vec::new();
@@ -172,7 +173,7 @@ fn shipped() -> Result<Vec<Shipped>> {
     Ok(robots)
 }
 
-/// The page with everything that it needs inside.
+/// Returns the page with the compiler, the scripts and the robot files inside.
 fn page(module: &[u8]) -> Result<String> {
     let read = |name: &str| machine::read(&format!("doors/playground/page/{name}"));
     let (packed, files) = (packed(module)?, packed(&serde_json::to_vec(&shipped()?)?)?);
@@ -184,7 +185,7 @@ fn page(module: &[u8]) -> Result<String> {
     println!("  {:>7} the compiler: {} bytes of WebAssembly, compressed, in base64", packed.len(), module.len());
     println!("  {:>7} the shipped robots", files.len());
     println!("  {:>7} scripts", script.len() + worker.len() + bridge.len());
-    // colours, controls and the head; the panels below are those of the page inside
+    // of the style of `rne report` only the colours, controls and head: the inner page has its own style for panels
     let report_style = machine::read("teaching/page/web/style.css")?;
     let end = "/* ---- panels */";
     let (report_style, _) = report_style.split_once(end).with_context(|| format!("the style has no {end}"))?;
@@ -197,7 +198,7 @@ fn page(module: &[u8]) -> Result<String> {
         ("bridge", bridge),
         ("script", script),
     ];
-    // each gap stands in a part of the template of its own: what is put in is not searched
+    // placeholders are searched only in the rest of the template, never in inserted text
     let mut html = String::new();
     let template = read("index.html")?;
     let mut rest = template.as_str();
@@ -212,26 +213,26 @@ fn page(module: &[u8]) -> Result<String> {
     Ok(html)
 }
 
-/// Compressed, as text.
+/// Compresses bytes by gzip and encodes them as base64.
 fn packed(bytes: &[u8]) -> Result<String> {
     let mut writer = GzBuilder::new().write(Vec::new(), Compression::best());
     writer.write_all(bytes)?;
     Ok(STANDARD.encode(writer.finish()?))
 }
 
-/// Serves a page at localhost until it is stopped.
+/// Serves a page at localhost until the program is stopped.
 fn serve(html: &str, port: u16) -> Result<()> {
     let listener = TcpListener::bind(("127.0.0.1", port))
         .with_context(|| format!("port {port} of localhost; --port chooses another"))?;
     println!("http://localhost:{}/ (Ctrl-C ends it)", listener.local_addr()?.port());
     for stream in listener.incoming() {
-        // a browser that goes away is none of our trouble
+        // an error with one browser, for example one that closed the connection, does not stop the server
         let _ = stream.and_then(|stream| respond(&stream, html));
     }
     Ok(())
 }
 
-/// Answers one request: the page for `/`, nothing else.
+/// Answers one request: the page for `/`, an error for every other path.
 fn respond(mut stream: &TcpStream, html: &str) -> std::io::Result<()> {
     stream.set_read_timeout(Some(Duration::from_secs(2)))?;
     let mut request = BufReader::new(stream.take(16 * 1024));

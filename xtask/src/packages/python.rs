@@ -1,4 +1,5 @@
-//! The Python package: a wheel, and its tests in an environment that has nothing but the wheel.
+//! Builds the Python package, a wheel, and tests it in an environment that contains only the wheel and what it
+//! requires.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,6 +10,7 @@ use xshell::{Shell, cmd};
 
 use crate::Verdict;
 use crate::machine::{self, Missing};
+use crate::packages::package::Licences;
 
 /// Package that builds the wheel.
 const MATURIN: &str = "maturin>=1.9,<2";
@@ -29,7 +31,7 @@ const JAX: [&str; 1] = ["jax==0.10.2"];
 /// Packages that the tests need to call the functions of the wheel from PyTorch: gigabytes.
 const TORCH: [&str; 1] = ["torch==2.6.0"];
 
-/// Whose columns the wheel reads.
+/// Packages whose columns the wheel reads.
 const COLUMNS: [&str; 3] = ["pandas>=2", "polars>=1.8", "pyarrow>=17"];
 
 /// Package that is timed beside the wheel, in the version of `benches/peers/run`.
@@ -38,7 +40,7 @@ const TOOLBOX: &str = "roboticstoolbox-python==1.5.0";
 /// Packages that run the notebooks.
 const NOTEBOOKS: [&str; 4] = ["nbclient>=0.10", "ipykernel>=6", "matplotlib>=3", "rosbags>=0.10"];
 
-/// The first lines that a user types.
+/// The first lines that a user types, as a short test.
 const FIRST: &str = "import rne\n\
                      arm = rne.robots['puma560']\n\
                      print('python, no compiler on PATH:', arm.gravity_torques([0.1] * 6), 'N m')";
@@ -58,7 +60,7 @@ Examples:
   cargo xtask python --install    install it first
   cargo xtask python --install --peers --casadi --jax --notebooks
   cargo xtask python --install --sdist    minutes: pip builds it from sources")]
-#[allow(clippy::struct_excessive_bools)] // each is an option
+#[allow(clippy::struct_excessive_bools)] // each field is an option of the command
 pub(crate) struct Python {
     /// Install what is missing, with pip, below target/
     #[arg(long)]
@@ -113,8 +115,8 @@ impl Python {
     }
 }
 
-/// Functions from Python beside those of other packages, timed: the table that a script of `benches/peers/python`
-/// prints.
+/// Compares the times of functions called from Python with those of other packages. Returns the table that a script of
+/// `benches/peers/python` prints.
 pub(crate) fn beside_peers(script: &str) -> Result<String> {
     let place = Place::new()?;
     let packages = [&TESTS[..], &PEERS, &[TOOLBOX]].concat();
@@ -124,7 +126,7 @@ pub(crate) fn beside_peers(script: &str) -> Result<String> {
     Ok(cmd!(shell, "{python} benches/peers/python/{script}").quiet().read()?)
 }
 
-/// Where wheels and environments are.
+/// The folder with wheels and virtual environments.
 pub(crate) struct Place {
     shell: Shell,
     folder: PathBuf,
@@ -138,7 +140,7 @@ impl Place {
         Ok(Self { shell: machine::shell()?, folder: machine::target_folder("target")?.join("python") })
     }
 
-    /// The Python of a virtual environment, which is made unless it exists.
+    /// Returns the Python of a virtual environment, which is created if it does not exist.
     pub(crate) fn environment(&self, name: &str) -> Result<PathBuf> {
         let (shell, venv) = (&self.shell, self.folder.join(name));
         let python = venv.join("bin/python");
@@ -163,17 +165,18 @@ impl Place {
         Ok(maturin)
     }
 
-    /// Whether a wheel was built here before, so that another one takes little.
+    /// Whether a wheel was built here before, so that another build takes little time.
     pub(crate) fn has_wheel(&self) -> bool {
         self.folder.join("wheels").exists()
     }
 
-    /// The wheel, built.
+    /// Builds the wheel and returns its path.
     pub(crate) fn wheel(&self, install: bool) -> Result<PathBuf> {
         let (shell, maturin) = (&self.shell, self.maturin(install)?);
         let (wheels, target) = (self.folder.join("wheels"), machine::target_folder("target")?);
         let (profile, _) = machine::profile()?;
         let _ = fs::remove_dir_all(&wheels);
+        let _licences = Licences::copied(shell)?;
         let build = cmd!(
             shell,
             "{maturin} build --quiet --profile {profile} --locked --manifest-path doors/python/Cargo.toml
@@ -183,8 +186,8 @@ impl Place {
         only_file(&wheels)
     }
 
-    /// The command line, built, with whose numbers those of logs are compared: as tests of all formats build it, so
-    /// that it is compiled once.
+    /// Builds the command line, whose results the tests compare with those of the wheel. The options are those of the
+    /// tests of all formats of logs, so that it is compiled only once.
     pub(crate) fn command_line(&self) -> Result<PathBuf> {
         let shell = &self.shell;
         let build = cmd!(
@@ -196,7 +199,7 @@ impl Place {
         Ok(machine::target_folder("target")?.join("debug").join(format!("rne{}", std::env::consts::EXE_SUFFIX)))
     }
 
-    /// The library that the tests load in the place of NVIDIA's driver.
+    /// Builds the library that tests load in place of NVIDIA's driver, and returns its path.
     fn fake_driver(&self) -> Result<PathBuf> {
         let shell = &self.shell;
         machine::without_flags(cmd!(shell, "cargo build --quiet --locked --package fake-driver")).quiet().run()?;
@@ -204,7 +207,7 @@ impl Place {
         Ok(machine::target_folder("target")?.join("debug").join(name))
     }
 
-    /// The environment of the tests with the wheel and these packages, its Python.
+    /// Installs the wheel and some packages into the environment of the tests. Returns its Python.
     fn user(&self, wheel: &Path, packages: &[&str], install: bool) -> Result<PathBuf> {
         let (shell, python) = (&self.shell, self.environment("user")?);
         if install && !self.pip(&python, packages) {
@@ -222,7 +225,8 @@ impl Place {
         Ok(python)
     }
 
-    /// The wheel where nothing else is, by its own requirements; PATH has the environment alone: no cc, no cargo.
+    /// Tests the wheel in a new environment that has only what the wheel requires. PATH contains this environment
+    /// alone: no cc, no cargo.
     fn holds_without_compiler(&self, wheel: &Path) -> Result<bool> {
         let _ = fs::remove_dir_all(self.folder.join("clean"));
         let python = self.environment("clean")?;
@@ -233,16 +237,16 @@ impl Place {
         }
         let shell = &self.shell;
         let first = cmd!(shell, "{python} -c {FIRST}").env("PATH", alone);
-        // all of them have passed with one on PATH
+        // all tests have already passed with a compiler on PATH, so one file of them is enough here
         let tests = if std::env::var_os("CI_FULL").is_some() { "" } else { "test_functions.py" };
         let tests =
             cmd!(shell, "{python} -m pytest -q -p no:cacheprovider doors/python/tests/{tests}").env("PATH", alone);
         Ok(first.quiet().run().is_ok() && tests.quiet().run().is_ok())
     }
 
-    /// The source distribution as pip builds it, apart from this folder's own build. Where there is no Rust, maturin
-    /// asks for the package `puccinialin`, which downloads one; here the Rust that is on `PATH` is taken, so that
-    /// nothing depends on a download.
+    /// Tests the source distribution as pip builds it, in its own folder. Without Rust, maturin would ask for the
+    /// package `puccinialin`, which downloads Rust. The Rust on `PATH` is used, so that the test depends on no
+    /// download.
     fn holds_from_sources(&self) -> Result<bool> {
         let (shell, maturin) = (&self.shell, self.maturin(true)?);
         let sources = self.folder.join("sources");
@@ -264,7 +268,7 @@ impl Place {
     }
 }
 
-/// The file of a folder that has one.
+/// Returns the only file in a folder.
 fn only_file(folder: &Path) -> Result<PathBuf> {
     let file = fs::read_dir(folder)?.find_map(|entry| Some(entry.ok()?.path()));
     file.with_context(|| format!("{} is empty", folder.display()))

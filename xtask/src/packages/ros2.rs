@@ -1,4 +1,4 @@
-//! The ROS 2 node, `doors/ros2/`: a workspace of its own.
+//! Tests the ROS 2 node, `doors/ros2/`, a workspace of its own.
 
 use anyhow::Result;
 use clap::Args;
@@ -8,7 +8,7 @@ use crate::Verdict;
 use crate::machine::{self, Missing};
 use crate::packages::python::Place;
 
-/// Packages of the other side of the node.
+/// Python packages of the program that talks to the node in the test.
 const REQUIREMENTS: &str = "doors/ros2/peer/requirements.txt";
 
 /// Tests the ROS 2 node, alone and against Eclipse Cyclone DDS

@@ -31,7 +31,7 @@ impl Sbom {
         let features = self.features.iter().flat_map(|features| ["--features", features]);
         let edges = ["--edges", "normal,build", "--prefix", "none", "--format", "{p}", "--locked"];
         let tree = cmd!(shell, "cargo tree --package rne-cli {edges...} {features...}").quiet().read()?;
-        // rne-cli v0.1.0 (/path) (*)
+        // each line of the tree looks like: rne-cli v0.1.0 (/path) (*)
         let used: BTreeSet<(String, String)> = tree
             .lines()
             .filter_map(|line| {
@@ -46,7 +46,7 @@ impl Sbom {
     }
 }
 
-/// The document with the packages of `cargo metadata` that are used, by name and version.
+/// Returns the document with those packages of `cargo metadata` that are used, which are given by name and version.
 fn document(metadata: &Value, used: &BTreeSet<(String, String)>) -> Result<Value> {
     let packages = metadata["packages"].as_array().context("cargo metadata lists packages")?;
     let component = |package: &Value| {

@@ -1,4 +1,5 @@
-//! The documents, the playground, the pages of the shipped robots and the reference of the library as one static site.
+//! Builds one static site of the documents, the playground, the pages of the shipped robots and the reference of the
+//! library.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -37,7 +38,7 @@ pub(crate) struct Site {
     test: bool,
 }
 
-/// The head of each page: its name and its link from the root.
+/// The links in the head of each page: their names, and their paths from the root.
 const PLACES: [(&str, &str); 6] = [
     ("rne", "index.html"),
     ("lecture", "docs/teaching/lecture/README.html"),
@@ -74,7 +75,7 @@ impl Site {
         }
         let rne = page::rne(&shell)?;
         let names = cmd!(shell, "git ls-files *.md").quiet().read()?;
-        // texts in sources are parts of the reference
+        // Markdown files in source folders belong to the reference
         let sources: Vec<PathBuf> = names.lines().filter(|name| !name.contains("/src/")).map(PathBuf::from).collect();
         let mut wrong = Vec::new();
         for source in &sources {
@@ -108,17 +109,17 @@ impl Site {
     }
 }
 
-/// Where a document stands in the site.
+/// Returns the path of a document's page in the site.
 fn place_of(source: &Path) -> PathBuf {
     if source == Path::new("README.md") { "index.html".into() } else { source.with_extension("html") }
 }
 
-/// The path from a page to the root: `../../`.
+/// Returns the path from a page to the root, such as `../../`.
 fn up(place: &Path) -> String {
     "../".repeat(place.components().count().saturating_sub(1))
 }
 
-/// A page with the head of all pages.
+/// Returns a page with the head that all pages have.
 fn framed(place: &Path, title: &str, body: &str) -> String {
     let up = up(place);
     let mut links = String::new();
@@ -133,7 +134,7 @@ fn framed(place: &Path, title: &str, body: &str) -> String {
     )
 }
 
-/// A document of the repository.
+/// A document of the repository that becomes a page.
 struct Document<'a> {
     source: &'a Path,
     sources: &'a [PathBuf],
@@ -141,11 +142,11 @@ struct Document<'a> {
 }
 
 impl Document<'_> {
-    /// The page of a document. Files of the repository that it names are copied.
+    /// Returns the page of a document. Files of the repository to which it links are copied to the site.
     fn html(&self, text: &str, wrong: &mut Vec<String>) -> Result<String> {
         let options = Options::ENABLE_TABLES | Options::ENABLE_STRIKETHROUGH;
         let mut events = Vec::new();
-        // names of headings as GitHub has them
+        // headings get the names that GitHub gives them
         let mut names = Names::default();
         let mut heading: Option<(usize, String)> = None;
         let mut title = self.source.display().to_string();
@@ -180,7 +181,7 @@ impl Document<'_> {
                     }
                     events.push(event);
                 }
-                // a live page of the book
+                // a live page of the book is shown in an iframe
                 Event::Html(ref html) | Event::InlineHtml(ref html) if html.contains("<iframe src=\"") => {
                     let reports = format!("<iframe src=\"{}reports/", up(&place_of(self.source)));
                     events.push(Event::Html(html.replace("<iframe src=\"", &reports).into()));
@@ -193,7 +194,7 @@ impl Document<'_> {
         Ok(framed(&place_of(self.source), &title, &body))
     }
 
-    /// A link in the site. A folder is its README; a file that is no document is copied.
+    /// Returns a link for the site. A folder becomes its README; a file that is not a document is copied.
     fn link(&self, link: &str, wrong: &mut Vec<String>) -> Result<String> {
         if link.contains("://") || link.starts_with('#') || link.starts_with("mailto:") {
             return Ok(link.to_owned());
@@ -209,7 +210,7 @@ impl Document<'_> {
             copy(&there, &self.site.join(&path))?;
             path
         } else if there.is_dir() {
-            // a folder of sources has no page; its name stays a word of the sentence
+            // a folder of sources has no page, so the link leads nowhere and its text stays
             return Ok("#".to_owned());
         } else {
             wrong.push(format!("{}: `{link}` leads nowhere", self.source.display()));
@@ -220,7 +221,7 @@ impl Document<'_> {
     }
 }
 
-/// The names of the headings of a page.
+/// The names of the headings on a page. A repeated heading gets a number.
 #[derive(Default)]
 struct Names {
     used: BTreeMap<String, usize>,
@@ -236,7 +237,7 @@ impl Names {
     }
 }
 
-/// A path without `.` and `..`.
+/// Returns a path without `.` and `..`.
 fn normal(path: &Path) -> PathBuf {
     let mut parts = PathBuf::new();
     for part in path.components() {
@@ -255,7 +256,7 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;")
 }
 
-/// The page of each shipped robot, and a list of them.
+/// Writes the page of each shipped robot, and a list of them.
 fn reports(shell: &xshell::Shell, rne: &Path, site: &Path) -> Result<()> {
     let mut robots: Vec<String> = Vec::new();
     for entry in fs::read_dir(machine::root().join("robots")).context("robots/")? {
@@ -306,7 +307,7 @@ fn copy_all(from: &Path, to: &Path) -> Result<()> {
     Ok(())
 }
 
-/// All files below a folder.
+/// Returns all files below a folder.
 fn files(folder: &Path) -> Result<Vec<PathBuf>> {
     let mut all = Vec::new();
     for entry in fs::read_dir(folder).with_context(|| folder.display().to_string())? {
@@ -317,7 +318,7 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(all)
 }
 
-/// Looks for links of the written pages that lead nowhere; how many pages there are besides the reference.
+/// Finds links that lead nowhere on the written pages. Returns the number of pages, without the reference.
 fn checked(site: &Path, wrong: &mut Vec<String>) -> Result<usize> {
     let link = Regex::new(r#"<(?:a|img|iframe|link)\b[^>]*?(?:href|src)="([^"]*)""#)?;
     let id = Regex::new(r#"\bid="([^"]*)""#)?;
@@ -331,7 +332,7 @@ fn checked(site: &Path, wrong: &mut Vec<String>) -> Result<usize> {
     };
     for page in &pages {
         let text = fs::read_to_string(page)?;
-        // scripts hold texts that look like links
+        // scripts contain texts that look like links
         let text = text.split("<script").next().unwrap_or_default();
         for found in link.captures_iter(text) {
             let target = &found[1];

@@ -1,4 +1,4 @@
-//! Lines of at most 120 columns, in code and in prose.
+//! Checks that lines have at most 120 columns, in code and in prose.
 
 use std::fs;
 use std::path::Path;
@@ -32,7 +32,7 @@ pub(crate) struct Lines {
     wrap: bool,
 }
 
-/// As rustfmt.toml has it.
+/// The largest width, as in rustfmt.toml.
 const COLUMNS: usize = 120;
 
 impl Lines {
@@ -51,7 +51,7 @@ impl Lines {
         Ok(Verdict::from(found.is_empty()))
     }
 
-    /// Long lines of a file, or of the files below a folder, with their places.
+    /// Finds long lines of a file, or of the files below a folder, with their places. With --wrap it breaks them first.
     fn walk(&self, path: &Path, found: &mut Vec<String>) -> Result<()> {
         if path.is_dir() {
             let name = path.file_name().unwrap_or_default();
@@ -73,7 +73,7 @@ impl Lines {
             text = wrapped(&text, COLUMNS);
             fs::write(path, &text).with_context(|| path.display().to_string())?;
         }
-        // a formula or a table of a document may be wider
+        // remaining long lines of a document are allowed: formulas and tables may be wider
         if path.extension().is_some_and(|extension| extension == "md") {
             return Ok(());
         }
@@ -86,7 +86,7 @@ impl Lines {
 type Long = fn(&str) -> Vec<(usize, usize)>;
 type Wrapped = fn(&str, usize) -> String;
 
-/// Numbers and widths of the long lines.
+/// Returns the numbers and widths of the lines that are too long.
 fn long(text: &str, mut may_be: impl FnMut(&str) -> bool) -> Vec<(usize, usize)> {
     let lines = text.lines().enumerate().map(|(index, line)| (index + 1, line, line.width()));
     lines
@@ -104,7 +104,7 @@ fn long_in_rust(text: &str) -> Vec<(usize, usize)> {
         is_table |= code == "#[rustfmt::skip]";
         is_table &= !code.is_empty();
         let text = code.trim_start_matches(['/', '!']).trim_start();
-        // a row of a table; or one word
+        // a row of a table, or a single word
         is_table || is_snapshot || text.starts_with('|') || !text.trim_end().contains(' ')
     })
 }

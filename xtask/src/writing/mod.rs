@@ -1,4 +1,4 @@
-//! The lines and the words of texts.
+//! Tasks that check the lines and the wording of texts.
 
 pub(crate) mod lines;
 pub(crate) mod prose;

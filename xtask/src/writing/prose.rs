@@ -1,4 +1,4 @@
-//! Patterns of prose that a reader has to translate back into plain English.
+//! Finds patterns of prose that are hard to read.
 
 mod rules;
 
@@ -29,7 +29,7 @@ pub(crate) struct Prose {
     paths: Vec<String>,
 }
 
-/// Documents that are not written by a program. Lengthen this list with a page after it is rewritten.
+/// Documents that are written by hand. A page is added after it has been rewritten.
 const DOCUMENTS: &[&str] = &[
     "ARCHITECTURE.md",
     "CONTRIBUTING.md",
@@ -75,7 +75,7 @@ const DOCUMENTS: &[&str] = &[
     "robots/README.md",
 ];
 
-/// Folders of sources whose first sentences are checked. Lengthen this list with a crate after it is rewritten.
+/// Folders of sources whose first sentences of documentation are checked. A crate is added after it has been rewritten.
 const SOURCES: &[&str] = &[
     "src",
     "compiler/functions/src",
@@ -101,12 +101,12 @@ const SOURCES: &[&str] = &[
     "xtask/src",
 ];
 
-/// Sources in these folders that are emitted, or quote what is: their bytes are frozen.
+/// Sources in these folders that contain emitted text, which must not change in any byte. They are not checked.
 const EMITTED: &[&str] =
     &["compiler/emit/src/own_tests/rust.rs", "compiler/emit/src/sin_cos_f32.rs", "compiler/emit/src/sin_cos_f64.rs"];
 
-/// Folders of libraries, whose strings name no option and no command of the command line: users of Python, C and SQL
-/// read them too.
+/// Folders of libraries. Their messages must not name options or commands of the command line, because users of Python,
+/// C and SQL read them, too.
 const LIBRARIES: &[&str] = &[
     "compiler/functions/src",
     "compiler/codegen/src",
@@ -128,7 +128,8 @@ const LIBRARIES: &[&str] = &[
     "firmware/certify/src",
 ];
 
-/// Folders of sources whose strings are messages: every rule that may hold anywhere is searched in them.
+/// Folders of sources whose strings are messages. They are searched for the patterns that are not bound to the
+/// beginning of a sentence.
 const MESSAGES: &[&str] = &[
     "cli/src",
     "import/src",
@@ -143,10 +144,10 @@ const MESSAGES: &[&str] = &[
     "firmware/certify/src",
 ];
 
-/// Folders of sources whose helps are checked.
+/// Folders of sources whose help texts are checked.
 const HELPS: &[&str] = &["cli/src"];
 
-/// A text without breaks of lines, and where its lines begin.
+/// The text of a paragraph without line breaks, and the positions at which its lines begin.
 #[derive(Default)]
 struct Paragraph {
     text: String,
@@ -167,14 +168,14 @@ impl Paragraph {
     }
 }
 
-/// A text with its code replaced by as many letters.
+/// Returns a text in which code between backticks is replaced by the same number of letters.
 fn without_code(text: &str) -> String {
     let parts = text.split('`').enumerate();
     let plain = parts.map(|(index, part)| if index % 2 == 0 { part.to_owned() } else { "x".repeat(part.len()) });
     plain.collect::<Vec<_>>().join("`")
 }
 
-/// The paragraphs of a document: items of lists and cells of tables too.
+/// Returns the paragraphs of a document, including items of lists and cells of tables.
 fn of_document(text: &str) -> Vec<Paragraph> {
     let (mut found, mut paragraph) = (Vec::new(), Paragraph::default());
     let (mut is_code, mut is_written) = (false, false);
@@ -209,7 +210,8 @@ fn of_document(text: &str) -> Vec<Paragraph> {
     found
 }
 
-/// The first paragraphs of the documentation in a source; `is_wanted` decides by the line below a comment.
+/// Returns the first paragraph of each documentation comment in a source. `is_wanted` selects comments by the line of
+/// code below.
 fn of_source(text: &str, is_wanted: impl Fn(&str) -> bool) -> Vec<Paragraph> {
     let (mut found, mut paragraph) = (Vec::new(), Paragraph::default());
     let mut is_first = true;
@@ -231,7 +233,7 @@ fn of_source(text: &str, is_wanted: impl Fn(&str) -> bool) -> Vec<Paragraph> {
     found
 }
 
-/// The helps of a source: comments of arguments and commands, and what follows the options.
+/// Returns the help texts in a source: comments on arguments and commands, and the texts after the options.
 fn of_helps(text: &str) -> Vec<Paragraph> {
     let is_help = |below: &str| {
         let derives = ["Args", "Parser", "Subcommand", "ValueEnum"];
@@ -259,7 +261,7 @@ fn of_helps(text: &str) -> Vec<Paragraph> {
     found
 }
 
-/// The code of a source line by line, without comments: its words are those of its strings.
+/// Returns the lines of code without comments; the words that are searched in them are those of strings.
 fn of_code(text: &str) -> Vec<Paragraph> {
     let code = text.lines().enumerate().filter(|(_, line)| !line.trim_start().starts_with("//"));
     let paragraph = |(index, line): (usize, &str)| {
@@ -270,7 +272,8 @@ fn of_code(text: &str) -> Vec<Paragraph> {
     code.map(paragraph).collect()
 }
 
-/// The rules that a paragraph breaks: line, words, and what to write instead. Questions may begin as they like.
+/// Returns the rules that a paragraph breaks: line, words found, and advice. The rules for the beginning of a sentence
+/// do not apply to questions.
 fn broken(paragraph: &Paragraph, rules: &[(Regex, &'static Rule)]) -> Vec<(usize, String, &'static str)> {
     let text = without_code(&paragraph.text);
     let is_question =
@@ -324,7 +327,7 @@ impl Prose {
     }
 }
 
-/// The options and commands of the command line that stand in a source outside its comments, with their lines.
+/// Returns the options and commands of the command line that a source names outside of comments, with their lines.
 fn options(text: &str) -> Result<Vec<(usize, String)>> {
     let pattern = Regex::new(r#"(?:^|[ "`(])(--[a-z][a-z-]*|`rne [a-z]+)"#)?;
     let code = text.lines().enumerate().filter(|(_, line)| !line.trim_start().starts_with("//"));
@@ -337,7 +340,7 @@ fn options(text: &str) -> Result<Vec<(usize, String)>> {
 
 type Paragraphs = fn(&str) -> Vec<Paragraph>;
 
-/// The first sentences of all documentation in a source.
+/// Returns the first sentence of each documentation comment in a source.
 fn first_sentences(text: &str) -> Vec<Paragraph> {
     let mut found = of_source(text, |_| true);
     for paragraph in &mut found {
@@ -347,7 +350,7 @@ fn first_sentences(text: &str) -> Vec<Paragraph> {
     found
 }
 
-/// The Rust files below folders, from the root of the repository.
+/// Returns the Rust files below folders, as paths from the root of the repository.
 fn sources(folders: &[&str]) -> Result<Vec<String>> {
     let (mut found, mut open) = (Vec::new(), folders.iter().map(|folder| (*folder).to_owned()).collect::<Vec<_>>());
     while let Some(folder) = open.pop() {

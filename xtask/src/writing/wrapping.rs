@@ -1,12 +1,12 @@
-//! Prose wrapped anew: paragraphs of Markdown and of comments that have a line which is too long.
+//! Wraps paragraphs of Markdown and of comments again if they have a line that is too long.
 
 use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm, wrap};
 use unicode_width::UnicodeWidthStr;
 
-/// A blank at which no line may end. Private use, and as wide as a blank.
+/// A character for a blank at which a line must not end. It is in a private-use area and has the width of a blank.
 const GLUE: char = '\u{E000}';
 
-/// Comments of a Rust file. Code stays as it is.
+/// Wraps the comments of a Rust file. Code is not changed.
 pub(crate) fn wrapped_comments(text: &str, columns: usize) -> String {
     let mut wrapped = String::new();
     let mut lines = text.lines().peekable();
@@ -26,7 +26,7 @@ pub(crate) fn wrapped_comments(text: &str, columns: usize) -> String {
     wrapped
 }
 
-/// A file of Markdown. What is written between `<!-- begin: … -->` and `<!-- end -->` stays as it is.
+/// Wraps a file of Markdown. Lines between `<!-- begin: … -->` and `<!-- end -->` are not changed.
 pub(crate) fn wrapped_markdown(text: &str, columns: usize) -> String {
     let lines: Vec<&str> = text.lines().collect();
     let mut wrapped = String::new();
@@ -41,7 +41,7 @@ fn push(text: &mut String, line: &str) {
     text.push('\n');
 }
 
-/// Indentation and slashes of a line that is a comment and nothing else.
+/// Returns the indentation and the slashes of a line that contains only a comment; `None` for other lines.
 fn marker(line: &str) -> Option<&str> {
     let start = line.len() - line.trim_start().len();
     let slashes = ["///", "//!", "//"].into_iter().find(|slashes| line[start..].starts_with(slashes))?;
@@ -54,7 +54,7 @@ fn body<'a>(line: &'a str, marker: &str) -> &'a str {
     rest.strip_prefix(' ').unwrap_or(rest)
 }
 
-/// The lines with each paragraph wrapped that is too wide.
+/// Returns the lines, in which paragraphs with a line that is too long are wrapped again.
 fn paragraphs(lines: &[&str], columns: usize) -> Vec<String> {
     let mut wrapped = Vec::new();
     let mut kept = Kept::default();
@@ -78,7 +78,7 @@ fn paragraphs(lines: &[&str], columns: usize) -> Vec<String> {
     wrapped
 }
 
-/// Lines that are no prose.
+/// The state that decides which lines are not prose and must not be wrapped.
 #[derive(Default)]
 struct Kept {
     is_code: bool,
@@ -98,7 +98,8 @@ impl Kept {
     }
 }
 
-/// Empty lines, headings, rows of tables, HTML, indented code, names of links.
+/// Whether a line belongs to no paragraph: empty lines, headings, rows of tables, HTML, indented code, definitions of
+/// links.
 fn stands_alone(line: &str) -> bool {
     let text = line.trim_start();
     let indent = line.len() - text.len();
@@ -106,18 +107,18 @@ fn stands_alone(line: &str) -> bool {
         || indent >= 4
         || ["#", "|", "<", "[", "```"].iter().any(|start| {
             text.starts_with(start) && {
-                // a link may begin a paragraph
+                // a line that begins with a link may be prose; one that defines a link is not
                 *start != "[" || text.contains("]: ")
             }
         })
 }
 
-/// Whether a line goes on with the paragraph before it.
+/// Whether a line continues the paragraph before it.
 fn continues(line: &str) -> bool {
     !stands_alone(line) && item(line.trim_start()).is_none()
 }
 
-/// The length of a list's mark at the beginning of a text.
+/// Returns the length of the mark at the beginning of a list item; `None` if the text is no list item.
 fn item(text: &str) -> Option<usize> {
     let word = text.split(' ').next()?;
     let number = word.strip_suffix('.').is_some_and(|number| number.parse::<u32>().is_ok());
@@ -142,12 +143,12 @@ fn paragraph(first: &str, more: &[&str], columns: usize) -> Vec<String> {
     wrap(&text, options).into_iter().map(|line| line.replace(GLUE, " ")).collect()
 }
 
-/// Words with blanks between them; where a line must not begin with the next word, or short code would be torn, with
-/// glue.
+/// Joins words by blanks. Where the next word must not begin a line, or short code would be split, it uses [`GLUE`]
+/// instead.
 fn glued(words: &[&str]) -> String {
     const CODE: usize = 40;
     let mut text = String::new();
-    // where code begins that has not ended
+    // the position at which code began that has not ended yet
     let mut code: Option<usize> = None;
     for (index, word) in words.iter().enumerate() {
         if index > 0 {

@@ -91,9 +91,9 @@ pub(crate) struct Arm<'s> {
     pub(crate) tips: Vec<(Option<usize>, Mount<'s>)>,
     /// Gravity in frame 0.
     pub(crate) gravity: Vector<'s>,
-    /// World → frame 0.
+    /// Placement of frame 0 in the world.
     pub(crate) base: Placement<'s>,
-    /// The floating base, if there is one, about the origin of frame 0.
+    /// The floating base, if there is one; its reference point is the origin of frame 0.
     pub(crate) floating_base: Option<Body<'s>>,
 }
 

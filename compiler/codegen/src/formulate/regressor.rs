@@ -161,7 +161,7 @@ pub(crate) fn name_of_floating(row: usize, body: usize, parameter: usize) -> Nam
     Name { indices, ..name }
 }
 
-/// U = [ω̇]× + [ω]×[ω]×
+/// Returns U = [ω̇]× + [ω]×[ω]×.
 fn gradient<'s>(omega: Vector<'s>, omega_dot: Vector<'s>) -> Matrix<'s> {
     let ([x, y, z], [dx, dy, dz]) = (omega.0, omega_dot.0);
     let (xx, yy, zz, xy, xz, yz) = (x * x, y * y, z * z, x * y, x * z, y * z);

@@ -12,7 +12,7 @@ use crate::named::{UnknownName, named};
 
 pub use own::{Own, own};
 
-/// The function with a name.
+/// Returns the function with this name.
 ///
 /// # Errors
 /// When no function has this name.
@@ -24,14 +24,14 @@ pub fn function_named(name: &str) -> Result<Function, UnknownName> {
     })
 }
 
-/// The functions that a robot has: those of its closed loops, or all others.
+/// Returns the functions that a robot has: those of closed loops if it has closed loops, otherwise all others.
 pub fn functions_of(robot: &Robot) -> impl Iterator<Item = Function> + use<> {
     let has_loops = !robot.closed.is_empty();
     Function::ALL.into_iter().filter(move |function| function.is_of_closed_loops() == has_loops)
 }
 
-/// The function whose operations the plan of a robot is to make few: the torques, and with them the wrench on the base
-/// of a robot with a floating base.
+/// Returns the function for which the plan of a robot minimises the number of operations: the torques, and for a robot
+/// with a floating base also the wrench on the base.
 #[must_use]
 pub fn function_of_plan(robot: &Robot) -> Function {
     match (robot.floating_base.is_some(), robot.closed.is_empty()) {
@@ -42,25 +42,28 @@ pub fn function_of_plan(robot: &Robot) -> Function {
     }
 }
 
-/// The lengths of the arrays of a robot.
+/// Returns the lengths of the arrays of a robot.
 #[must_use]
 pub fn sizes_of(robot: &Robot) -> Sizes {
     let closed = &robot.closed;
     Sizes { dof: robot.dof(), tips: robot.tip_count(), passive: closed.passive.len(), equations: closed.equations() }
 }
 
-/// A function of one robot.
+/// Properties of a function that depend on the robot.
 pub trait OfRobot: Sized {
-    /// The frame that a program of this function is compiled for, if `robot` is seen from one and the function can be.
+    /// Returns the frame that code for this function is compiled for: the frame that was selected in `robot`, if the
+    /// function is about a frame.
     #[must_use]
     fn frame(self, robot: &Robot) -> Option<FrameId>;
 
-    /// The name of its code for a robot: its own, or at a frame `jacobian_of_camera`. A character of a joint's name
-    /// that is no letter, digit or `_` becomes `_`.
+    /// Returns the name of the function's code for a robot: the name of the function, and for a selected frame also
+    /// that of the frame, as in `jacobian_of_camera`. In it, a character of a joint's name that is no letter, digit or
+    /// `_` becomes `_`.
     #[must_use]
     fn name_for(self, robot: &Robot) -> String;
 
-    /// Whether it holds still the base of a robot with a floating base: the plan of the robot is not for it.
+    /// Whether the function treats the base of a robot with a floating base as fixed: the plan of the robot is not made
+    /// for such functions.
     #[must_use]
     fn holds_floating_base(self, robot: &Robot) -> bool;
 }
@@ -93,7 +96,7 @@ named! {
         /// The seven steps: every intermediate is the lecture's.
         #[default]
         SevenSteps = "seven_steps",
-        /// Fewest operations: only the torques keep a physical meaning.
+        /// Fewest operations: of all quantities, only the torques have a physical meaning.
         Reduced = "reduced",
     }
 }

@@ -1,4 +1,4 @@
-//! Headings and meanings of the quantities that the listing of a function shows by themselves.
+//! Headings and meanings of quantities in the listing of a function, where they differ from the usual ones.
 
 use super::{Base, Function, Load, What};
 use crate::quantity::Quantity;
@@ -15,7 +15,7 @@ pub struct Own {
 }
 
 impl Own {
-    /// A quantity under a heading of its own.
+    /// A quantity with its own heading.
     const fn of(quantity: Quantity, heading: fn(usize) -> String) -> Self {
         Self { quantity, heading, meaning: None }
     }
@@ -25,16 +25,16 @@ impl Own {
         Self::meaning(quantity, meaning, |_| String::new())
     }
 
-    /// A quantity under a heading, whose names have another meaning in this function.
+    /// A quantity with its own heading, whose names have a special meaning in this function.
     const fn meaning(quantity: Quantity, meaning: &'static str, heading: fn(usize) -> String) -> Self {
         Self { quantity, heading, meaning: Some(meaning) }
     }
 }
 
-/// Where the origins of frames are in the Jacobians of tips.
+/// Meaning of the origins of frames in the Jacobians of tips.
 const FROM_BASE: &str = "origin of that frame, from frame 0 in world axes";
 
-/// The payload in a listing.
+/// The quantities of the payload in a listing.
 static PAYLOAD: [Own; 3] = [
     Own::names(Quantity::Mass, "mass of link i; of the payload for i = n + 1"),
     Own::names(
@@ -50,7 +50,7 @@ const ON_BASE: [Own; 2] = [
     Own::of(Quantity::BaseMoment, |_| "moment that must act on the base, about the origin of frame 0".to_owned()),
 ];
 
-/// Rates of the momentum.
+/// Rates of the linear and of the angular momentum.
 const CENTROIDAL: [Own; 2] = [
     Own::of(Quantity::BaseForce, |_| "rate of the momentum".to_owned()),
     Own::of(Quantity::CentroidalMoment, |_| "rate of the angular momentum about the centre of mass".to_owned()),
@@ -69,7 +69,7 @@ const OF_BASE: [Own; 2] = [
     Own::of(Quantity::OmegaDot, |_| "angular acceleration of the base".to_owned()),
 ];
 
-/// The heading and meaning that a quantity has in the listing of a function alone.
+/// Returns the heading and meaning of a quantity that are special to the listing of one function.
 #[must_use]
 pub fn own(function: Function, quantity: Quantity) -> Option<&'static Own> {
     let axes = function.axes();
@@ -81,7 +81,7 @@ pub fn own(function: Function, quantity: Quantity) -> Option<&'static Own> {
     all.into_iter().find(|own| own.quantity == quantity)
 }
 
-/// The quantities of several functions that mean something else in some of them.
+/// The quantities of one or more functions that have a special meaning or heading there.
 static OWN: &[(&[What], Option<Base>, &[Own])] = &[
     (
         &[What::MomentumAndRate],

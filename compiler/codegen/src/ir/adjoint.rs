@@ -1,19 +1,21 @@
-//! Reverse mode on a graph: the derivatives of one number by all variables at once, from the number back to its
-//! arguments.
+//! Reverse-mode differentiation on a graph: the derivatives of one number with respect to all variables at once, from
+//! the number back to its arguments.
 //!
-//! The adjoint of a node is the derivative of the number by it. A sum hands its adjoint on to its terms, a product to
-//! each factor times the other one (S. Linnainmaa, 1976). Two rules make what follows short:
+//! The adjoint of a node is the derivative of the number with respect to the node. A sum passes its adjoint to its
+//! terms; a product passes it to each factor, times the other factor (S. Linnainmaa, 1976). Two rules keep the formulas
+//! short:
 //!
-//! - The terms `adjoint · partial` of a node that have a factor in common are gathered before they are multiplied.
-//! - A turned component, u = x c + y s, changes with its angle by the other turned component, y c - x s. Where the
-//!   graph has that number, the adjoint of the angle takes one product of it instead of the adjoints of s and c.
+//! - Terms `adjoint · partial` of a node that have a factor in common are gathered before they are multiplied.
+//! - A rotated component u = x c + y s has the other rotated component, y c - x s, as derivative with respect to its
+//!   angle. If the graph has that number, the adjoint of the angle takes one product of it instead of the adjoints of s
+//!   and c.
 
 use rustc_hash::FxHashMap;
 
 use super::numbers::canonical;
 use super::{Builder, Graph, Input, Name, Op, Policy, Ref, Residue, Symbol, mark_live};
 
-/// The formulas that are differentiated, as they were before: where values may be merged, each value once.
+/// The formulas before differentiation. If values may be merged, each value occurs once.
 struct Formulas {
     ops: Vec<Op>,
     /// The nodes that the result depends on, and that depend on a variable.
@@ -27,7 +29,7 @@ struct Formulas {
 type Terms<'s> = Vec<(Symbol<'s>, Symbol<'s>)>;
 
 impl Builder {
-    /// The partial derivatives of a symbol by variables of these names.
+    /// Returns the partial derivatives of a symbol with respect to the variables with these names.
     pub(crate) fn gradient<'s>(&'s self, of: Symbol<'s>, by: &[Name]) -> Vec<Symbol<'s>> {
         let variables: Vec<Input> = by.iter().map(|name| Input::new(*name)).collect();
         let (formulas, of) = Formulas::of(&self.graph.borrow(), of.at, &variables);
@@ -50,7 +52,7 @@ impl Builder {
         found
     }
 
-    /// Gives the operands of a node their terms.
+    /// Adds the contributions of a node to the adjoints of its operands.
     fn hand_on<'s>(&'s self, formulas: &Formulas, index: usize, adjoint: Symbol<'s>, terms: &mut [Terms<'s>]) {
         let mut give = |to: Ref, adjoint: Symbol<'s>, partial: Symbol<'s>| {
             if formulas.active[to.index()] {
@@ -89,7 +91,7 @@ impl Builder {
         }
     }
 
-    /// The sum of products, those with a common factor gathered.
+    /// Returns the sum of products, after gathering those with a common factor.
     fn gathered<'s>(&'s self, mut terms: Terms<'s>) -> Symbol<'s> {
         let mut sum: Option<Symbol<'s>> = None;
         while let Some((adjoint, mut partial)) = (!terms.is_empty()).then(|| terms.remove(0)) {
@@ -107,11 +109,11 @@ impl Builder {
     }
 }
 
-/// A turned component: `terms` times sines and cosines of an angle.
+/// A component of a rotated vector: a sum of two `terms`, each a number times the sine or cosine of one angle.
 struct TurnedComponent {
     angle: Ref,
     terms: [(Ref, Ref); 2],
-    /// Its derivative by the angle, a node of the graph.
+    /// Its derivative with respect to the angle, a node of the graph.
     other: Ref,
 }
 
@@ -151,7 +153,7 @@ impl Formulas {
         (formulas, of.mapped(&map))
     }
 
-    /// The sum as a turned component, if the graph has the other component.
+    /// Reads a sum as a component of a rotated vector, if the graph has the other component.
     fn turned(&self, terms: [Ref; 2]) -> Option<TurnedComponent> {
         if self.values.is_empty() {
             return None;
@@ -175,7 +177,7 @@ impl Formulas {
             }
             angle = Some(of);
             let is_sine = matches!(self.ops[by.index()], Op::Sine(_));
-            // the sine changes by the cosine, the cosine by minus the sine
+            // the derivative of the sine is the cosine, that of the cosine is minus the sine
             let other = self.other_of(of, is_sine)?;
             let by_angle = other.residue(&self.residues).signed(is_sine == by.is_negative());
             derivative = derivative + (x.residue(&self.residues) * by_angle).signed(term.is_negative());
@@ -186,7 +188,7 @@ impl Formulas {
         Some(TurnedComponent { angle: angle?, terms: turned, other })
     }
 
-    /// The cosine of an angle, or its sine.
+    /// The node of the cosine of an angle, or of its sine if `cosine` is false.
     fn other_of(&self, angle: Ref, cosine: bool) -> Option<Ref> {
         let is_it = |op: &Op| match op {
             Op::Sine(of) => !cosine && *of == angle,

@@ -41,7 +41,7 @@ impl Graph {
         (at.signed(negative), outcome)
     }
 
-    /// A sum with its operands in the given order, because people read it.
+    /// Writes a sum with its operands in the given order, because people read the code.
     fn sum_as_written(&mut self, a: Ref, b: Ref, residue: Residue) -> (Ref, Outcome) {
         // pull out the sign of the first operand: (-a) + b = -(a - b)
         let mut negative = a.is_negative();
@@ -93,8 +93,8 @@ impl Graph {
         self.node(Op::Product(a, b), residue, negative)
     }
 
-    /// a / b. Only what is exact whatever b is folds; what is divided by zero is left to the code, whose result is not
-    /// finite.
+    /// a / b. It folds only if this is exact for every b. A division by zero stays in the code, whose result is then
+    /// not finite.
     pub(crate) fn quotient(&mut self, a: Ref, b: Ref) -> (Ref, Outcome) {
         if self.is_unit(b) {
             return (a.signed(b.is_negative()), Outcome::One(Side::Right));
@@ -118,7 +118,7 @@ impl Graph {
         self.node(Op::BySign(operands), residue, false)
     }
 
-    /// A term as a constant times something: the something, and the constant as a reference.
+    /// Splits a term into a constant and the rest; returns the rest and a reference to the constant.
     fn factored(&self, at: Ref) -> (Ref, Ref) {
         if let Op::Product(factor, rest) = self.op(at)
             && let Op::Constant(_) = self.op(factor)

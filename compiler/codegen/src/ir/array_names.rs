@@ -10,7 +10,8 @@ pub(crate) fn names_of(array: &str, joint: usize) -> impl Iterator<Item = Name> 
     quantities.flat_map(move |&(quantity, count)| (0..count).map(move |at| Name::nth(quantity, joint, count, at)))
 }
 
-/// The names of all numbers of an array that does not depend on the robot, as the table of arguments has them.
+/// The names of all numbers of an array whose length does not depend on the robot, in the order of the table of
+/// arguments.
 pub(crate) fn all_names_of<const COUNT: usize>(array: &str, joint: usize) -> [Name; COUNT] {
     let names: Vec<Name> = names_of(array, joint).collect();
     from_fn(|at| names[at])

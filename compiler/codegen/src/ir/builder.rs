@@ -1,4 +1,4 @@
-//! The sheet that formulas are written on: a graph, and the trace beside it where one is kept.
+//! The builder of formulas: it writes them into a graph and, where wanted, keeps a trace of names, places and causes.
 
 use std::cell::{Cell, RefCell};
 
@@ -18,31 +18,35 @@ pub(crate) enum Moving {
     /// The joints move as the arguments say.
     #[default]
     AsGiven,
-    /// This joint, counted from 0, accelerates with 1, and nothing moves: a column of the mass matrix.
+    /// All rates are zero, this joint (counted from 0) has the acceleration 1 and the others 0: a column of the mass
+    /// matrix.
     OneAccelerates(usize),
-    /// The joints are at rest and accelerate by their rates: torques are momenta then.
+    /// The rates are zero and the accelerations are replaced by the rates: computed torques are then momenta.
     RatesForAccelerations,
 }
 
-/// A graph being written. [`Symbol`]s refer to it, so that formulas are written with operators.
+/// A graph that is being written. [`Symbol`]s refer to it, so that operators such as `+` write formulas.
 pub(crate) struct Builder {
     pub(crate) graph: RefCell<Graph>,
     trace: Option<RefCell<Trace>>,
     /// The function that is being written. Arguments that this function does not have are zero.
     pub(crate) function: Function,
-    /// Whether joints may be taken to be at other points of their axes than the table has them.
+    /// Whether the origin of a joint frame may be another point of the joint axis than in the table.
     pub(crate) moves_origins: bool,
-    /// How far along its axis each joint is from where the table has it, where the table has joints far from the arm.
+    /// For each joint, the distance along its axis from the table's origin to the origin that is used, m; `None` if the
+    /// formulas use the origins of the table.
     pub(crate) origins: Option<Vec<f64>>,
-    /// The variable of the derivatives that are being written.
+    /// The variable with respect to which the formulas being written are derivatives.
     by: Cell<Option<WithRespectTo>>,
     /// The motion of the joints in the formulas that are being written.
     pub(crate) moving: Cell<Moving>,
-    /// Whether what is being written gets no names: other formulas have the same quantities in other axes.
+    /// Whether the values being written get no names, because other formulas name the same quantities in other axes.
     is_unnamed: Cell<bool>,
-    /// The map of closed loops by rows, and the accelerations of the dependent joints where no coordinate accelerates.
+    /// The matrix by which rates of coordinates give rates of the dependent joints of closed loops, by rows; and the
+    /// accelerations of the dependent joints if no coordinate accelerates.
     of_loops: RefCell<(Vec<Vec<Ref>>, Vec<Ref>)>,
-    /// The accelerations that were solved for, by name, where a function goes on with them.
+    /// The accelerations that were solved for, by the names of their arguments, if later formulas of the function use
+    /// them.
     solved: RefCell<FxHashMap<Name, Ref>>,
 }
 
@@ -59,13 +63,13 @@ impl Builder {
         Self { trace: Some(RefCell::new(trace)), ..Self::untraced(policy, embedding, function) }
     }
 
-    /// An empty graph that nobody reads.
+    /// An empty graph without a trace, for formulas that are counted or evaluated but not read.
     pub(crate) fn untraced(policy: Policy, embedding: Embedding, function: Function) -> Self {
         Self {
             graph: RefCell::new(Graph::new(policy, embedding)),
             trace: None,
             function,
-            // the seven steps have the joints where the table has them
+            // the seven steps use the joint origins of the table
             moves_origins: policy != Policy::Structure,
             origins: None,
             by: Cell::new(None),
@@ -76,17 +80,17 @@ impl Builder {
         }
     }
 
-    /// Joints may be taken to be at other points of their axes.
+    /// Allows joint origins at other points of the joint axes than in the table.
     pub(crate) fn moving_origins(self) -> Self {
         Self { moves_origins: true, ..self }
     }
 
-    /// Whether names are kept.
+    /// Whether a trace with names is kept.
     pub(crate) fn is_traced(&self) -> bool {
         self.trace.is_some()
     }
 
-    /// Clears the graph, to use another embedding of the numbers.
+    /// Clears the graph for formulas with another embedding of the numbers into the prime fields.
     pub(crate) fn restart(&mut self, embedding: Embedding) {
         self.graph.get_mut().clear(embedding);
         self.of_loops.take();
@@ -97,7 +101,7 @@ impl Builder {
         self.graph.borrow().embedding()
     }
 
-    /// A value without a cause as a symbol.
+    /// Returns the symbol of a node, without causes of its value.
     pub(crate) fn symbol(&self, at: Ref) -> Symbol<'_> {
         Symbol { builder: self, at, causes: CausesId::ARITHMETIC, term: TermId::NONE }
     }
@@ -107,13 +111,13 @@ impl Builder {
         Symbol { builder: self, at, causes, term: TermId::NONE }
     }
 
-    /// Keeps a term, where formulas are kept.
+    /// Stores a term of a formula and returns its index; [`TermId::NONE`] if formulas are not kept.
     fn written(&self, term: Written) -> TermId {
         let Some(trace) = &self.trace else { return TermId::NONE };
         trace.borrow_mut().terms.as_mut().map_or(TermId::NONE, |terms| terms.push(term))
     }
 
-    /// The negative of a term. That of a leaf is a leaf.
+    /// Returns the negative of a term; a leaf stays a leaf, because its node says whether it is negative.
     pub(super) fn negative(&self, term: TermId) -> TermId {
         if term == TermId::NONE { term } else { self.written(Written::Negative(term)) }
     }
@@ -146,7 +150,7 @@ impl Builder {
     /// Sine and cosine of a constant angle.
     pub(crate) fn constant_turn(&self, angle: &Angle, cause: Cause) -> (Symbol<'_>, Symbol<'_>) {
         let turn = self.embedding().turn(angle);
-        // the runtime's sine and cosine, where numbers are rounded as there
+        // with the policy `Structure`, numbers are the rounded ones of the runtime
         let [sine, cosine] = [(turn.sin, angle.sin), (turn.cos, angle.cos)].map(|(exact, value)| {
             let number = self.rounded(exact, value);
             self.caused(self.graph.borrow_mut().constant(number), cause)
@@ -165,7 +169,8 @@ impl Builder {
         Matrix::from_rows([0, 1, 2].map(|i| [0, 1, 2].map(|j| element(i, j))))
     }
 
-    /// An exact number, or what the runtime has for it where bits matter.
+    /// Returns the exact number; with the policy `Structure`, the rounded number of the runtime, so that results agree
+    /// bit by bit.
     fn rounded(&self, exact: Number, value: f64) -> Number {
         match self.graph.borrow().policy() {
             Policy::Structure => Number::rounded(value, exact.residue),
@@ -189,22 +194,23 @@ impl Builder {
         self.symbol(self.graph.borrow_mut().input(Input::new(name)))
     }
 
-    /// The zero vector, with its cause.
+    /// The zero vector; `cause` says why it is zero.
     pub(crate) fn zeros(&self, cause: Cause) -> Vector<'_> {
         Vector([self.constant(0.0, cause); 3])
     }
 
-    /// Keeps the map of closed loops, for those who multiply by it.
+    /// Stores the map of closed loops, whose elements [`loop_map`](Self::loop_map) returns.
     pub(crate) fn keep_loop_map(&self, map: &[Vec<Symbol<'_>>]) {
         self.of_loops.borrow_mut().0 = map.iter().map(|row| row.iter().map(|x| x.at).collect()).collect();
     }
 
-    /// Keeps the accelerations of the dependent joints where no coordinate accelerates.
+    /// Stores the accelerations of the dependent joints if no coordinate accelerates.
     pub(crate) fn keep_loop_bias(&self, bias: &[Symbol<'_>]) {
         self.of_loops.borrow_mut().1 = bias.iter().map(|x| x.at).collect();
     }
 
-    /// Keeps accelerations that were solved for: those of the joints, and of a floating base, from now on.
+    /// Stores solved accelerations of the joints and of a floating base. From now on formulas use them in place of the
+    /// arguments.
     pub(crate) fn keep_accelerations<'s>(&self, solved: impl Iterator<Item = (WithRespectTo, Symbol<'s>)>) {
         *self.solved.borrow_mut() = solved.map(|(of, x)| (of.variable(), x.at)).collect();
     }
@@ -219,20 +225,20 @@ impl Builder {
         self.solved.borrow().get(&name).map(|&at| self.symbol(at))
     }
 
-    /// A vector of the accelerations of a floating base, if they were solved for.
+    /// An acceleration vector of a floating base, if it was solved for.
     pub(crate) fn solved_of_base(&self, quantity: Quantity) -> Option<Vector<'_>> {
         let [x, y, z] = Axis::ALL.map(|axis| self.solved_acceleration(Name::vector(quantity, 0, axis)));
         Some(Vector([x?, y?, z?]))
     }
 
-    /// The nodes of accelerations that were solved for: derivatives of the torques do not follow them.
+    /// The nodes of the solved accelerations. Derivatives of the torques treat them as constant.
     pub(super) fn held(&self) -> Vec<usize> {
         self.solved.borrow().values().map(|at| at.index()).collect()
     }
 
-    /// Where formulas fold by value, has arguments stand for the accelerations that were solved for, until the values
-    /// are numbered. Derivatives hold these accelerations, so formulas must not fold by what they are: at these
-    /// accelerations, torques are those that were given.
+    /// Replaces the solved accelerations by arguments until the values are numbered, if formulas fold by value.
+    /// Derivatives keep these accelerations constant, so formulas must not know their values: with them, the torques
+    /// would fold to the given torques.
     pub(crate) fn hold_accelerations(&self) {
         let mut graph = self.graph.borrow_mut();
         let Some(trace) = self.trace.as_ref().filter(|_| graph.policy() == Policy::Value) else { return };
@@ -244,19 +250,20 @@ impl Builder {
         }
     }
 
-    /// An element of the map of closed loops: zero before it is kept.
+    /// Returns an element of the map of closed loops; zero before the map is stored.
     pub(crate) fn loop_map(&self, passive: usize, coordinate: usize) -> Symbol<'_> {
         let at = self.of_loops.borrow().0.get(passive).and_then(|row| row.get(coordinate)).copied();
         at.map_or_else(|| self.zero(), |at| self.symbol(at))
     }
 
-    /// The acceleration of a dependent joint where no coordinate accelerates: zero before it is kept.
+    /// Returns the acceleration of a dependent joint if no coordinate accelerates; zero before it is stored.
     pub(crate) fn loop_bias(&self, passive: usize) -> Symbol<'_> {
         let at = self.of_loops.borrow().1.get(passive).copied();
         at.map_or_else(|| self.zero(), |at| self.symbol(at))
     }
 
-    /// Gives a symbol a name. A constant of the table takes its name as cause, so that a fold can say what was zero.
+    /// Gives a symbol a name. For a constant of the table, the name is also the cause of its value, so that a fold
+    /// report can say which number was zero.
     pub(crate) fn name<'s>(&'s self, name: Name, symbol: Symbol<'s>) -> Symbol<'s> {
         let Some(trace) = &self.trace else { return symbol };
         let Some(quantity) = self.meant(name.quantity) else { return symbol };
@@ -265,7 +272,7 @@ impl Builder {
         let is_entry = name.quantity.step().is_none() || name.quantity == Quantity::D;
         let name = if is_entry { name } else { Name { by: name.by.or(self.by.get()), ..name } };
         let graph = self.graph.borrow();
-        // the two halves of a symmetric tensor are zero because of one number of the table
+        // the elements (i, j) and (j, i) of a symmetric tensor are zero because of one number of the table
         let told = if graph.is_zero(symbol.at) { name.of_upper_half() } else { name };
         let causes = if is_entry { trace.causes.single(Cause::Table(told)) } else { symbol.causes };
         let after = graph.len();
@@ -281,8 +288,8 @@ impl Builder {
         self.name_carried(quantity, [joint, 0], v)
     }
 
-    /// Names the components of a vector of one of the things that the link of a joint carries; the second number tells
-    /// them apart, and is 0 for the first.
+    /// Names the components of a vector of one joint or tip that a link carries; `carried` counts these, 0 for the
+    /// first.
     fn name_carried<'s>(&'s self, quantity: Quantity, [joint, carried]: [usize; 2], v: Vector<'s>) -> Vector<'s> {
         if !self.is_traced() {
             return v;
@@ -298,7 +305,7 @@ impl Builder {
         m.map(|row, column, x| self.name(Name::matrix(quantity, joint, row, column), x))
     }
 
-    /// The lines of one joint.
+    /// Starts formulas of one joint, counted from 1.
     pub(crate) fn joint(&self, joint: usize) -> JointLines<'_> {
         JointLines { builder: self, joint, named: joint, carried: 0 }
     }
@@ -319,13 +326,13 @@ impl Builder {
         self.recorded(made, Some(Operator::Product), [a, b])
     }
 
-    /// No ledger counts it.
+    /// Writes a / b. The fold report does not count it.
     pub(crate) fn quotient<'s>(&'s self, a: Symbol<'s>, b: Symbol<'s>) -> Symbol<'s> {
         let made = self.graph.borrow_mut().quotient(a.at, b.at);
         self.recorded(made, Some(Operator::Quotient), [a, b])
     }
 
-    /// No ledger counts it.
+    /// Writes the choice of a value by the sign of `x`. The fold report does not count it.
     pub(crate) fn by_sign<'s>(&'s self, x: Symbol<'s>, positive: Symbol<'s>, negative: Symbol<'s>) -> Symbol<'s> {
         let made = self.graph.borrow_mut().by_sign(x.at, positive.at, negative.at);
         let symbol = self.recorded(made, None, [positive, negative]);
@@ -334,7 +341,7 @@ impl Builder {
         Symbol { term, ..symbol }
     }
 
-    /// The symbol of the result of an operation, which enters the trace.
+    /// Records an operation in the trace, and returns the symbol of its result.
     fn recorded<'s>(
         &'s self,
         (at, outcome): (Ref, Outcome),
@@ -365,7 +372,7 @@ impl Builder {
         Symbol { builder: self, at, causes, term }
     }
 
-    /// The term of a symbol, which is a leaf of a formula now.
+    /// Returns the term of a symbol; a symbol without a term becomes a leaf of the formula.
     fn term(&self, symbol: Symbol<'_>) -> TermId {
         match symbol.term {
             TermId::NONE => self.written(Written::Node(symbol.at, symbol.causes)),
@@ -373,7 +380,7 @@ impl Builder {
         }
     }
 
-    /// Writes what is the derivative by one variable: its quantities bear that in their names.
+    /// Writes formulas of derivatives with respect to `by`, which the names of their quantities then contain.
     pub(crate) fn by<R>(&self, by: Option<WithRespectTo>, formulas: impl FnOnce() -> R) -> R {
         let outer = self.by.replace(by);
         let value = formulas();
@@ -381,7 +388,7 @@ impl Builder {
         value
     }
 
-    /// The trace so far: where each node was created, and the names.
+    /// Returns the trace so far: the place where each node was created, and the named values.
     pub(super) fn told(&self) -> (Vec<Option<Birth>>, Vec<Definition>) {
         let Some(trace) = &self.trace else { return Default::default() };
         let trace = &mut *trace.borrow_mut();
@@ -389,7 +396,7 @@ impl Builder {
         (trace.births.clone(), trace.definitions.clone())
     }
 
-    /// Writes what belongs where something else was born.
+    /// Writes a formula whose operations are counted at the place of another node.
     pub(super) fn at_birth<R>(&self, birth: Option<Birth>, formula: impl FnOnce() -> R) -> R {
         let outer = self.enter(birth.map(|birth| birth.place), birth.and_then(|birth| birth.component.axis()));
         let value = formula();
@@ -397,14 +404,14 @@ impl Builder {
         value
     }
 
-    /// The operations that follow belong to this quantity of this joint, counted from 1.
+    /// Assigns the next operations to this quantity of this joint; joints count from 1.
     pub(crate) fn at(&self, quantity: Quantity, joint: usize) {
         if let Some(place) = self.place(quantity, joint) {
             self.enter(Some(place), None);
         }
     }
 
-    /// Writes what gets no names.
+    /// Writes a formula whose values get no names.
     pub(crate) fn unnamed<R>(&self, formula: impl FnOnce() -> R) -> R {
         let outer = self.is_unnamed.replace(true);
         let value = formula();
@@ -412,7 +419,8 @@ impl Builder {
         value
     }
 
-    /// The meaning of a quantity where rates stand for accelerations; `None` for what has no name then.
+    /// Returns the quantity that results if rates replace accelerations, such as a momentum for a torque; `None` if the
+    /// value gets no name.
     fn meant(&self, quantity: Quantity) -> Option<Quantity> {
         if self.is_unnamed.get() {
             return None;
@@ -448,31 +456,31 @@ impl Builder {
     }
 }
 
-/// The lines of one joint: each gives a quantity of the lecture its value.
+/// The formulas of one joint. Each computes a quantity of the lecture and names it.
 #[derive(Clone, Copy)]
 pub(crate) struct JointLines<'s> {
     pub(crate) builder: &'s Builder,
-    /// The joint to which the lines belong.
+    /// The joint at which the operations are counted.
     joint: usize,
     /// The joint whose number is in the names of the quantities.
     named: usize,
-    /// The place of the joint or tip that they belong to, among those that the link carries; 0 for the first.
+    /// The number of the joint or tip, among those that the link carries; 0 for the first.
     carried: usize,
 }
 
 impl<'s> JointLines<'s> {
-    /// The same lines, for quantities with the number of another joint in their names.
+    /// Returns these formulas with the number of another joint in the names of their quantities.
     pub(crate) fn named(self, joint: usize) -> Self {
         Self { named: joint, ..self }
     }
 
-    /// The same lines, for quantities of what a link carries, where it carries several: the number that tells them
+    /// Returns these formulas for a link that carries several joints or tips; the number `carried` in names tells them
     /// apart.
     pub(crate) fn with_second_number(self, carried: usize) -> Self {
         Self { carried, ..self }
     }
 
-    /// The same lines, for quantities between the link of the joint and its parent; `None` is the base.
+    /// Returns these formulas for quantities between the link of the joint and its parent link; `None` is the base.
     pub(crate) fn behind(self, parent: Option<usize>) -> Self {
         self.with_second_number(Name::index_of_parent(self.named, parent.map_or(0, |parent| parent + 1)))
     }
@@ -482,7 +490,7 @@ impl<'s> JointLines<'s> {
         self.builder.entry(Name::scalar(quantity, self.named), value)
     }
 
-    /// The constant part of a joint angle. Without a name, its sine and cosine are known by the number.
+    /// Returns the constant part of a joint angle. If it gets no name, it is stored as an angle, with sine and cosine.
     pub(crate) fn constant_angle(&self, theta: &Angle) -> Symbol<'s> {
         if self.builder.is_unnamed.get() {
             return self.builder.angle(self.builder.embedding().turn(theta));
@@ -506,7 +514,7 @@ impl<'s> JointLines<'s> {
         Begun { line: *self, quantity, outer: self.builder.enter(self.builder.place(quantity, self.joint), None) }
     }
 
-    /// Writes what belongs to a quantity and gets no name of its own.
+    /// Writes a formula whose operations belong to a quantity, without giving its result a name.
     pub(crate) fn within<R>(&self, quantity: Quantity, formula: impl FnOnce() -> R) -> R {
         let outer = self.builder.enter(self.builder.place(quantity, self.joint), None);
         let value = formula();
@@ -520,12 +528,12 @@ impl<'s> JointLines<'s> {
 pub(crate) struct Begun<'s> {
     line: JointLines<'s>,
     quantity: Quantity,
-    /// Where the operations before belong.
+    /// The place and axis of the operations before, which are set again at the end.
     outer: (Option<Place>, Option<Axis>),
 }
 
 impl<'s> Begun<'s> {
-    /// Ends the quantity: it has the value of this formula.
+    /// Gives the quantity the value of this formula, and returns it under the name of the quantity.
     pub(crate) fn by<V: Value<'s>>(self, formula: V) -> V {
         let value = formula.named(&self.line, self.quantity);
         self.line.builder.enter(self.outer.0, self.outer.1);
@@ -535,7 +543,7 @@ impl<'s> Begun<'s> {
 
 /// The value of a quantity: a number, a vector or a matrix.
 pub(crate) trait Value<'s> {
-    /// The value with the name of a quantity on each of its elements.
+    /// Names each element of the value after a quantity, and returns the value.
     fn named(self, line: &JointLines<'s>, quantity: Quantity) -> Self;
 }
 

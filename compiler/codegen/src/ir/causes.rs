@@ -1,4 +1,4 @@
-//! Causes of constants while formulas are written: each kept once, symbols hold their numbers.
+//! The causes of constants while formulas are written. Each set is stored once, and symbols have its index.
 
 use rustc_hash::FxHashMap;
 
@@ -13,11 +13,11 @@ impl CausesId {
     pub(crate) const ARITHMETIC: Self = Self(0);
 }
 
-/// The causes of zeros and ones, each kept once, and what they give together.
+/// The sets of causes of zeros and ones, each stored once, and their combinations.
 pub(crate) struct KnownCauses {
     list: Vec<Alternatives>,
     ids: FxHashMap<Alternatives, CausesId>,
-    /// The joint causes of two of them, and whether both are needed.
+    /// The combination of two sets; the key is `true` if both are needed, `false` if either is enough.
     joined: FxHashMap<(CausesId, CausesId, bool), CausesId>,
 }
 
@@ -48,7 +48,7 @@ impl KnownCauses {
         &self.list[id.0 as usize]
     }
 
-    /// The best of the alternatives.
+    /// Returns the best set of causes of an index.
     pub(crate) fn get(&self, id: CausesId) -> &Causes {
         self.alternatives(id).best()
     }

@@ -39,7 +39,7 @@ impl Graph {
         at
     }
 
-    /// A constant of another graph, and its sine and cosine if it is an angle.
+    /// Copies a constant of another graph, with its sine and cosine if it is an angle.
     pub(crate) fn constant_like(&mut self, other: &Self, place: u32) -> Ref {
         let at = self.constant(other.numbers.get(place).0);
         if let (Some(turn), Op::Constant(own)) = (other.turns.get(&place), self.op(at)) {
@@ -54,13 +54,13 @@ impl Graph {
         places.filter(|place| !self.turns.contains_key(place)).collect()
     }
 
-    /// The turn of a constant that was made as an angle.
+    /// Returns sine and cosine of a constant, if it was made as an angle.
     pub(crate) fn known_turn(&self, at: Ref) -> Option<ExactAngle> {
         let Op::Constant(place) = self.op(at) else { return None };
         self.turns.get(&place).map(|&turn| if at.is_negative() { turn.back() } else { turn })
     }
 
-    /// The turn of a constant that is an angle.
+    /// Returns sine and cosine of a constant that is an angle.
     pub(crate) fn turn(&self, at: Ref) -> Option<ExactAngle> {
         let Op::Constant(place) = self.op(at) else { return None };
         let magnitude = || self.embedding().turn(&Angle::new(self.numbers.get(place).0.to_f64()));
@@ -68,7 +68,7 @@ impl Graph {
         Some(if at.is_negative() { turn.back() } else { turn })
     }
 
-    /// A constant made from others.
+    /// Returns the constant with this number; `source` says how the number was computed.
     fn derived(&mut self, number: Number, source: Source) -> Ref {
         let number =
             if self.policy == Policy::Structure { Number::rounded(number.to_f64(), number.residue) } else { number };
@@ -84,13 +84,13 @@ impl Graph {
         };
         let negative = match self.policy {
             Policy::Structure => number.is_negative(),
-            // what is there already may be the negative: the residue tells, as it does everywhere
+            // the number at this place may be the negative one: residues decide, as everywhere
             _ => self.numbers.get(place).0.residue != number.residue,
         };
         self.constant_at(place).signed(negative)
     }
 
-    /// The constant of that place.
+    /// Returns the constant at a place in the list of numbers.
     pub(crate) fn constant_at(&mut self, place: u32) -> Ref {
         let residue = self.numbers.get(place).0.residue;
         self.leaf(Op::Constant(place), residue)
@@ -122,7 +122,7 @@ impl Graph {
         Some(self.derived(product, source))
     }
 
-    /// 1/a of a constant.
+    /// 1/a, if a is a constant that is not zero.
     pub(crate) fn constant_inverse(&mut self, a: Ref) -> Option<Ref> {
         let (x, place) = (self.number(a)?.inverse()?, self.place(a)?);
         Some(self.derived(x, Source::Inverse(u32::try_from(place.index()).ok()?)))

@@ -3,7 +3,7 @@
 //!
 //! A constant is known by its image in the fields of the proof. While [`recorded`] runs, each operation on constants
 //! notes from which images it computed its result. The first way to compute an image is kept, so no constant depends on
-//! itself. Outside [`recorded`], an operation only asks a flag of the thread.
+//! itself. Outside [`recorded`], an operation only reads a flag of its thread.
 
 use rustc_hash::FxHashMap;
 use std::cell::{Cell, RefCell};
@@ -14,10 +14,10 @@ use super::{ExactAngle, Name, Number, Residue};
 /// The exact constants of a program: each as a number and, if it is an angle, as a turn.
 pub(crate) type Exactly = FxHashMap<Name, (Number, Option<ExactAngle>)>;
 
-/// A step of an expression, by the places of its operands among the steps before it.
+/// A step of an expression. Operands are given by their indices among the steps before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ExactStep {
-    /// A number of the robot file, or a small integer: the decimal that is written, which is the shortest one of it.
+    /// A number of the robot file, or a small integer: exactly the shortest decimal that is read as this `f64`.
     Decimal(f64),
     /// The sine of an angle of the robot file, rad.
     Sine(f64),
@@ -35,16 +35,16 @@ pub enum ExactStep {
     Root(usize),
 }
 
-/// The exact value of a constant, by places of steps.
+/// The exact value of a constant, given by indices of steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExactConstant {
-    /// A number.
+    /// A number, by the index of its step.
     Number(usize),
     /// The angle with this sine and this cosine, rad, between -π and π.
     Angle {
-        /// The place of its sine.
+        /// The index of the step that computes its sine.
         sine: usize,
-        /// The place of its cosine.
+        /// The index of the step that computes its cosine.
         cosine: usize,
     },
 }
@@ -58,7 +58,7 @@ pub struct Derivation {
     pub constants: Vec<(Name, ExactConstant)>,
 }
 
-/// The way in which an image came about.
+/// The operation that computed an image, with the images of its operands.
 #[derive(Clone, Copy)]
 pub(crate) enum Way {
     Decimal(f64),
@@ -72,13 +72,13 @@ pub(crate) enum Way {
 
 thread_local! {
     static IS_ON: Cell<bool> = const { Cell::new(false) };
-    /// The constants of the programs that are lowered.
+    /// The constants of the programs that were lowered while recording.
     static LOWERED: RefCell<Vec<Exactly>> = const { RefCell::new(Vec::new()) };
-    /// By images without their signs: whether the way leads to the negative image, and the way.
+    /// For each image without its sign: whether the way computes the negative image, and the way.
     static WAYS: RefCell<FxHashMap<Residue, (bool, Way)>> = RefCell::new(FxHashMap::default());
 }
 
-/// Runs an action and returns its result with the ways of all constants that it computes.
+/// Runs an action; returns its result and the ways in which all its constants were computed.
 pub(crate) fn recorded<T>(act: impl FnOnce() -> T) -> (T, Ways) {
     WAYS.take();
     LOWERED.take();
@@ -97,7 +97,7 @@ pub(crate) fn note_program(constants: &Exactly) {
     }
 }
 
-/// Notes the way of an image, while [`recorded`] runs.
+/// Notes how an image is computed, while [`recorded`] runs.
 pub(crate) fn note(image: Residue, way: impl FnOnce() -> Way) {
     if !IS_ON.get() || image.is_zero() {
         return;
@@ -120,7 +120,7 @@ pub(crate) fn note(image: Residue, way: impl FnOnce() -> Way) {
     });
 }
 
-/// The ways of images, and the constants of all programs that were lowered.
+/// How images were computed, and the constants of all programs that were lowered.
 #[derive(Default)]
 pub(crate) struct Ways {
     ways: FxHashMap<Residue, (bool, Way)>,
@@ -128,13 +128,13 @@ pub(crate) struct Ways {
 }
 
 impl Ways {
-    /// The expressions of the constants of a program, which are given by name and value; `None` if one was not computed
-    /// by operations that are recorded.
+    /// Returns the exact expressions of a program's constants, given by name and value; `None` if one of them was not
+    /// computed by recorded operations.
     pub(crate) fn derivation(&self, constants: &[(Name, f64)]) -> Option<Derivation> {
         let is_of_program = |exactly: &&Exactly| {
             constants.iter().all(|(name, value)| exactly.get(name).is_some_and(|(number, _)| number.to_f64() == *value))
         };
-        // what was lowered before was refused, or is what the program was compared with
+        // the last program that fits: earlier ones were refused, or are those that the program was compared with
         let exactly = self.lowered.iter().rev().find(is_of_program)?;
         let mut derivation = Derivation::default();
         let mut places = FxHashMap::default();

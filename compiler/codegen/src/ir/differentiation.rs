@@ -1,22 +1,22 @@
-//! The product rule on a graph.
+//! Differentiation of formulas on a graph, forward from the variables.
 
 use rustc_hash::FxHashMap;
 
 use super::{Birth, Builder, Cause, Definition, Input, Name, Op, Place, Ref, Symbol, WithRespectTo, mark_live};
 
-/// The graph that is differentiated, as it was before.
+/// The graph before differentiation.
 struct Formulas {
     ops: Vec<Op>,
     births: Vec<Option<Birth>>,
     definitions: FxHashMap<usize, Vec<Definition>>,
     live: Vec<bool>,
-    /// Nodes that do not change.
+    /// Nodes that derivatives treat as constant.
     held: Vec<usize>,
 }
 
 impl Builder {
-    /// The partial derivatives of some symbols by each variable, each product by the product rule and so on, in the
-    /// places of what they are derivatives of and under its names.
+    /// Returns the partial derivatives of symbols with respect to each variable, by the product rule and the other
+    /// rules. Each derivative has the place and the name of its function, with the variable added.
     pub(crate) fn derivatives<'s>(
         &'s self,
         of: &[Symbol<'s>],
@@ -34,7 +34,7 @@ impl Builder {
             mark_live(&graph.nodes, &outputs, &mut live);
             graph.nodes().map(|(_, op)| op).collect()
         };
-        // what derivatives add to the graph is none of what they are derivatives of
+        // the formulas as they are now: nodes that the derivatives add are not differentiated
         let formulas = Formulas { ops, births, definitions, live, held: self.held() };
         by.map(|by| self.derivatives_of(&formulas, of, by)).collect()
     }

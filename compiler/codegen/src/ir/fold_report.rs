@@ -1,4 +1,4 @@
-//! Operations that were folded, and the causes: data for listings, not a log.
+//! The fold report: which operations were folded and why, as data for listings.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -9,19 +9,19 @@ use super::{Axis, Name, Quantity, Step, WithRespectTo};
 /// Why a number is exactly zero or one. Of two causes, the later variant is reported, because it explains more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Cause {
-    /// Constants that happen to give it.
+    /// Arithmetic of constants gives this value.
     Arithmetic,
-    /// A turn about z leaves z alone.
+    /// A rotation about z does not change z components.
     TurnAboutZ,
-    /// A turn about x leaves x alone.
+    /// A rotation about x does not change x components.
     TurnAboutX,
     /// The joint axis is e = (0, 0, 1).
     JointAxis,
     /// Frame 0 of a standard table is at joint 1.
     FirstFrame,
-    /// A number of the table, or made from it.
+    /// A number of the table, or a number computed from it.
     Table(Name),
-    /// Gravity has no such component in frame 0.
+    /// Gravity has no component along this axis of frame 0.
     GravityDirection(Axis),
     /// The base does not move: ω₀ = ω̇₀ = ċ₀ = c̈₀ = 0.
     FixedBase,
@@ -35,9 +35,9 @@ pub enum Cause {
     UnitAcceleration,
     /// The joint is between the frame and the tip, so it does not move the frame.
     BehindFrame,
-    /// The function has nothing to do with gravity.
+    /// The function does not depend on gravity.
     NoGravity,
-    /// Terms that are not zero cancel, as x - x does; what makes them equal is not told.
+    /// Terms that are not zero cancel, as in x - x; the report does not say why they are equal.
     Cancellation,
 }
 
@@ -63,8 +63,7 @@ impl fmt::Display for Cause {
     }
 }
 
-/// Everything because of which a number is exactly zero or one: a set that suffices, and of which nothing can be left
-/// out.
+/// The causes that together make a number exactly zero or one. None of them can be left out.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Causes(Arc<[Cause]>);
 
@@ -73,17 +72,17 @@ impl Causes {
         Self(Arc::new([cause]))
     }
 
-    /// The causes, the weightiest first.
+    /// The causes, in order of decreasing weight.
     pub fn iter(&self) -> impl Iterator<Item = Cause> {
         self.0.iter().copied()
     }
 
-    /// The weightiest.
+    /// The cause with the largest weight.
     pub(crate) fn main(&self) -> Cause {
         self.0.first().copied().unwrap_or(Cause::Arithmetic)
     }
 
-    /// The name of the one table entry that is the cause, if it is one alone.
+    /// The name of the table entry, if one entry is the only cause.
     pub(crate) fn entry(&self) -> Option<Name> {
         match *self.0 {
             [Cause::Table(name)] => Some(name),
@@ -92,7 +91,8 @@ impl Causes {
         }
     }
 
-    /// Both together, as a sum of two zeros needs them. That a frame turns about its own axis goes without saying.
+    /// Unites two sets, because a sum of two zeros needs both. Causes that hold for every arm are left out if others
+    /// remain.
     fn and(&self, other: &Self) -> Self {
         let mut all: Vec<Cause> = self.iter().chain(other.iter()).collect();
         all.sort_unstable_by(|a, b| b.weight().cmp(&a.weight()).then(a.cmp(b)));
@@ -100,7 +100,7 @@ impl Causes {
         if all.first().is_some_and(|cause| !cause.is_geometry()) {
             all.retain(|cause| !cause.is_geometry());
         } else {
-            // one reason that holds for every arm is as good as two
+            // of causes that hold for every arm, one is enough
             all.truncate(1);
         }
         Self(all.into())
@@ -117,36 +117,36 @@ impl Causes {
     }
 }
 
-/// The sets of causes each of which suffices for a zero, the best first: a product is zero because of one factor or the
-/// other, so a sum of products has its choice. None of them contains another.
+/// The sets of causes each of which alone makes a number zero, the best first. A product of two zeros is zero because
+/// of either factor, so there may be several sets. No set contains another.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Alternatives(Vec<Causes>);
 
 impl Alternatives {
-    /// Sets that are kept; the fewest causes are found among them.
+    /// Largest number of sets that are kept, enough to find one with the fewest causes.
     const MOST: usize = 8;
 
     pub(crate) fn single(cause: Cause) -> Self {
         Self(vec![Causes::single(cause)])
     }
 
-    /// The best of them.
+    /// The best set.
     pub(crate) fn best(&self) -> &Causes {
         &self.0[0]
     }
 
-    /// Each alone suffices: of a product of two zeros.
+    /// Joins the sets for a product of two zeros: a set of either factor is enough.
     pub(crate) fn or(&self, other: &Self) -> Self {
         Self::of(self.0.iter().chain(&other.0).cloned())
     }
 
-    /// One of each is needed: for a sum of two zeros.
+    /// Combines the sets for a sum of two zeros: a set of each summand is needed.
     pub(crate) fn and(&self, other: &Self) -> Self {
         Self::of(self.0.iter().flat_map(|a| other.0.iter().map(|b| a.and(b))))
     }
 
-    /// The fewest numbers of the robot file first, for what the function says holds whatever the robot; then the fewest
-    /// facts; of as many, those that tell more.
+    /// Sorts the sets and keeps the best. Sets with the fewest numbers of the robot file come first, because causes
+    /// from the function hold for every robot; then those with the fewest facts; then those whose causes explain more.
     fn of(sets: impl Iterator<Item = Causes>) -> Self {
         let mut sets: Vec<Causes> = sets.collect();
         let size = |set: &Causes| (set.facts().filter(Cause::is_of_file).count(), set.facts().count());
@@ -169,7 +169,7 @@ impl fmt::Display for Causes {
 }
 
 impl Cause {
-    /// How much a cause tells, the rank of its variant.
+    /// The weight of a cause: larger if the cause explains more.
     const fn weight(&self) -> u8 {
         match self {
             Self::Arithmetic => 0,
@@ -187,18 +187,18 @@ impl Cause {
         }
     }
 
-    /// Whether a robot file could say otherwise.
+    /// Whether the cause is a number of the robot file.
     const fn is_of_file(&self) -> bool {
         matches!(self, Self::Table(_) | Self::GravityDirection(_))
     }
 
-    /// Whether it holds for every arm: zeros of Rx, Rz and e.
+    /// Whether the cause holds for every arm: zeros of Rx, Rz and e.
     const fn is_geometry(&self) -> bool {
         self.weight() < 2
     }
 }
 
-/// An entry of the table in the words of the table.
+/// A table entry, printed as a cause in the words of the table.
 struct Entry(Name);
 
 impl fmt::Display for Entry {
@@ -223,18 +223,18 @@ pub enum Operation {
     Sum,
 }
 
-/// The fate of operations that the unfolded recursion performs.
+/// How operations of the unfolded recursion were folded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Fold {
-    /// It stands in the generated code.
+    /// The operation is in the generated code.
     Kept,
     /// A factor or summand is zero; the cause is the main reason.
     Zero(Cause),
-    /// A factor is 1 or -1, because of this.
+    /// A factor is 1 or -1, because of this cause.
     One(Cause),
     /// Both operands are constants: done at compile time.
     Constant,
-    /// x - x.
+    /// The operands cancel, as in x - x.
     Cancelled,
     /// The same value had been computed before.
     Shared,
@@ -242,7 +242,7 @@ pub enum Fold {
     Unused,
 }
 
-/// Where in the recursion an operation stands.
+/// The place of an operation in the recursion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Place {
     /// The joint, counted from 1.
@@ -251,24 +251,24 @@ pub struct Place {
     pub step: Step,
     /// The quantity that was being computed.
     pub quantity: Quantity,
-    /// The variable by which it was differentiated.
+    /// The variable of the derivative, if the operation belongs to one.
     pub by: Option<WithRespectTo>,
 }
 
-/// How many operations of one place have the same fate.
+/// The number of operations of one place that were folded in the same way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Line {
-    /// Where.
+    /// The place of the operations.
     pub place: Place,
     /// Product or sum.
     pub operation: Operation,
-    /// Their fate.
+    /// How they were folded.
     pub fold: Fold,
-    /// How many.
+    /// Number of operations.
     pub count: usize,
 }
 
-/// Every operation of the unfolded recursion, by place and fate.
+/// The numbers of all operations of the unfolded recursion, by place and by how they were folded.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FoldReport {
     lines: BTreeMap<(Place, Operation, Fold), usize>,
@@ -279,7 +279,7 @@ impl FoldReport {
         *self.lines.entry((place, operation, fold)).or_default() += 1;
     }
 
-    /// An operation that was kept turns out to be unused.
+    /// Changes one kept operation into an unused one.
     pub(crate) fn drop_unused(&mut self, place: Place, operation: Operation) {
         if let Some(kept) = self.lines.get_mut(&(place, operation, Fold::Kept)) {
             *kept -= 1;
@@ -303,13 +303,13 @@ impl FoldReport {
         })
     }
 
-    /// (products, sums) before folding; of the seven steps, step 3 included.
+    /// (products, sums) before folding; for the seven steps, step 3 is included.
     #[must_use]
     pub fn before(&self) -> (usize, usize) {
         self.total(|_| true)
     }
 
-    /// (products, sums) that are left.
+    /// (products, sums) that remain in the generated code.
     #[must_use]
     pub fn after(&self) -> (usize, usize) {
         self.total(|line| line.fold == Fold::Kept)

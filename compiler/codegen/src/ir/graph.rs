@@ -1,14 +1,14 @@
-//! The expression graph: sums and products with free signs, every constant an exact number, every node with its residue
-//! at one sample point of two prime fields.
+//! The expression graph. Its nodes are sums, products and other operations; signs cost nothing. Every constant is an
+//! exact number, and every node has its residue at one sample point of two prime fields.
 //!
-//! Who opens a graph chooses what its constructors may fold:
+//! The policy of a graph says what its constructors may fold:
 //!
 //! - [`Policy::Structure`] folds only what is exact for finite values, up to the sign of zero: 0·x, 1·x, x + 0, x - x,
 //!   a sign pulled out of a product or a sum, the order of two operands, and an operation of two constants, rounded as
 //!   the runtime rounds it. So the graph computes the same bits as the unfolded formula.
-//! - [`Policy::Value`] folds what is equal as numbers: what vanishes is zero whatever cancels, constant factors are
-//!   gathered, c₁ x + c₂ x = (c₁ + c₂) x. With [`Policy::Numbered`] two nodes of one value, up to sign, are one node
-//!   besides, however they came about: the first one written stays.
+//! - [`Policy::Value`] folds terms that are equal as exact numbers: a sum whose terms cancel is zero, constant factors
+//!   are gathered, c₁ x + c₂ x = (c₁ + c₂) x. With [`Policy::Numbered`], also two nodes with the same value, up to
+//!   sign, become one node, however they were computed: the one that was written first.
 
 use rustc_hash::FxHashMap;
 
@@ -33,9 +33,9 @@ pub(crate) enum Policy {
 /// The result of writing an operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// A new node: it will be computed, unless it turns out dead.
+    /// A new node. The code computes it unless no result depends on it.
     Computed,
-    /// The same node was there before.
+    /// The node existed before.
     Shared,
     /// This operand is zero.
     Zero(Side),
@@ -43,7 +43,7 @@ pub(crate) enum Outcome {
     One(Side),
     /// Both operands are constants.
     Constants,
-    /// x - x.
+    /// The operands cancel, as in x - x.
     Cancelled,
 }
 
@@ -61,9 +61,9 @@ pub(crate) struct Graph {
     pub(crate) numbers: Numbers,
     pub(crate) outputs: Vec<Ref>,
     pub(super) policy: Policy,
-    /// Where the residues are taken, and how constants are read there.
+    /// The sample point of the residues, and how constants are mapped into the fields there.
     pub(crate) point: SamplePoint,
-    /// The turns of constants that are angles, by their places.
+    /// Sine and cosine of each constant that is an angle, by the place of the constant.
     pub(super) turns: FxHashMap<u32, ExactAngle>,
     /// Indices of nodes by operation and by value. Looked up, never iterated.
     structures: HashTable<u32>,
@@ -94,8 +94,8 @@ impl Graph {
         self.clear_nodes();
     }
 
-    /// Empties the graph but for its constants, which keep their places. Where values are looked up, zero and one are
-    /// always there, as the first two nodes.
+    /// Removes all nodes. The list of constants stays, with the same places. With policies that look up values, zero
+    /// and one are added again as the first two nodes.
     pub(crate) fn clear_nodes(&mut self) {
         self.nodes.clear();
         self.outputs.clear();
@@ -118,7 +118,7 @@ impl Graph {
         self.nodes.len()
     }
 
-    /// Sums, products and quotients.
+    /// The number of operations: sums, products, quotients and choices by a sign.
     pub(crate) fn operations(&self) -> usize {
         self.nodes.iter().filter(|node| node.op.is_operation()).count()
     }
@@ -132,7 +132,7 @@ impl Graph {
         self.nodes.iter().enumerate().map(|(index, node)| (Ref::new(index), node.op))
     }
 
-    /// The residue of a reference.
+    /// The residue of a node, negated if the reference is negative.
     pub(crate) fn residue(&self, at: Ref) -> Residue {
         self.nodes[at.index()].residue.signed(at.is_negative())
     }
@@ -163,7 +163,7 @@ impl Graph {
         self.leaf(Op::Sine(angle), sine)
     }
 
-    /// Its cosine.
+    /// The cosine of an angle: a sum of positions and constants.
     pub(crate) fn cosine(&mut self, angle: Ref) -> Ref {
         let (_, cosine) = self.turn_image(angle, &self.point);
         self.leaf(Op::Cosine(angle), cosine)
@@ -187,7 +187,7 @@ impl Graph {
         (sine.signed(angle.is_negative()), cosine)
     }
 
-    /// The residue of a node at a point, when those before it are `images`.
+    /// The residue of a node at a point; `residues` are those of the nodes before it.
     pub(crate) fn image_at(&self, op: Op, residues: &[Residue], point: &SamplePoint) -> Residue {
         let residue = |at: Ref| at.residue(residues);
         match op {
@@ -202,7 +202,8 @@ impl Graph {
         }
     }
 
-    /// A node that no operation computes: by value where values are looked up.
+    /// Returns a node that no operation computes, such as an argument. With policies that look up values, a node with
+    /// the same value is used again.
     pub(super) fn leaf(&mut self, op: Op, residue: Residue) -> Ref {
         if self.policy == Policy::Structure {
             return self.intern(op, residue).0;
@@ -215,12 +216,12 @@ impl Graph {
         at
     }
 
-    /// The node of that value, or the negative of one, where equal values are one node.
+    /// Returns the node with this value, or the negative of one, if equal values are one node.
     pub(super) fn numbered(&self, residue: Residue) -> Option<Ref> {
         if self.policy == Policy::Numbered { self.valued(residue) } else { None }
     }
 
-    /// The node of that value, or the negative of one, among those whose values are looked up.
+    /// Returns the node with this value, or the negative of one, among the nodes whose values are looked up.
     pub(crate) fn valued(&self, residue: Residue) -> Option<Ref> {
         let (magnitude, negative) = canonical(residue);
         let is_it = |&index: &u32| canonical(self.nodes[index as usize].residue).0 == magnitude;
@@ -241,7 +242,7 @@ impl Graph {
         Ref::new(self.nodes.len() - 1)
     }
 
-    /// The node of an operation of two magnitudes, with its sign.
+    /// Returns the node of an operation on operands without signs; `negative` is the sign of the result.
     pub(super) fn node(&mut self, op: Op, residue: Residue, negative: bool) -> (Ref, Outcome) {
         if let Some(known) = self.numbered(residue) {
             return (known.signed(negative), Outcome::Shared);
@@ -252,7 +253,7 @@ impl Graph {
 
     pub(super) fn intern(&mut self, op: Op, residue: Residue) -> (Ref, Outcome) {
         if self.policy == Policy::Numbered {
-            // nothing of that value was there
+            // no node has this value yet
             let at = self.push(op, residue);
             self.remember_value(at);
             return (at, Outcome::Computed);
@@ -269,7 +270,8 @@ impl Graph {
         (at, Outcome::Computed)
     }
 
-    /// An operation of another graph, whose operands are `map` here. Constants have places of their own.
+    /// Writes an operation of another graph into this one; `map` has the references here for the nodes there. A
+    /// constant must have the same place in both graphs.
     pub(crate) fn transcribed(&mut self, op: Op, residue: Residue, map: &[Ref]) -> Ref {
         let mapped = |at: Ref| at.mapped(map);
         match op {

@@ -1,4 +1,4 @@
-//! The arguments of a function, as a graph holds them: by the million in a search, so small ones.
+//! The arguments of a function in a graph. A search makes millions of them, so they are small.
 
 use super::{Axis, Component, Name, Quantity};
 
@@ -13,7 +13,7 @@ pub(crate) struct Input {
 impl Input {
     /// The argument of that name: a number, a component of a vector or an element of a matrix.
     pub(crate) fn new(name: Name) -> Self {
-        // joints and parameters are few
+        // a robot has few joints and parameters, so `u16` is enough
         Self {
             quantity: name.quantity,
             component: name.component,

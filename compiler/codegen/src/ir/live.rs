@@ -2,12 +2,12 @@
 
 use super::{Node, Op, Ref};
 
-/// Marks what the outputs depend on.
+/// Marks the nodes that the outputs depend on.
 pub(crate) fn mark_live(nodes: &[Node], outputs: &[Ref], live: &mut Vec<bool>) {
     mark(nodes, outputs, live, |_| true);
 }
 
-/// Marks what the outputs depend on otherwise than by an angle.
+/// Marks the nodes that the outputs depend on, without nodes that serve only to compute angles of sines and cosines.
 pub(crate) fn mark_live_outside_angles(nodes: &[Node], outputs: &[Ref], live: &mut Vec<bool>) {
     mark(nodes, outputs, live, |op| !matches!(op, Op::Sine(_) | Op::Cosine(_)));
 }

@@ -1,4 +1,5 @@
-//! The one representation in which formulas are written, and what can be done with any of them.
+//! The representation of all formulas as a graph, and the operations on it, such as folding, differentiation and value
+//! numbering.
 
 mod adjoint;
 mod arithmetic;

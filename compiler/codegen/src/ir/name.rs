@@ -1,4 +1,4 @@
-//! The full name of a number in the code: quantity, joint, component, and of what it is the derivative.
+//! The full name of a number in the code: quantity, joint, component, and the variable if it is a derivative.
 
 use std::fmt;
 
@@ -13,11 +13,12 @@ pub struct Name {
     pub joint: usize,
     /// The component of the quantity.
     pub component: Component,
-    /// Further indices, from 1; 0 for no index: the column of a matrix whose row is the joint, the first joint of a
-    /// group, link and parameter of the regressor, which coefficient of friction, which acceleration of the tip. Of
-    /// what one link exerts on another: one more than the number of the first link, if that is not the link before.
+    /// Further indices, counted from 1; 0 is no index. Depending on the quantity: the column of a matrix whose row is
+    /// the joint, the first joint of a group, link and parameter of the regressor, the number of a friction
+    /// coefficient, or of an acceleration of the tip. For a force or moment between two links: the number of the first
+    /// link plus one, if this is not the link before.
     pub indices: [usize; 2],
-    /// Numbers a term that is shared inside the quantity, from 1; 0 for the quantity itself.
+    /// The number of a shared term of the quantity, from 1; 0 for the quantity itself.
     pub part: usize,
     /// The variable of the derivative, if it is one: `w3_x_q2` is ∂ω₃ₓ/∂q₂.
     pub by: Option<WithRespectTo>,
@@ -32,11 +33,11 @@ pub enum WithRespectTo {
     Rate(usize),
     /// A joint acceleration.
     RateDot(usize),
-    /// A shift of such a base along its axes or a turn about them, from 1: x, y, z, then about x, y, z.
+    /// A shift of a floating base along its axes, or a rotation about them, from 1: along x, y, z, then about x, y, z.
     BasePosition(usize),
-    /// A velocity of a floating base, from 1: x, y, z, then about x, y, z.
+    /// A velocity of a floating base, from 1: linear x, y, z, then angular x, y, z.
     BaseRate(usize),
-    /// An acceleration of a floating base, from 1: x, y, z, then about x, y, z.
+    /// An acceleration of a floating base, from 1: linear x, y, z, then angular x, y, z.
     BaseRateDot(usize),
 }
 
@@ -60,14 +61,14 @@ impl WithRespectTo {
 }
 
 impl Name {
-    /// A quantity that is one number.
+    /// The name of a quantity that is one number.
     #[must_use]
     pub const fn scalar(quantity: Quantity, joint: usize) -> Self {
         Self { quantity, joint, component: Component::Scalar, indices: [0; 2], part: 0, by: None }
     }
 
-    /// The number at place `at` among the `count` numbers of a quantity: one number; x, y, z; an inertia xx, yy, zz,
-    /// xy, xz, yz; or a matrix by rows.
+    /// The name of the number at index `at` among the `count` numbers of a quantity: 1 is a single number, 3 are x, y,
+    /// z, 6 an inertia xx, yy, zz, xy, xz, yz, and 9 a matrix by rows.
     pub(crate) const fn nth(quantity: Quantity, joint: usize, count: usize, at: usize) -> Self {
         use Axis::{X, Y, Z};
         const OF_INERTIA: [(Axis, Axis); 6] = [(X, X), (Y, Y), (Z, Z), (X, Y), (X, Z), (Y, Z)];
@@ -85,36 +86,36 @@ impl Name {
         Self::vector(if index < 3 { linear } else { angular }, 0, Axis::ALL[index % 3])
     }
 
-    /// A component of a vector.
+    /// The name of a component of a vector.
     #[must_use]
     pub const fn vector(quantity: Quantity, joint: usize, axis: Axis) -> Self {
         Self { component: Component::Vector(axis), ..Self::scalar(quantity, joint) }
     }
 
-    /// Whether its text has the joint in it: of what there is one of, it has not.
+    /// Whether the text of the name contains the joint. Names of quantities that exist once or are only counted do not.
     pub(crate) const fn tells_joint(&self) -> bool {
         !matches!(self.quantity.indices(), Indices::Alone | Indices::Counted)
     }
 
-    /// An element of a matrix.
+    /// The name of an element of a matrix.
     #[must_use]
     pub const fn matrix(quantity: Quantity, joint: usize, row: Axis, column: Axis) -> Self {
         Self { component: Component::Matrix(row, column), ..Self::scalar(quantity, joint) }
     }
 
-    /// The index by which a quantity between two links names the first one, `parent`; both count from 1, and 0 is the
-    /// base. The link before needs no index.
+    /// The index in the name of a quantity between two links that gives the first one, `parent`; both count from
+    /// 1, and 0 is the base. It is 0, no index, if `parent` is the link before.
     pub(crate) const fn index_of_parent(joint: usize, parent: usize) -> usize {
         if parent + 1 == joint { 0 } else { parent + 1 }
     }
 
-    /// The number of a quantity that another index counts beside the joint.
+    /// The name of a quantity with one more index beside the joint.
     #[must_use]
     pub const fn indexed(quantity: Quantity, joint: usize, index: usize) -> Self {
         Self { indices: [index, 0], ..Self::scalar(quantity, joint) }
     }
 
-    /// The name under which the table has an element of an inertia: that of the upper half.
+    /// The name of an element of an inertia in the table, which has only the upper half. Other names stay as they are.
     #[must_use]
     pub fn of_upper_half(self) -> Self {
         match (self.quantity, self.component) {

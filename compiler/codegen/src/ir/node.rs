@@ -4,7 +4,7 @@ use std::ops::Neg;
 
 use super::{Input, Residue};
 
-/// A node or its negative: negation costs no operation, so it lives in the reference.
+/// A reference to a node or to its negative. Negation costs no operation, so the sign is part of the reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Ref(u32);
 
@@ -35,7 +35,7 @@ impl Ref {
         values[self.index()].signed(self.is_negative())
     }
 
-    /// The reference in another graph, whose nodes for those of this graph are listed.
+    /// The reference in another graph; `nodes` has the references there for the nodes of this graph.
     pub(crate) fn mapped(self, nodes: &[Self]) -> Self {
         nodes[self.index()].signed(self.is_negative())
     }
@@ -82,7 +82,7 @@ impl Op {
         operands.into_iter().flatten()
     }
 
-    /// The operation of operands in another graph, whose nodes for those of this graph are listed.
+    /// The operation with operands in another graph; `nodes` has the references there for the nodes of this graph.
     pub(super) fn mapped(self, nodes: &[Ref]) -> Self {
         let mapped = |at: Ref| at.mapped(nodes);
         match self {
@@ -104,7 +104,7 @@ impl Op {
     /// The operation with its operands sorted, where their order does not matter.
     pub(super) fn sorted(self) -> Self {
         match self {
-            // the sign of a difference is that of the second operand, which a swap would move
+            // a difference has its sign at the second operand, and the swap must keep it there
             Self::Sum(a, b) => {
                 let negative = b.is_negative();
                 let (a, b) = (a.magnitude().min(b.magnitude()), a.magnitude().max(b.magnitude()));
@@ -115,7 +115,7 @@ impl Op {
         }
     }
 
-    /// A key under which an equal operation is found again.
+    /// A hash that equal operations share, whatever the order of their operands.
     pub(super) fn key(self) -> u64 {
         let (kind, a, b) = match self.sorted() {
             Self::Sum(a, b) => (1_u64, a.0, b.0),

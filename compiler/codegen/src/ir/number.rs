@@ -1,4 +1,4 @@
-//! Exact constants: a value to 106 bits beside its images in two prime fields.
+//! Exact constants: each has a value with 106 bits, and its images in two prime fields.
 
 use rne_model::{Angle, Double, InertiaReference, Joint, QuarterTurns, decimal_digits};
 
@@ -18,7 +18,7 @@ impl Number {
 
     /// A rounded number, with the residue of the exact number.
     pub(crate) fn rounded(value: f64, residue: Residue) -> Self {
-        // -0 is 0
+        // adding 0 turns -0 into 0
         Self { value: Double::new(value + 0.0), residue }
     }
 
@@ -63,15 +63,15 @@ impl Number {
         self.value.to_f64()
     }
 
-    /// Whether it is the negative one of a number and its negative: where the value does not tell, for it is lost to
-    /// cancellation or out of range, the image does.
+    /// Whether the number is negative. If its value does not tell, because of cancellation or overflow, the image picks
+    /// which of x and -x counts as negative.
     pub(crate) fn is_negative(self) -> bool {
         let value = self.value.high;
         if value == 0.0 || value.is_nan() { self.residue.is_negative() } else { value < 0.0 }
     }
 
-    /// Whether value and image disagree about what is zero, where numbers are as large as `scale`: sums of that size
-    /// round to less than this part of it. It happens when equal numbers are read as different ones.
+    /// Whether the image is not zero although the value is only the rounding error of sums as large as `scale`, below
+    /// `PART` of it. This happens when equal numbers are read as different ones.
     pub(crate) fn is_dust(self, scale: f64) -> bool {
         const PART: f64 = 1e-25;
         // a comparison with NaN is false, so NaN counts as no value
@@ -83,7 +83,7 @@ impl Number {
         if self.is_negative() { -self } else { self }
     }
 
-    /// The value of a number whose residue is zero becomes exactly zero.
+    /// Returns exact zero if the residue is zero, else the number.
     fn settled(self) -> Self {
         if self.residue.is_zero() { Self::ZERO } else { self }
     }
@@ -131,7 +131,7 @@ impl ExactAngle {
         Self { sin: -self.sin, cos: self.cos }
     }
 
-    /// How many quarters, if it is a right angle.
+    /// The number of quarter turns, if the angle is a multiple of a right angle.
     pub(crate) fn quarters(self) -> Option<QuarterTurns> {
         let (sin, cos) = (self.sin.residue, self.cos.residue);
         if sin.is_zero() {
@@ -144,24 +144,24 @@ impl ExactAngle {
     pub(crate) fn angle(self) -> Number {
         let radians = self.sin.to_f64().atan2(self.cos.to_f64());
         let (sin, cos) = Double::new(radians).sin_cos();
-        // one step of Newton's method: the sine of the remaining angle
+        // one step of Newton's method: the sine of the difference to the exact angle
         let rest = self.sin.value * cos - self.cos.value * sin;
-        // an angle has no image, so any will do that changes its sign with the turn
+        // an angle in rad has no image in a field; this one is arbitrary, but changes its sign with the angle
         let two = Residue::integer(2);
         let residue = if self.sin.is_zero() { two } else { self.sin.residue * (self.cos.residue + two) };
         Number { value: Double::new((Double::new(radians) + rest).to_f64()), residue }
     }
 }
 
-/// How the numbers of a robot file are read into the fields.
+/// How the numbers of a robot file are mapped into the two prime fields.
 ///
 /// A number of the file is the decimal that its author wrote, a rational number, so it has an image. The sine and
-/// cosine of an angle are a random point of the circle over the field, the same for angles that differ by right angles
-/// or in sign: those whose sine and cosine, rounded to `f64`, are the same two numbers up to order and sign. 0.9 and
-/// π - 0.9 are two angles if they differ so much as in the last bit of a sine.
+/// cosine of an angle become a random point of the circle over the field. Angles that differ by right angles or in sign
+/// share this point: they count as such if their sines and cosines, rounded to `f64`, are the same two numbers up to
+/// order and sign. So 0.9 and π - 0.9 are different angles if one bit of a sine differs.
 ///
-/// A square root exists in a field for every second number only. So one decimal may be replaced, wherever it occurs, by
-/// a random image for which the roots that are wanted exist: what holds for an unknown holds for the number.
+/// In a prime field only every second number has a square root. So one decimal may get a random image, wherever it
+/// occurs, for which the needed roots exist: an identity that holds for an unknown also holds for the number.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Embedding {
     pub(crate) seed: u64,
@@ -170,7 +170,7 @@ pub(crate) struct Embedding {
 }
 
 impl Embedding {
-    /// A number of the file.
+    /// Returns the exact number of a decimal of the file.
     pub(crate) fn decimal(&self, value: f64) -> Number {
         let magnitude = value.abs();
         if magnitude == 0.0 {
@@ -189,8 +189,8 @@ impl Embedding {
         if value < 0.0 { -number } else { number }
     }
 
-    /// The inertia of a link about its centre of mass, by rows, from what the file says about it or about the link's
-    /// origin.
+    /// Returns the inertia of a link about its centre of mass, by rows. The file gives it about that point or about the
+    /// link's origin.
     pub(crate) fn inertia(&self, joint: &Joint) -> [[Number; 3]; 3] {
         let (tensor, reference) = &joint.written_inertia;
         let written = tensor.rows().map(|row| row.map(|x| self.decimal(x)));
@@ -208,13 +208,14 @@ impl Embedding {
         }
     }
 
-    /// The inertia when a coordinate of the centre of mass may be an unknown, so that second moments about the origin
-    /// and about the centre of mass cannot both be what they are. One that is zero about either point is zero there
-    /// whatever the unknown is, so that nothing is zero in value alone. The others are what the file says.
+    /// Returns the inertia about the centre of mass if a coordinate of this centre may be an unknown. Then the second
+    /// moments about the origin and about the centre of mass cannot both keep their numbers. One that is zero about
+    /// either point stays zero there for any unknown, so that no value is zero without a zero image. The others keep
+    /// the numbers of the file.
     fn inertia_of_unknown(&self, joint: &Joint, written: &[[Number; 3]; 3]) -> [[Number; 3]; 3] {
         let known = Self { unknown: None, ..*self };
         let half = self.decimal(0.5);
-        // ∫ r rᵀ dm, of which an inertia is the trace less the matrix
+        // the second moments S = ∫ r rᵀ dm; the inertia is tr(S) 1 - S
         let second = |inertia: &[[Number; 3]; 3]| {
             let trace = (inertia[0][0] + inertia[1][1] + inertia[2][2]) * half;
             square(|i, j| if i == j { trace - inertia[i][j] } else { -inertia[i][j] })
@@ -234,14 +235,14 @@ impl Embedding {
         square(|i, j| if i == j { s[0][0] + s[1][1] + s[2][2] - s[i][j] } else { -s[i][j] })
     }
 
-    /// Second moments about the origin of a link's mass at its centre: m c cᵀ.
+    /// The second moments m c cᵀ about the origin of a point mass m at the link's centre of mass c.
     fn moments_of_mass(&self, joint: &Joint) -> [[Number; 3]; 3] {
         let mass = self.decimal(joint.row.link.mass);
         let com = joint.row.link.com.map(|x| self.decimal(x));
         square(|i, j| mass * com[i] * com[j])
     }
 
-    /// A constant angle of the file.
+    /// Returns sine and cosine of a constant angle of the file.
     pub(crate) fn turn(&self, angle: &Angle) -> ExactAngle {
         if let Some(right) = angle.right {
             let (sin, cos) = right.sin_cos();
@@ -252,7 +253,8 @@ impl Embedding {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to 3
         let quarters = quarters.rem_euclid(4.0) as u8;
         let (rest_sin, rest_cos) = (0..quarters).fold((sin, cos), |(s, c), _| (-c, s));
-        // two angles are one up to right angles and sign where both of these numbers are
+        // angles for which the magnitudes of these two numbers agree differ by right angles or in sign, so they share a
+        // point
         let bits = |x: Double| x.to_f64().abs().to_bits();
         let point = self.point(0xA11E, mixed(bits(rest_sin)) ^ bits(rest_cos));
         let rest = if rest_sin.high < 0.0 { (-point.0, point.1) } else { point };
@@ -271,7 +273,7 @@ impl Embedding {
         ((t + t) * scale, (Residue::ONE - square) * scale)
     }
 
-    /// A random image.
+    /// A pseudorandom image, the same for the same kind and index.
     pub(crate) fn random(&self, kind: u64, index: u64) -> Residue {
         let seed = mixed(self.seed ^ mixed(kind ^ mixed(index)));
         Residue::residues(mixed(seed ^ 1), mixed(seed ^ 2))

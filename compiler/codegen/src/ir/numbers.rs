@@ -1,10 +1,10 @@
-//! Constants of a graph, each kept once with where it came from.
+//! The constants of a graph, each stored once with its origin.
 
 use hashbrown::HashTable;
 
 use super::{Number, Ref, Residue};
 
-/// How a constant came about.
+/// How a constant was computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
     /// A number from the robot and the plan.
@@ -38,7 +38,8 @@ impl Numbers {
         self.known.clear();
     }
 
-    /// The place of a number that is not negative. Numbers are one when `same` says so, whose residues are.
+    /// Returns the place of a number that is not negative, and adds the number if it is new. Numbers with the same
+    /// residue, up to sign, are one if `same` says so.
     pub(crate) fn intern(&mut self, number: Number, source: Source, same: impl Fn(Number, Number) -> bool) -> u32 {
         let Self { list, known } = self;
         let is_it = |&place: &u32| same(list[place as usize].0, number);
@@ -58,7 +59,7 @@ pub(crate) fn canonical(residue: Residue) -> (Residue, bool) {
     (residue.signed(negative), negative)
 }
 
-/// A key of a residue that its negative has as well.
+/// A hash that a residue and its negative share.
 pub(crate) fn key(residue: Residue) -> u64 {
     canonical(residue).0.key()
 }

@@ -4,13 +4,14 @@ use super::operators;
 
 const BITS: u32 = 61;
 const MASK: u64 = (1 << BITS) - 1;
-/// The primes are 2⁶¹ - 1 and 2⁶¹ - 31.
+/// 2⁶¹ minus each prime: the primes are 2⁶¹ - 1 and 2⁶¹ - 31.
 const BELOW: [u64; 2] = [1, 31];
 
 /// The image of a real number under the two ring homomorphisms into the fields of 2⁶¹ - 1 and 2⁶¹ - 31 elements.
 ///
 /// Sums, products and quotients of numbers have the sums, products and quotients of their images, without rounding. Two
-/// different rational functions agree at a random point of a field with a probability below 10⁻¹⁵, in both below 10⁻³⁰.
+/// different rational functions agree at a random point of one field with a probability below 10⁻¹⁵, of both fields
+/// below 10⁻³⁰.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct Residue([u64; 2]);
 
@@ -28,7 +29,7 @@ impl Residue {
         Self::residues(value, value)
     }
 
-    /// Residues in the two fields, each reduced.
+    /// Makes an image from two integers, each reduced modulo its prime.
     pub(crate) const fn residues(first: u64, second: u64) -> Self {
         Self([first % prime(0), second % prime(1)])
     }
@@ -39,8 +40,7 @@ impl Residue {
         self == Self::ZERO
     }
 
-    /// Whether it is the negative one of an image and its negative: images have no order, this only picks one of the
-    /// two.
+    /// Whether the image counts as negative. Images have no order; this rule only picks one of x and -x.
     pub(crate) fn is_negative(self) -> bool {
         match self.0 {
             [0, second] => second > MASK / 2,
@@ -48,7 +48,7 @@ impl Residue {
         }
     }
 
-    /// The integer of which it is the image, if that is one below 2⁶⁰ and not negative.
+    /// The integer with this image, if there is one that is not negative and below 2⁶⁰.
     pub(crate) fn to_integer(self) -> Option<u64> {
         let [first, second] = self.0;
         (first == second && first < 1 << 60).then_some(first)
@@ -59,13 +59,13 @@ impl Residue {
         if negative { -self } else { self }
     }
 
-    /// A well-mixed key of 64 bits.
+    /// A well-mixed hash of 64 bits.
     pub(crate) fn key(self) -> u64 {
         self.0[0].wrapping_mul(0x9E37_79B9_7F4A_7C15)
     }
 
-    /// The image of a value that is chosen by a sign, of which no field knows anything: the same for the same operands,
-    /// and its negative for both values negated.
+    /// The image of a value that is chosen by the sign of `x`. A field has no signs, so the image is a hash: it is the
+    /// same for the same operands, and its negative if both values are negated.
     pub(crate) fn by_sign([x, positive, negative]: [Self; 3]) -> Self {
         if positive.is_zero() && negative.is_zero() {
             return Self::ZERO;
@@ -106,7 +106,7 @@ fn add(a: u64, b: u64, field: usize) -> u64 {
     if sum >= prime(field) { sum - prime(field) } else { sum }
 }
 
-/// 2⁶¹ = `BELOW` in the field, so the upper bits come back multiplied by it.
+/// Reduces x modulo the prime. 2⁶¹ equals `BELOW` in the field, so the upper bits are added after multiplication by it.
 fn reduce(x: u128, field: usize) -> u64 {
     let below = u128::from(BELOW[field]);
     let folded = (x & u128::from(MASK)) + (x >> BITS) * below;
@@ -138,7 +138,7 @@ fn root(square: u64, field: usize) -> Option<u64> {
     let twos = (p - 1).trailing_zeros();
     let odd = (p - 1) >> twos;
     let non_residue = (2..p).find(|&candidate| power(candidate, (p - 1) / 2) == p - 1)?;
-    // its square is the one that is asked for, but for a factor whose order is a power of two
+    // the square of `nearly` is `square` times a factor whose order is a power of two
     let nearly = power(square, odd.div_ceil(2));
     let generator = power(non_residue, odd);
     let mut roots = (0..1 << (twos - 1)).map(|exponent| multiply(nearly, power(generator, exponent), field));

@@ -1,4 +1,4 @@
-//! Random values for the arguments of a function: where two functions are compared.
+//! Sample points: random values for the arguments of a function, at which two functions are compared.
 
 use super::{Embedding, Input, Quantity, Residue, numbers::canonical};
 
@@ -22,8 +22,8 @@ impl SamplePoint {
         self.embedding
     }
 
-    /// An argument of any function. Positions of revolute joints are no numbers of the field by themselves, but random
-    /// ones serve where only their sines and cosines matter.
+    /// Returns the value of an argument of any function. The position of a revolute joint is no number of a field, but
+    /// a random one serves, because only its sine and cosine are used.
     pub(crate) fn argument(&self, input: Input) -> Residue {
         let index = input.index();
         let axis = input.axis().map_or(0, |axis| axis as usize);
@@ -35,7 +35,7 @@ impl SamplePoint {
             Quantity::JointMoment => self.random(5, axis),
             Quantity::Sine => self.turn(index).0,
             Quantity::Cosine => self.turn(index).1,
-            // no function has both
+            // no function has both of these arguments
             Quantity::AppliedTorque | Quantity::Multiplier => self.random(7, index),
             Quantity::Omega => self.random(8, axis),
             Quantity::OmegaDot => self.random(9, axis),
@@ -53,7 +53,7 @@ impl SamplePoint {
             Quantity::FrameRotation => self.random(21, input.element()),
             Quantity::FrameOrigin => self.random(22, axis),
             Quantity::BaseRotation => self.random(20, input.element()),
-            // nothing else is given
+            // all other quantities
             other => self.random(64 + other as u64, index),
         }
     }
@@ -65,10 +65,10 @@ impl SamplePoint {
 
     /// Sine and cosine of the position of a joint, times a ratio.
     ///
-    /// No rational function of sine and cosine is that of a part of an angle, so the whole turns of a ratio and its
-    /// billionths are counted by themselves, and the turn by a billionth is a point of the circle of its own. A ratio
-    /// that has more digits has a point of its own, too. What is identical for all these points is so for those that
-    /// belong to one position.
+    /// Sine and cosine of a fraction of an angle are no rational functions of those of the angle. So a ratio is split
+    /// into a whole number and billionths: the whole number uses the point of the position, and a billionth of the
+    /// position has a random point of its own. A ratio with more digits has a point of its own, too. An identity that
+    /// holds for all such points also holds for those of one position.
     pub(crate) fn turn_times(&self, joint: usize, ratio: Residue) -> (Residue, Residue) {
         const BILLION: u64 = 1_000_000_000;
         const PART: u64 = 16;
@@ -125,7 +125,7 @@ mod tests {
         assert_eq!(composed(turn(1.0), turn(1.13)), turn(2.13));
         assert_eq!(composed(turn(-0.7), turn(0.35)), turn(-0.35));
         assert_ne!(turn(0.5), turn(0.25));
-        // more digits than a billionth has
+        // a ratio with more than nine decimals
         let fine = turn(0.123_456_789_123);
         assert_eq!(fine.0 * fine.0 + fine.1 * fine.1, Residue::ONE);
         assert_ne!(fine, turn(0.123_456_789_124));

@@ -13,7 +13,7 @@ pub(crate) struct Symbol<'s> {
     pub(crate) at: Ref,
     /// The reasons for its value, if it is a constant.
     pub(crate) causes: CausesId,
-    /// The formula that it is, where formulas are kept.
+    /// The formula that computes it, if formulas are kept.
     pub(crate) term: TermId,
 }
 
@@ -34,7 +34,7 @@ impl Symbol<'_> {
         self.builder.quotient(self.builder.one(), self)
     }
 
-    /// Times a constant.
+    /// Multiplies the number by a constant.
     pub(crate) fn times(self, factor: Number) -> Self {
         if self.is_zero() { self } else { self * self.builder.number(factor) }
     }
@@ -47,7 +47,7 @@ operators! { Symbol<'_>:
     -a => a.signed(true);
 }
 
-/// Sine and cosine of an angle that is larger by `turns`.
+/// Returns sine and cosine of an angle plus `turns` from those of the angle.
 pub(crate) fn by_quarters<'s>((s, c): (Symbol<'s>, Symbol<'s>), turns: QuarterTurns) -> (Symbol<'s>, Symbol<'s>) {
     match turns {
         QuarterTurns::Zero => (s, c),
@@ -89,12 +89,12 @@ impl<'s> Vector<'s> {
         (x + y) + z
     }
 
-    /// Times a constant.
+    /// Multiplies the vector by a constant.
     pub(crate) fn times(self, factor: Number) -> Self {
         Self(self.0.map(|x| x.times(factor)))
     }
 
-    /// v + x z
+    /// v + x z: adds x to the z component.
     pub(crate) fn plus_z(self, x: Symbol<'s>) -> Self {
         let [a, b, c] = self.0;
         Self([a, b, c + x])
@@ -132,7 +132,7 @@ impl<'s> Matrix<'s> {
         Self(rows.map(Vector))
     }
 
-    /// The elements by rows.
+    /// Makes a matrix from its elements by rows.
     pub(crate) fn from_elements([a, b, c, d, e, f, g, h, i]: [Symbol<'s>; 9]) -> Self {
         Self::from_rows([[a, b, c], [d, e, f], [g, h, i]])
     }
@@ -174,7 +174,7 @@ impl Mul for Matrix<'_> {
     }
 }
 
-/// Computes a vector component by component and tells the builder which one is under way.
+/// Computes a vector component by component, and tells the builder which component it computes.
 fn componentwise<'s>(builder: &'s Builder, f: impl Fn(Axis) -> Symbol<'s>) -> Vector<'s> {
     Vector(Axis::ALL.map(|axis| {
         builder.along(axis);

@@ -1,5 +1,5 @@
-//! The trace of a graph, for those who read the code: names, places, causes, and what became of every operation. A
-//! search, which counts thousands of plans, keeps none.
+//! The trace of a graph, for people who read the code: names, places, causes, and how every operation was folded. A
+//! search, which counts thousands of plans, keeps no trace.
 
 use rustc_hash::FxHashMap;
 
@@ -8,14 +8,14 @@ use super::{
     Symbol, TermId, WrittenTerms, causes::KnownCauses,
 };
 
-/// A name given to a value, in the order in which the names were given.
+/// A name that was given to a value. Definitions are in the order in which the names were given.
 #[derive(Clone, Debug)]
 pub(crate) struct Definition {
     pub(crate) name: Name,
     pub(crate) at: Ref,
-    /// Why it is the constant that it is, if it is one.
+    /// The causes of its value, if it is a constant.
     pub(crate) causes: Causes,
-    /// How many nodes there were when it got the name.
+    /// The number of nodes that the graph had when the name was given.
     pub(crate) after: usize,
     /// The formula that got the name.
     pub(crate) term: TermId,
@@ -37,10 +37,10 @@ pub(crate) struct Trace {
     pub(crate) definitions: Vec<Definition>,
     /// The place of each node; `None` for a node that belongs to no step.
     pub(crate) births: Vec<Option<Birth>>,
-    /// As what a constant entered a node: (node, constant) → its name there.
+    /// The name under which a node uses a constant: (node, constant) → name.
     pub(crate) roles: FxHashMap<(Ref, Ref), Name>,
     pub(crate) causes: KnownCauses,
-    /// Arguments that stand for values that derivatives hold, each with its value.
+    /// Arguments that replace values which derivatives keep constant, each with its value.
     pub(super) held: Vec<(Ref, Ref)>,
     /// The formulas as they were written, if they are kept.
     pub(crate) terms: Option<WrittenTerms>,
@@ -67,7 +67,7 @@ impl Trace {
         (std::mem::replace(&mut self.place, place), std::mem::replace(&mut self.axis, axis))
     }
 
-    /// The place at hand.
+    /// The place of the next operations.
     pub(super) fn place(&self) -> Option<Place> {
         self.place
     }
@@ -77,20 +77,21 @@ impl Trace {
         self.axis = Some(axis);
     }
 
-    /// New nodes belong to the place at hand.
+    /// Records the current place and component for all new nodes.
     pub(super) fn record_birth(&mut self, nodes: usize) {
         let component = self.axis.map_or(Component::Scalar, Component::Vector);
         let birth = self.place.map(|place| Birth { place, component });
         self.births.resize_with(nodes, || birth);
     }
 
-    /// Constants and arguments belong to no step from now on.
+    /// Removes the places of constants and arguments, which then belong to no step.
     pub(crate) fn forget_births_of_leaves(&mut self, graph: &Graph) {
         let leaves = self.births.iter_mut().zip(&graph.nodes).filter(|(_, node)| !node.op.is_operation());
         leaves.for_each(|(birth, _)| *birth = None);
     }
 
-    /// Remembers as what a constant enters a new node: the same number may be a length here and a mass there.
+    /// Records the name under which a new node uses a constant: the same number may be a length in one node and a mass
+    /// in another.
     pub(super) fn record_roles(&mut self, graph: &Graph, at: Ref, outcome: Outcome, operands: [Symbol<'_>; 2]) {
         if outcome != Outcome::Computed {
             return;
@@ -104,7 +105,7 @@ impl Trace {
         }
     }
 
-    /// Why a sum or a product is the constant that it is, and why the operation was folded.
+    /// Returns the causes of the value of a sum or product, and the causes for which the operation was folded.
     pub(super) fn causes_of(
         &mut self,
         graph: &Graph,
@@ -117,13 +118,13 @@ impl Trace {
         let none = CausesId::ARITHMETIC;
         let both_zero = outcome == Outcome::Zero(Side::Right) && graph.is_zero(operands[0].at);
         match (operation, outcome) {
-            // a sum is zero when both are
+            // a sum is zero if both summands are
             (Operation::Sum, Outcome::Zero(_)) if both_zero => (self.causes.both(a, b), b),
-            // the other operand is left
+            // the result is the other operand
             (Operation::Sum, Outcome::Zero(Side::Right)) | (_, Outcome::One(Side::Right)) => (a, b),
             (Operation::Sum, Outcome::Zero(Side::Left)) | (_, Outcome::One(Side::Left)) => (b, a),
             (Operation::Sum, _) if graph.is_zero(at) => (self.causes.single(Cause::Cancellation), none),
-            // a product is zero when either is
+            // a product is zero if either factor is
             (Operation::Product, Outcome::Zero(side)) => {
                 let either = match side {
                     _ if both_zero => self.causes.either(a, b),
@@ -137,7 +138,8 @@ impl Trace {
     }
 
     pub(super) fn record(&mut self, nodes: usize, operation: Operation, outcome: Outcome, causes: CausesId) {
-        // Constants of the table are formed outside any step: a runtime forms them once, too.
+        // Operations outside any step compute constants of the table. A runtime computes these once, too, so they are
+        // not counted.
         let Some(place) = self.place else { return };
         let cause = self.causes.get(causes).main();
         let fold = match outcome {

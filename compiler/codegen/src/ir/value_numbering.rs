@@ -2,16 +2,17 @@
 
 use super::{Birth, Component, Definition, Graph, Op, Place, Policy, Quantity, Ref, Step, Trace, Traced, mark_live};
 
-/// Writes what is live of `from` into `to`, a numbered graph, in its order: of equal values the first one stays.
+/// Writes the live nodes of `from` into `to`, a numbered graph, in their order. Of nodes with equal values, the first
+/// one stays.
 ///
-/// `live` and `map` are memory that a search uses again.
+/// `live` and `map` are buffers that a search uses again.
 pub(crate) fn number_values(from: &Graph, to: &mut Graph, live: &mut Vec<bool>, map: &mut Vec<Ref>) {
     transcribe(from, to, &[], live, map, |_, _, _, _| {});
 }
 
 impl Traced {
-    /// Numbers the values of a graph and its trace: a name stays with its value, wherever that is computed now. A value
-    /// takes the place of the argument that stands for it.
+    /// Numbers the values of a graph and its trace. A name stays with its value, even if another node computes it now.
+    /// An argument that replaced a value is replaced by the value again.
     pub(crate) fn numbered(self) -> Self {
         let Self { graph, trace: told } = self;
         let mut numbered = Graph::new(Policy::Numbered, graph.embedding());
@@ -42,7 +43,7 @@ impl Traced {
 }
 
 impl Traced {
-    /// A graph of the same values that knows less: names and places of those values go over to it.
+    /// Copies names and places of the same values from the trace of another graph.
     pub(crate) fn told_by(mut self, other: &Self) -> Self {
         // a new node belongs to none of the seven steps
         let place = Place { joint: 0, step: Step::Torque, quantity: Quantity::Term, by: None };
@@ -66,8 +67,8 @@ impl Traced {
     }
 }
 
-/// Tells `written` of every node: its index, the map so far, and the length of the new graph before. `held` are inputs,
-/// and the older values that they become.
+/// Writes the live nodes of `from` into `to`. For every node it calls `written` with the index, the map so far, and the
+/// new graph with its length before. `held` has arguments, and the earlier values that replace them.
 fn transcribe(
     from: &Graph,
     to: &mut Graph,

@@ -24,7 +24,7 @@ pub enum Sign {
     Minus,
 }
 
-/// A term that was written down; [`TermId::NONE`] is a leaf, of which the graph knows all.
+/// The index of a stored term. [`TermId::NONE`] is a leaf, of which the graph has all information.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct TermId(u32);
 
@@ -33,16 +33,16 @@ impl TermId {
     pub(crate) const NONE: Self = Self(0);
 }
 
-/// A term.
+/// A term of a formula.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Written {
-    /// A node: a number, an argument, or what was written on the graph alone.
+    /// A node: a number, an argument, or an operation that was written on the graph alone.
     Node(Ref, CausesId),
     /// A term with a name.
     Named(Name),
     /// -a
     Negative(TermId),
-    /// An operation, the node that it became and how, and why it folded; `counted` if it belongs to a step.
+    /// An operation with its node, its outcome and the causes of folding; `counted` if it belongs to a step.
     Operation { operator: Operator, operands: [TermId; 2], at: Ref, outcome: Outcome, reason: CausesId, counted: bool },
     /// The first term selects one of the other two by its sign.
     BySign([TermId; 3]),

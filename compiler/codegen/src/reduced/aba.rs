@@ -1,4 +1,5 @@
-//! Forward dynamics by articulated bodies: what is behind a joint resists like one body, whose joints may give way.
+//! Forward dynamics by articulated bodies: the inertia of the links after a joint, as the joint must accelerate it, if
+//! the joints after it are free to move.
 //!
 //! ```text
 //! n = A ω̇ + B a + n°,   f = Bᵀ ω̇ + C a + f°             about the joint's origin; rigid: A = J, B = [h]×, C = m 1
@@ -9,8 +10,9 @@
 //! a floating base:   A ω̇ + B a = -n°,   Bᵀ ω̇ + C a = -f°
 //! ```
 //!
-//! After R. Featherstone, "Rigid Body Dynamics Algorithms" (2008), chapter 7, in accelerations of points instead of
-//! spatial ones, over regrouped matter: D is a pivot of M, which regrouping does not change.
+//! After R. Featherstone, "Rigid Body Dynamics Algorithms" (2008), chapter 7, but with accelerations of points instead
+//! of spatial accelerations, and with regrouped inertial parameters: D is a pivot of M, which regrouping does not
+//! change.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
@@ -28,7 +30,7 @@ use crate::reduced::{
 
 type Square<'s> = [[Symbol<'s>; 3]; 3];
 
-/// The links from a joint on, as they resist its motion.
+/// The articulated inertia of a joint's link and of all links after it, with the bias wrench.
 #[derive(Clone, Copy)]
 struct Articulated<'s> {
     angular: Symmetric<'s>,
@@ -37,12 +39,12 @@ struct Articulated<'s> {
     bias: Wrench<'s>,
 }
 
-/// The numbers of a joint that the way out needs again.
+/// The numbers of a joint that the outward pass uses again.
 #[derive(Clone, Copy)]
 struct Pivot<'s> {
-    /// U: angular and linear part.
+    /// U = (A z, Bᵀ z), or (B u, C u) for a prismatic joint: angular and linear part.
     resistance: [Vector<'s>; 2],
-    /// The parts of ω̇ and a by velocities alone.
+    /// The terms of ω̇ and a that depend on velocities only.
     drift: [Vector<'s>; 2],
     inverse: Symbol<'s>,
     rest: Symbol<'s>,
@@ -56,7 +58,7 @@ fn transposed<'s>(matrix: &Square<'s>) -> Square<'s> {
     square(|i, j| matrix[j][i])
 }
 
-/// a aᵀ times a factor, taken away.
+/// Returns the matrix minus a sᵀ, where s is `scaled`, a times a factor.
 fn less<'s>(matrix: Symmetric<'s>, a: Vector<'s>, scaled: Vector<'s>) -> Symmetric<'s> {
     let ([x, y, z], [sx, sy, sz]) = (a.0, scaled.0);
     let [xx, yy, zz, xy, xz, yz] = matrix;
@@ -73,7 +75,7 @@ impl<'s> Articulated<'s> {
         }
     }
 
-    /// With those of some links that it carries, all in the same axes.
+    /// Adds the articulated inertias of other bodies, which are given in the same axes.
     fn with(self, others: impl Iterator<Item = Self>) -> Self {
         others.fold(self, Self::plus)
     }
@@ -89,13 +91,15 @@ impl<'s> Articulated<'s> {
         }
     }
 
-    /// About a point from which the old one is at p, on a link that turns with ω.
+    /// Returns the inertia about another point, from which the old reference point is at p; the link has the angular
+    /// velocity ω.
     fn moved(self, p: Vector<'s>, omega: Vector<'s>) -> Self {
         let linear = full(self.linear);
         let columns = transposed(&linear).map(|column| p.cross(Vector(column)).0);
         let shift = transposed(&columns);
         let mixed = square(|i, j| self.mixed[i][j] + shift[i][j]);
-        // -B' [p]×: each row b becomes p × b; [p]× Bᵀ: each column of Bᵀ, a row of B, becomes p × it
+        // -B' [p]× is computed row by row: row b of B' becomes p × b; [p]× Bᵀ column by column: column c of Bᵀ becomes
+        // p × c
         let first = mixed.map(|row| p.cross(Vector(row)).0);
         let second = transposed(&self.mixed.map(|row| p.cross(Vector(row)).0));
         let sum = |i: usize, j: usize| first[i][j] + second[i][j];
@@ -111,7 +115,8 @@ impl<'s> Articulated<'s> {
         }
     }
 
-    /// Gives way along its joint.
+    /// Returns the inertia as it is before the joint, which is free to move, with the numbers that the outward pass
+    /// needs.
     fn released(self, arm: &Arm<'_, 's>, index: usize, station: &JointMotion<'s>) -> (Self, Pivot<'s>) {
         let builder = arm.builder;
         let row = &arm.rows()[index];
@@ -151,7 +156,7 @@ impl<'s> Articulated<'s> {
     }
 }
 
-/// A body alone, which turns with ω and exerts a wrench at its tips.
+/// Returns the inertia of one rigid body, with the angular velocity ω and the wrench that it exerts at its tips.
 fn rigid<'s>(
     builder: &'s Builder,
     body: &Composite<'s>,
@@ -173,7 +178,7 @@ fn rigid<'s>(
     }
 }
 
-/// How a floating base accelerates, from its resistance.
+/// Returns the acceleration of a floating base, given the articulated inertia of the whole robot.
 fn of_base<'s>(arm: &Arm<'_, 's>, omega: Vector<'s>, whole: &Articulated<'s>) -> Accelerated<'s> {
     let builder = arm.builder;
     let [xx, yy, zz, xy, xz, yz] = whole.linear;
@@ -196,7 +201,8 @@ fn of_base<'s>(arm: &Arm<'_, 's>, omega: Vector<'s>, whole: &Articulated<'s>) ->
     Accelerated { omega, omega_dot: part(3), acceleration: part(0) }
 }
 
-/// The accelerations of a floating base, linear and angular, and those of the joints.
+/// Returns the linear and angular acceleration of a floating base, if there is one, and the accelerations of the
+/// joints.
 pub(crate) fn forward_dynamics<'s>(arm: &Arm<'_, 's>) -> (Option<[Vector<'s>; 2]>, Vec<Symbol<'s>>) {
     let (builder, rows) = (arm.builder, arm.rows());
     let dof = rows.len();
@@ -205,7 +211,8 @@ pub(crate) fn forward_dynamics<'s>(arm: &Arm<'_, 's>) -> (Option<[Vector<'s>; 2]
     let tips = tip_wrenches(arm, |_| Number::ONE);
     let grouped = |index: usize| arm.is_grouped(index);
     let mut pivots = Vec::with_capacity(dof);
-    // on a link: in its axes or, behind a parallel axis, in N of its group
+    // inertias that each link carries: in the axes of that link, or in frame N of its group if the joint's axis is
+    // parallel
     let mut behind: Vec<(usize, Articulated<'s>)> = Vec::with_capacity(dof);
     for index in (0..dof).rev() {
         builder.at(Quantity::ReducedForce, index + 1);
@@ -224,7 +231,7 @@ pub(crate) fn forward_dynamics<'s>(arm: &Arm<'_, 's>) -> (Option<[Vector<'s>; 2]
         let here = if row.kind == Revolute { own.turned(turn).with(carried(true)) } else { own };
         let (given, pivot) = here.released(arm, index, station);
         pivots.push(pivot);
-        // the point of the parent at this joint's origin moves on to the origin of the parent's frame
+        // `given` is about this joint's origin; it is moved to the origin of the parent's frame
         let omega = station.before.omega;
         let (parent_turn, parent_omega) = match (row.parent, floating) {
             (Some(parent), _) => (stations[parent].turn, stations[parent].own.omega),
@@ -261,7 +268,7 @@ pub(crate) fn forward_dynamics<'s>(arm: &Arm<'_, 's>) -> (Option<[Vector<'s>; 2]
     (base.map(|base| [base.acceleration, base.omega_dot]), outward(arm, base, &stations, &pivots))
 }
 
-/// How a link accelerates, in some axes.
+/// The angular velocity and the accelerations of a link, in one frame.
 #[derive(Clone, Copy)]
 struct Accelerated<'s> {
     omega: Vector<'s>,
@@ -269,7 +276,7 @@ struct Accelerated<'s> {
     acceleration: Vector<'s>,
 }
 
-/// How a link accelerates: in its axes and in frame N, with the turn between.
+/// The motion of a link in its axes and in frame N, with the rotation between both.
 type Link<'s> = (Accelerated<'s>, Accelerated<'s>, SymbolicTurn<'s>);
 
 impl<'s> Outward<'s> for Accelerated<'s> {
@@ -283,7 +290,7 @@ impl<'s> Outward<'s> for Accelerated<'s> {
     }
 }
 
-/// The way out: each joint's acceleration from that of its parent, or of a floating base.
+/// The outward pass: computes each joint's acceleration from that of its parent, or of a floating base.
 fn outward<'s>(
     arm: &Arm<'_, 's>,
     floating: Option<Accelerated<'s>>,
@@ -306,7 +313,8 @@ fn outward<'s>(
         };
         let before = arm.outward(index, last, last_unturned, last_turn);
         let (angular, linear) = (before.omega_dot + pivot.drift[0], before.acceleration + pivot.drift[1]);
-        // U · (ω̇' + drift, a' + drift): what the drift does to n° and f° has been added for the links before only
+        // U · (ω̇' + drift, a' + drift): `rest` has no drift yet, because the drift was added only to the bias of the
+        // links before
         let resisted = pivot.resistance[0].dot(angular) + pivot.resistance[1].dot(linear);
         let own = (pivot.rest - resisted) * pivot.inverse;
         accelerations.push(if row.reversed { -own } else { own });

@@ -1,4 +1,4 @@
-//! The ways in which a function can be written under a plan, and which of them takes the fewest operations.
+//! The algorithms by which a function can be written under a plan, and which of them takes the fewest operations.
 
 use rne_functions::Recursion;
 use rne_model::Robot;
@@ -6,24 +6,24 @@ use rne_model::Robot;
 use crate::function::{Axes, Base, Function, Load};
 use crate::reduced::crba::ExpressedIn;
 
-/// How a function is written.
+/// The algorithm by which a function is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Algorithm {
-    /// The recursion, out and back, and what follows from its torques.
+    /// The recursive Newton-Euler algorithm, outward and inward; other results are computed from its torques.
     #[default]
     Rnea,
-    /// Composite bodies.
+    /// Composite bodies (CRBA): all links after a joint as one rigid body.
     Crba(ExpressedIn),
-    /// The recursion, once per joint that accelerates.
+    /// The Newton-Euler recursion, run once for each joint with a unit acceleration: a column of M each.
     UnitColumns,
-    /// Articulated bodies.
+    /// Articulated bodies (ABA).
     Aba(ExpressedIn),
-    /// The recursion, with the payload in frame N of the last joint instead of the last link's.
+    /// The Newton-Euler recursion, with the payload in frame N of the last joint instead of the last link's frame.
     UnturnedPayload,
 }
 
 impl Algorithm {
-    /// All of them, with their names in plan files.
+    /// All algorithms, with their names in plan files.
     pub const NAMES: [(Self, &'static str); 7] = [
         (Self::Rnea, "rnea"),
         (Self::Crba(ExpressedIn::GroupFrame), "crba_by_groups"),
@@ -34,19 +34,19 @@ impl Algorithm {
         (Self::UnturnedPayload, "unturned_payload"),
     ];
 
-    /// Its name in plan files.
+    /// Returns the name of the algorithm in plan files.
     #[must_use]
     pub fn name(self) -> &'static str {
         Self::NAMES.into_iter().find(|(other, _)| *other == self).map_or("", |(_, name)| name)
     }
 
-    /// Whether the choices of a plan matter to a function.
+    /// Whether the choices of a plan change the code of a function.
     #[must_use]
     pub const fn is_planned(function: Function) -> bool {
         !Self::of(function).is_empty()
     }
 
-    /// The ways of a function; none for what has no reduced recursion.
+    /// Returns the algorithms of a function; none if the function has no reduced form.
     #[must_use]
     pub const fn of(function: Function) -> &'static [Self] {
         const BY_GROUPS: Algorithm = Algorithm::Crba(ExpressedIn::GroupFrame);
@@ -82,9 +82,9 @@ impl Algorithm {
         }
     }
 
-    /// The ways of a function that are worth counting for a robot. Those that write the recursion anew for every joint
-    /// grow faster than composite bodies, and lose long before `MANY`, second derivatives before `FEW`. Articulated
-    /// bodies are those of links alone, each with a joint that moves freely.
+    /// Returns the algorithms of a function whose operations are worth counting for a robot. Algorithms that repeat the
+    /// recursion for every joint grow faster than composite bodies: from `MANY` joints on, for second derivatives from
+    /// `FEW`, they never win. Articulated bodies are tried only for a robot without rotors, couplings and closed loops.
     pub(crate) fn of_robot(function: Function, robot: &Robot) -> Vec<Self> {
         const MANY: usize = 10;
         const FEW: usize = 5;
@@ -101,7 +101,7 @@ impl Algorithm {
         Self::of(function).iter().copied().filter(|&algorithm| is_worth(algorithm)).collect()
     }
 
-    /// The frames of its composite or articulated bodies.
+    /// Returns the frames in which the algorithm's composite or articulated bodies are expressed.
     pub(crate) const fn expressed_in(self) -> ExpressedIn {
         match self {
             Self::Crba(expressed_in) | Self::Aba(expressed_in) => expressed_in,
@@ -109,7 +109,7 @@ impl Algorithm {
         }
     }
 
-    /// The words for the choices of a program; none for the recursion.
+    /// Returns the words for the algorithm in the list of choices of a program; none for the Newton-Euler recursion.
     pub(crate) const fn words(self) -> Option<&'static str> {
         match self {
             Self::Rnea => None,

@@ -1,4 +1,4 @@
-//! Start of the formulas of the reduced form: arguments in the frames of its rows, and turns.
+//! The arguments in the frames of the reduced form, and the rotations of the joints, with which its formulas begin.
 
 use rne_model::QuarterTurns;
 
@@ -9,14 +9,14 @@ use crate::ir::{
 use crate::reduced::joint_frames::Tip;
 use crate::reduced::{Arm, JointFrames, Triple};
 
-/// The name of what belongs to a group of joints, or to a single one.
+/// Returns the name of a quantity of a group of joints, or of a single joint.
 fn group_name(group: Quantity, single: Quantity, first: usize, last: usize) -> Name {
     if first == last { Name::scalar(single, last + 1) } else { Name::indexed(group, last + 1, first + 1) }
 }
 
-/// The variable part of a turn by the summed angle of joints `first` to `last`: q of the first, more or less the
-/// others, and a constant. It is counted with the sign of the first joint; right angles are left to the sine and
-/// cosine.
+/// Returns the variable part of the rotation by the summed angle of joints `first` to `last`: q of the first joint,
+/// plus or minus the q of the others, plus a constant. Its sign is that of the first joint. Right angles are returned
+/// apart, because they only permute sine and cosine.
 fn angle<'s>(
     builder: &'s Builder,
     JointFrames { rows, coordinates, .. }: &JointFrames,
@@ -29,7 +29,7 @@ fn angle<'s>(
     let mut sum = position(first);
     for (at, row) in rows.iter().enumerate().take(last + 1).skip(first + 1) {
         sum = sum + position(at).signed(row.reversed != reversed);
-        // without the constant part, if that has one
+        // without the constant part of the angle, unless that is a multiple of a right angle
         let kind = if theta(at).quarters().is_some() { Quantity::GroupAngle } else { Quantity::GroupPosition };
         builder.name(group_name(kind, Quantity::Angle, first, at), sum);
     }
@@ -47,22 +47,22 @@ impl Builder {
         Vector(v.map(|x| self.number(x)))
     }
 
-    /// (0, 0, x)
+    /// Returns the vector (0, 0, x).
     pub(crate) fn along_z(&self, x: Number) -> Vector<'_> {
         self.vector([Number::ZERO, Number::ZERO, x])
     }
 
-    /// A turn by a constant angle.
+    /// Returns the rotation by a constant angle.
     pub(crate) fn fixed_turn(&self, turn: ExactAngle) -> SymbolicTurn<'_> {
         SymbolicTurn { s: self.number(turn.sin), c: self.number(turn.cos) }
     }
 
-    /// Writes `formulas` where one joint accelerates with 1 and nothing moves.
+    /// Writes `formulas` for the state where one joint has the acceleration 1 and all else is at rest.
     pub(crate) fn accelerating<R>(&self, joint: usize, formulas: impl FnOnce() -> R) -> R {
         self.moving(Moving::OneAccelerates(joint), || self.by(Some(WithRespectTo::RateDot(joint + 1)), formulas))
     }
 
-    /// Writes `formulas` where the joints move so.
+    /// Writes `formulas` for the given kind of motion of the joints, then restores the old one.
     pub(crate) fn moving<R>(&self, moving: Moving, formulas: impl FnOnce() -> R) -> R {
         let outer = self.moving.replace(moving);
         let value = formulas();
@@ -70,7 +70,7 @@ impl Builder {
         value
     }
 
-    /// Sine and cosine of the variable part of a turn, and the right angles that are left.
+    /// Returns the sine and cosine of the variable part of a rotation, and the right angles that remain.
     pub(crate) fn turned(
         &self,
         joint_frames: &JointFrames,
@@ -84,14 +84,14 @@ impl Builder {
     }
 }
 
-/// The arguments of the function in the frames of the rows. Joints are counted from 0.
+/// The arguments of the function, in the frames of the rows. Joints are counted from 0.
 impl<'s> Arm<'_, 's> {
-    /// An argument of a joint in the direction of its row.
+    /// Returns an argument of a joint, with the sign of the axis direction of its row.
     fn of_joint(&self, quantity: Quantity, joint: usize) -> Symbol<'s> {
         self.joint_frames.coordinates.of_joint(self.builder, quantity, joint).signed(self.rows()[joint].reversed)
     }
 
-    /// q of a prismatic joint.
+    /// Returns q of a prismatic joint.
     pub(crate) fn position(&self, joint: usize) -> Symbol<'s> {
         self.of_joint(Quantity::Position, joint)
     }
@@ -112,7 +112,7 @@ impl<'s> Arm<'_, 's> {
             Moving::AsGiven if builder.function.takes(Argument::Accelerations) || builder.has_accelerations() => {
                 self.of_joint(Quantity::RateDot, joint)
             }
-            // closed loops accelerate their dependent joints
+            // in a closed loop, the dependent joints accelerate even where the independent joints do not
             Moving::AsGiven => {
                 let bias = self.joint_frames.coordinates.bias(builder, joint);
                 bias.map_or_else(|| builder.zero(), |bias| bias.signed(self.rows()[joint].reversed))
@@ -121,12 +121,12 @@ impl<'s> Arm<'_, 's> {
         }
     }
 
-    /// λ of a joint.
+    /// Returns the multiplier λ of a joint.
     pub(crate) fn multiplier(&self, joint: usize) -> Symbol<'s> {
         self.of_joint(Quantity::Multiplier, joint)
     }
 
-    /// Force and moment at each tip where the function has them.
+    /// Returns the force and moment at each tip, if the function has them as arguments.
     pub(crate) fn wrenches(&self) -> Vec<(&Tip, [Vector<'s>; 2])> {
         let (builder, tips) = (self.builder, &self.joint_frames.tips);
         let vector =
@@ -138,19 +138,19 @@ impl<'s> Arm<'_, 's> {
         if !builder.function.takes(Argument::Wrenches) {
             return Vec::new();
         }
-        // the tip frame stands first, before the list `tips`
+        // the tip frame comes first in `tips`, before the frames of the list `tips`
         let named = if tips.len() == 1 { &tips[..] } else { &tips[1..] };
         let parts = [Quantity::TipForce, Quantity::TipMoment];
         named.iter().enumerate().map(|(index, tip)| (tip, parts.map(|part| vector(index + 1, part)))).collect()
     }
 
-    /// The turn by the summed angle of joints `first` to `last`.
+    /// Returns the rotation by the summed angle of joints `first` to `last`.
     pub(crate) fn turn(&self, first: usize, last: usize) -> SymbolicTurn<'s> {
         let (builder, rows) = (self.builder, self.rows());
         if builder.function.takes(Argument::Sines) {
             return self.given_turn(first, last);
         }
-        // an angle does not change with what else is derived or accelerated
+        // the derivative and the accelerations that are being written do not change this angle
         builder.by(None, || {
             let ((s, c), quarters) = builder.turned(self.joint_frames, first, last);
             let (s, c) = by_quarters((s.signed(rows[first].reversed), c), quarters);
@@ -158,8 +158,8 @@ impl<'s> Arm<'_, 's> {
         })
     }
 
-    /// The turn from sines and cosines that are arguments, by the addition theorem. The turn of a joint that follows
-    /// others is that of its position.
+    /// Returns the rotation if sines and cosines are arguments, by the addition theorem. For a joint that follows
+    /// others, sine and cosine are computed from its position.
     fn given_turn(&self, first: usize, last: usize) -> SymbolicTurn<'s> {
         let theta = self.rows()[first..=last].iter().fold(ExactAngle::NONE, |turn, row| turn.then(row.theta));
         (first..=last).fold(self.builder.fixed_turn(theta), |SymbolicTurn { s, c }, joint| {
@@ -177,7 +177,7 @@ impl<'s> Arm<'_, 's> {
     }
 }
 
-/// A turn: sine and cosine, about x or about z as it is used.
+/// A rotation by its sine and cosine; each use says whether it is about x or about z.
 #[derive(Clone, Copy)]
 pub(crate) struct SymbolicTurn<'s> {
     pub(crate) s: Symbol<'s>,
@@ -185,25 +185,25 @@ pub(crate) struct SymbolicTurn<'s> {
 }
 
 impl<'s> SymbolicTurn<'s> {
-    /// Rx v
+    /// Returns Rx v.
     pub(crate) fn about_x(self, v: Vector<'s>) -> Vector<'s> {
         let ([x, y, z], Self { s, c }) = (v.0, self);
         Vector([x, y * c - z * s, y * s + z * c])
     }
 
-    /// Rxᵀ v
+    /// Returns Rxᵀ v.
     pub(crate) fn back_about_x(self, v: Vector<'s>) -> Vector<'s> {
         let ([x, y, z], Self { s, c }) = (v.0, self);
         Vector([x, y * c + z * s, z * c - y * s])
     }
 
-    /// Rz v
+    /// Returns Rz v.
     pub(crate) fn about_z(self, v: Vector<'s>) -> Vector<'s> {
         let ([x, y, z], Self { s, c }) = (v.0, self);
         Vector([x * c - y * s, x * s + y * c, z])
     }
 
-    /// Rzᵀ v
+    /// Returns Rzᵀ v.
     pub(crate) fn back_about_z(self, v: Vector<'s>) -> Vector<'s> {
         let ([x, y, z], Self { s, c }) = (v.0, self);
         Vector([x * c + y * s, y * c - x * s, z])

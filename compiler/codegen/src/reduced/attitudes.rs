@@ -1,7 +1,8 @@
-//! Links that always turn alike: opposite sides of a parallelogram, joints that follow another one equally.
+//! Links that always have the same angular velocity: opposite sides of a parallelogram, joints that follow another one
+//! with ratio 1.
 //!
-//! The moment of a link depends on its second moments through antisym(U S) alone, and links that turn alike have one U.
-//! So one of them can have the second moments of all (the reduced form, section 4.6).
+//! The moment of a link depends on its second moments only through antisym(U S), and such links have the same U. So the
+//! second moments of all of them can be given to one of them (the reduced form, section 4.6).
 
 use std::collections::BTreeMap;
 
@@ -11,31 +12,31 @@ use crate::ir::Number;
 use crate::reduced::link_parameters::{apply, compose, transpose};
 use crate::reduced::{IDENTITY, JointFrames, Square, Triple};
 
-/// Σ ratio · coordinate, without those of ratio zero.
+/// A rotation angle Σ ratio · coordinate, without the terms whose ratio is zero.
 type Turning = BTreeMap<usize, Number>;
 
-/// The attitude of links that turn alike: it turns about a fixed axis of another attitude.
+/// The orientation that links with the same angular velocity share: it turns about a fixed axis of another orientation.
 struct Attitude {
-    /// The attitude about whose axis it turns; `None` for that of the base.
+    /// The attitude in which the axis is fixed; `None` for the base.
     on: Option<usize>,
     /// The axis, in the axes of the attitude `on`.
     axis: Triple,
     turning: Turning,
-    /// Its axes where nothing turns, in those of the attitude `on`.
+    /// Rotation of this attitude at angle 0, in the axes of the attitude `on`.
     at_rest: Square,
-    /// The first revolute link that has it.
+    /// The first revolute link with this attitude.
     first: usize,
 }
 
-/// The axes of a link: those of an attitude (`None`: the base), turned.
+/// The axes of a link: an attitude (`None`: the base), and a constant rotation from it.
 type Axes = (Option<usize>, Square);
 
-/// For each link, the link that has its second moments, and the rotation from its axes to the axes of this holder;
-/// `None` for a link that never turns. On a floating base, such a link turns as the base. A prismatic link
-/// gives its second moments to its parent, so it is its own holder here.
+/// Returns, for each link, the link to which its second moments are given, and the rotation from its axes to the axes
+/// of that holder; `None` for a link that never turns. On a floating base, such a link turns with the base, so the base
+/// is the holder. A prismatic link gives its second moments to its parent elsewhere, so it is its own holder here.
 pub(crate) fn holders(joint_frames: &JointFrames) -> Vec<Option<(usize, Square)>> {
     let rows = &joint_frames.rows;
-    // that of a floating base, which stands behind the links
+    // the element of a floating base, which comes after the links
     let of_base = joint_frames.base.as_ref().map(|_| Some((rows.len(), IDENTITY)));
     if joint_frames.coordinates.is_every_joint() {
         return (0..rows.len()).map(|index| Some((index, IDENTITY))).chain(of_base).collect();
@@ -59,7 +60,7 @@ pub(crate) fn holders(joint_frames: &JointFrames) -> Vec<Option<(usize, Square)>
     holders
 }
 
-/// The axes of a revolute link on a link with the axes `of_parent`.
+/// Returns the axes of a revolute link whose parent has the axes `of_parent`.
 fn attitude(joint_frames: &JointFrames, attitudes: &mut Vec<Attitude>, index: usize, of_parent: Axes) -> Axes {
     let row = &joint_frames.rows[index];
     let (mut on, mut at_rest) = (of_parent.0, compose(&of_parent.1, &row.rotation()));
@@ -69,7 +70,7 @@ fn attitude(joint_frames: &JointFrames, attitudes: &mut Vec<Attitude>, index: us
         turning.insert(coordinate, joint_frames.embedding.decimal(if row.reversed { -ratio } else { ratio }));
     }
     while let Some(parent) = on.map(|on| &attitudes[on]) {
-        // the turns of both are one if the axes are parallel
+        // if the axes are parallel, both rotations are one rotation by the summed angle
         let Some(sign) = ratio_of_axes(axis, apply(&transpose(&parent.at_rest), parent.axis)) else { break };
         for (&coordinate, &ratio) in &parent.turning {
             let sum = turning.entry(coordinate).or_insert(Number::ZERO);
@@ -84,7 +85,7 @@ fn attitude(joint_frames: &JointFrames, attitudes: &mut Vec<Attitude>, index: us
     }
     let root = |link: usize| std::iter::successors(Some(link), |&link| joint_frames.rows[link].parent).last();
     let is_same = |other: &Attitude| {
-        // the base is turned into the frame of each joint on it
+        // the axes of a fixed base differ from joint to joint on it, so both links must be on one of these joints
         let is_on_same = other.on == on && (on.is_some() || root(other.first) == root(index));
         is_on_same
             && ratio_of_axes(axis, other.axis).is_some_and(|sign| {
@@ -102,7 +103,7 @@ fn attitude(joint_frames: &JointFrames, attitudes: &mut Vec<Attitude>, index: us
     (Some(attitudes.len() - 1), IDENTITY)
 }
 
-/// 1 or -1, where one unit vector is this multiple of the other.
+/// Returns 1 or -1 if one unit vector is this multiple of the other, otherwise `None`.
 fn ratio_of_axes(a: Triple, b: Triple) -> Option<Number> {
     let signs = [Number::ONE, -Number::ONE];
     signs.into_iter().find(|&sign| (0..3).all(|i| (a[i] - sign * b[i]).is_zero()))

@@ -1,4 +1,5 @@
-//! The way back, tip to base: forces, moments and torques (the reduced form, sections 3 and 5).
+//! The inward pass of the Newton-Euler recursion, tip to base: forces, moments and torques (the reduced form, sections
+//! 3 and 5).
 //!
 //! ```text
 //! F = m a + U h        N = antisym(U S) + h × a
@@ -20,24 +21,24 @@ use crate::reduced::{
     Wrench,
 };
 
-/// The wrench that a link exerts on its parent, about the origin of its frame.
+/// The wrench that a link exerts on its parent.
 #[derive(Clone, Copy)]
 pub(crate) struct Child<'s> {
-    /// The link that exerts it.
+    /// The link that exerts the wrench.
     of: usize,
     wrench: Wrench<'s>,
-    /// In frame N of a group of parallel axes; otherwise in the axes of the link at hand.
+    /// Whether the wrench is in frame N of a group of parallel axes; otherwise it is in the axes of the parent.
     unturned: bool,
-    /// From the origin of the link at hand to where the moment is taken.
+    /// Vector from the origin of the parent's frame to the point about which the moment is.
     arm: [Number; 3],
 }
 
-/// The torques, base to tip, with what the last link carries.
+/// Returns the torques, base to tip; the last link may carry a payload.
 pub(crate) fn torques<'s>(arm: &Arm<'_, 's>, moved: &[Moved<'s>], payload: Option<Load<'s>>) -> Vec<Symbol<'s>> {
     inward(arm, moved, payload).0.into_iter().map(|carried| carried.torque).collect()
 }
 
-/// The wrench that must act on a floating base, about the origin of frame 0, and the torques, base to tip.
+/// Returns the wrench that must act on a floating base, about the origin of frame 0, and the torques, base to tip.
 pub(crate) fn torques_of_floating_base<'s>(arm: &Arm<'_, 's>) -> (Wrench<'s>, Vec<Symbol<'s>>) {
     let builder = arm.builder;
     let (carried, children) = inward(arm, &motions(arm), arm.load(false));
@@ -58,15 +59,17 @@ pub(crate) fn torques_of_floating_base<'s>(arm: &Arm<'_, 's>) -> (Wrench<'s>, Ve
     (Wrench { force: wrench.force.times(per_force), ..wrench }, carried.into_iter().map(|it| it.torque).collect())
 }
 
-/// A joint's torque, and the wrench at the joint: of the link and all that it carries, about the origin of its frame. A
-/// part of it is in the link's frame, the other one in frame N; none is told of a spin.
+/// A joint's torque, and the wrench there: that on the link and all that it carries, about the origin of the link's
+/// frame. The wrench is the sum of two parts, one in the link's frame and one in frame N; both are zero for a spinning
+/// sphere.
 pub(crate) struct Carried<'s> {
     pub(crate) torque: Symbol<'s>,
     pub(crate) own: Wrench<'s>,
     pub(crate) unturned: Wrench<'s>,
 }
 
-/// The way back, base to tip, and what the joints of the base exert on it.
+/// The inward pass: returns the torques and wrenches, base to tip, and the wrenches that the joints on the base exert
+/// on it.
 pub(crate) fn inward<'s>(
     arm: &Arm<'_, 's>,
     moved: &[Moved<'s>],
@@ -123,8 +126,8 @@ pub(crate) fn inward<'s>(
     (found, children)
 }
 
-/// The wrench that the link of each tip exerts there, about the origin of its frame and in its axes; with the link.
-/// Forces are multiplied by the scale of the link.
+/// Returns the wrench that the link of each tip exerts there, about the origin of the link's frame and in its axes,
+/// with the index of the link. Forces are multiplied by the scale of the link.
 pub(crate) fn tip_wrenches<'s>(arm: &Arm<'_, 's>, scale: impl Fn(usize) -> Number) -> Vec<(usize, Wrench<'s>)> {
     let builder = arm.builder;
     let at_origin = |(tip, [force, moment]): (&Tip, [Vector<'s>; 2])| {
@@ -138,7 +141,8 @@ pub(crate) fn tip_wrenches<'s>(arm: &Arm<'_, 's>, scale: impl Fn(usize) -> Numbe
     arm.wrenches().into_iter().map(at_origin).collect()
 }
 
-/// A last link that is a sphere without mass: it keeps its spin, and q itself is not needed (section 5.6).
+/// Returns the torque and the wrench of a last link that is a sphere without mass: only its spin about the joint's axis
+/// acts, and q is not needed (section 5.6).
 fn spin<'s>(
     arm: &Arm<'_, 's>,
     index: usize,
@@ -164,12 +168,12 @@ fn spin<'s>(
     (torque, Some(Child { of: index, wrench: back.plus(spin), unturned: false, arm }))
 }
 
-/// 1/μ: lengths of the way back.
+/// Returns 1/μ, the factor of lengths in the inward pass.
 fn length_inward(arm: &Arm<'_, '_>, index: usize) -> Number {
     arm.parameters.mu[index].inverse().unwrap_or(Number::ONE)
 }
 
-/// F and N of the link itself: the part in its frame, and the part in frame N.
+/// Returns F and N of the link itself: the part in its frame, and the part in frame N.
 fn own_wrench<'s>(
     arm: &Arm<'_, 's>,
     index: usize,
@@ -190,7 +194,7 @@ fn own_wrench<'s>(
         own = first_moment(builder, matter, scales, &link.own, h);
     }
     if let Some(load) = payload {
-        // second moments of both at once
+        // second moments of link and payload together
         let to_unturned = load.unturned && is_revolute;
         let both = load.with_link(arm, link, matter, to_unturned);
         if to_unturned { unturned = unturned.plus(both) } else { own = own.plus(both) }
@@ -203,7 +207,7 @@ fn own_wrench<'s>(
     (own, unturned)
 }
 
-/// F = m a + U h and h × a.
+/// Returns the force F = m a + U h and the moment h × a.
 fn first_moment<'s>(
     builder: &'s Builder,
     matter: &PseudoInertia,
@@ -219,7 +223,7 @@ fn first_moment<'s>(
     }
 }
 
-/// antisym(U S) in one of three equal forms (section 3.3).
+/// Returns the moment antisym(U S) in one of three equal forms (section 3.3).
 fn second_moment<'s>(builder: &'s Builder, matter: &PseudoInertia, motion: &Motion<'s>, form: Moment) -> Vector<'s> {
     let s = matter.s;
     match form {
@@ -249,7 +253,8 @@ fn second_moment<'s>(builder: &'s Builder, matter: &PseudoInertia, motion: &Moti
     }
 }
 
-/// N_x = U31 S12 + U32 S22 - U23 S33 - U21 S13 + (U33 - U22) S23, and so on.
+/// Returns antisym(U S): N_x = U31 S12 + U32 S22 - U23 S33 - U21 S13 + (U33 - U22) S23, and N_y, N_z by cyclic
+/// permutation.
 pub(crate) fn antisymmetric_of<'s>(gradient: &Gradient<'s>, s: &[[Symbol<'s>; 3]; 3]) -> Vector<'s> {
     let u = &gradient.u;
     let [zy, xz, yx] = gradient.differences;
@@ -260,7 +265,7 @@ pub(crate) fn antisymmetric_of<'s>(gradient: &Gradient<'s>, s: &[[Symbol<'s>; 3]
     ])
 }
 
-/// Rz S Rzᵀ (section 5.7).
+/// Returns Rz S Rzᵀ (section 5.7).
 fn turned_second_moment<'s>(
     builder: &'s Builder,
     matter: &PseudoInertia,
@@ -278,7 +283,7 @@ fn turned_second_moment<'s>(
     full([u + number(yy), number(xx) - u, number(zz), turned_xy, turned_xz, turned_yz])
 }
 
-/// The wrenches that several links exert on one link, in the axes of this link, as one wrench.
+/// Combines the wrenches that several links exert on one parent, in the axes of the parent, to one wrench.
 fn together<'s>(builder: &'s Builder, carried: Vec<Child<'s>>) -> Vec<Child<'s>> {
     let (mut unturned, own): (Vec<_>, Vec<_>) = carried.into_iter().partition(|child| child.unturned);
     if own.len() < 2 {
@@ -289,7 +294,7 @@ fn together<'s>(builder: &'s Builder, carried: Vec<Child<'s>>) -> Vec<Child<'s>>
     unturned
 }
 
-/// Adds what a link behind exerts.
+/// Adds the wrench of a child link to the two parts of a link's wrench.
 fn with_child<'s>(
     arm: &Arm<'_, 's>,
     index: usize,
@@ -316,7 +321,7 @@ fn with_child<'s>(
     }
 }
 
-/// A revolute joint: its torque, and what its link exerts on the one before.
+/// Returns the torque of a revolute joint, and the wrench that its link exerts on the parent.
 fn turn<'s>(
     arm: &Arm<'_, 's>,
     index: usize,
@@ -342,7 +347,7 @@ fn turn<'s>(
     if inward_offset == Side::Parent {
         p = plus(p, row.along_axis(d));
     } else {
-        // d z × f; z is the axis in the link's frame and in N alike
+        // d z × f; the axis z is the same vector in the link's frame and in N
         let [fx, fy, _] = wrench.force.0;
         let [nx, ny, nz] = wrench.moment.0;
         wrench.moment = Vector([nx - fy.times(d), ny + fx.times(d), nz]);
@@ -360,7 +365,7 @@ fn turn<'s>(
     (torque, Some(Child { of: index, wrench, unturned, arm: p }))
 }
 
-/// A prismatic joint.
+/// Returns the force of a prismatic joint, and the wrench that its link exerts on the parent.
 fn origin_shift<'s>(
     arm: &Arm<'_, 's>,
     index: usize,
@@ -386,7 +391,8 @@ fn origin_shift<'s>(
     (torque, Some(Child { of: index, wrench: back, unturned: false, arm: offset }))
 }
 
-/// Names what a link exerts, in the axes of its parent. The first joint on the parent needs no number there.
+/// Names the wrench that a link exerts, in the axes of its parent. For the first joint on the parent the names have no
+/// number of a joint.
 fn name_turned<'s>(arm: &Arm<'_, 's>, index: usize, wrench: Wrench<'s>) {
     let rows = arm.rows();
     let parent = rows[index].parent;
@@ -400,7 +406,8 @@ fn name_turned<'s>(arm: &Arm<'_, 's>, index: usize, wrench: Wrench<'s>) {
     line.name_vector(Quantity::TurnedMoment, wrench.moment);
 }
 
-/// Rz(γ) Rx(α) Rz(θ) v; for a twist that is no right angle seven products are enough (section 5.1).
+/// Returns Rz(γ) Rx(α) Rz(θ) v; if the twist is no right angle, this can take seven products instead of eight (section
+/// 5.1).
 fn rotated_inward<'s>(row: &JointFrame, link: &Moved<'s>, scaled: bool, v: Vector<'s>) -> Vector<'s> {
     let SymbolicTurn { s, c } = link.turn;
     let (true, Some(ScaledTwist { ratio, larger, on_sine })) = (scaled, ScaledTwist::new(row)) else {

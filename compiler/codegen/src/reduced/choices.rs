@@ -1,4 +1,4 @@
-//! The choices of the reduced form, as data.
+//! The choices of the reduced form for one robot, as data that plan files store.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,23 +6,23 @@ use std::str::FromStr;
 use crate::named::named;
 use crate::reduced::{Entry, FrameChoice};
 
-/// All choices for one robot. The default makes none: regrouped parameters, and nothing else.
+/// All choices for one robot. By default none is made: the parameters are regrouped, and nothing else.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[allow(clippy::struct_excessive_bools)] // independent choices
 pub struct Plan {
-    /// Matter on joint axes is given to the link before (section 4). No plan file leaves that out.
+    /// Whether inertial parameters on joint axes are moved to the link before (section 4). Every plan file has this on.
     pub regrouped: bool,
-    /// The last link is a spinning sphere without mass (section 5.6).
+    /// Whether the last link is taken as a spinning sphere without mass (section 5.6).
     pub gyrostat: bool,
-    /// The last frame is turned so that h_y vanishes (section 5.8).
+    /// Whether the last frame is turned so that h_y vanishes (section 5.8).
     pub turned_last_frame: bool,
-    /// Prismatic links keep the axes of the revolute link before (section 5.9).
+    /// Whether prismatic links keep the axes of the revolute link before (section 5.9).
     pub carried_prismatics: bool,
-    /// λ is one over this (section 3.5).
+    /// The number of the arm that gives λ, the factor of lengths in the outward pass (section 3.5).
     pub length_scale: Scale,
-    /// μ is one over this.
+    /// The number of the arm that gives μ, the factor of forces in the inward pass (section 3.5).
     pub force_scale: Scale,
-    /// The moment of a floating base (section 3.3).
+    /// The form of the moment of a floating base (section 3.3).
     pub base_moment: Moment,
     /// The choices of each joint, base to tip.
     pub joints: Vec<JointPlan>,
@@ -31,27 +31,27 @@ pub struct Plan {
 /// The choices of one joint.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Default)]
 pub struct JointPlan {
-    /// The three parameters that the rods on this axis annul (section 4.5).
+    /// The three parameters that the rods of matter on this joint's axis set to zero (section 4.5).
     pub targets: [RegroupingTarget; 3],
     /// The position of the frame's origin on the joint axis (section 5.4).
     pub origin_shift: OriginShift,
-    /// Where the offset along the axis acts on the way out (section 5.2).
+    /// The frame in which the offset along the axis is added in the outward pass (section 5.2).
     pub outward_offset: Side,
-    /// Where this offset acts on the way back.
+    /// The frame in which this offset is added in the inward pass.
     pub inward_offset: Side,
-    /// The moment of the link (section 3.3).
+    /// The form of the link's moment (section 3.3).
     pub moment: Moment,
-    /// λ of a joint on the base and of all that it carries is one over this; with both scales by default, λ and μ are
-    /// those of the arm (section 3.5). Other joints have no scales.
+    /// The number that gives λ, for a joint on the base and all joints after it. If this and `force_scale` are both the
+    /// default, λ and μ are those of the arm (section 3.5). Other joints have no scales.
     pub length_scale: Scale,
-    /// μ of a joint on the base and of all that it carries is one over this.
+    /// The number that gives μ, for a joint on the base and all joints after it.
     pub force_scale: Scale,
-    /// Everything that is on or off.
+    /// The choices that are on or off.
     pub switches: Switches,
 }
 
 impl JointPlan {
-    /// Makes the choices that another joint has changed, from one plan to another.
+    /// Takes over each choice that differs between `from` and `to`, two versions of another joint's choices.
     pub fn follow(&mut self, from: &Self, to: &Self) {
         fn put<T: Copy + PartialEq>(choice: &mut T, from: T, to: T) {
             if from != to {
@@ -74,7 +74,8 @@ impl JointPlan {
 }
 
 impl Plan {
-    /// The change from a plan to this one, made at every joint that is `alike`: for each joint, those that follow it.
+    /// Returns this plan after each joint's changes since the plan `from` are made at other joints, too: `alike`
+    /// returns, for each joint, the joints that follow it.
     #[must_use]
     pub fn followed<'a>(mut self, from: &Self, alike: impl Fn(usize) -> &'a [usize]) -> Self {
         let to = self.joints.clone();
@@ -95,16 +96,16 @@ macro_rules! switches {
         pub struct Switches { $($(#[$doc])* pub $name: bool),* }
 
         impl Switches {
-            /// Their names in a plan file.
+            /// The names of these choices in a plan file.
             pub const NAMES: &'static [&'static str] = &[$(stringify!($name)),*];
 
-            /// Each with its name.
+            /// Returns each choice with its name.
             #[must_use]
             pub fn list(&self) -> [(&'static str, bool); Self::NAMES.len()] {
                 [$((stringify!($name), self.$name)),*]
             }
 
-            /// One of them by its place in `NAMES`.
+            /// Returns one choice by its place in `NAMES`.
             pub fn at(&mut self, index: usize) -> Option<&mut bool> {
                 [$(&mut self.$name),*].into_iter().nth(index)
             }
@@ -113,34 +114,35 @@ macro_rules! switches {
 }
 
 switches! {
-    /// U z is the same for both links of this axis (section 5.3).
+    /// U z is the same for both links of this axis, and is computed once (section 5.3).
     axis_column,
-    /// Vectors are rotated with seven products on the way out (section 5.1).
+    /// Vectors are rotated with seven products in the outward pass (section 5.1).
     scaled_twist_outward,
-    /// Vectors are rotated with seven products on the way back (section 5.1).
+    /// Vectors are rotated with seven products in the inward pass (section 5.1).
     scaled_twist_inward,
-    /// The next joint's origin is accelerated in the frame that does not turn with this joint (section 5.7).
+    /// The acceleration of the next joint's origin is computed in frame N, which does not turn with this joint (section
+    /// 5.7).
     origin_unturned,
-    /// ω̇ is formed in the frame that does not turn with this joint.
+    /// ω̇ is computed in frame N, which does not turn with this joint.
     omega_dot_unturned,
-    /// Force and first moment are formed in the frame that does not turn with this joint.
+    /// The force and the moment of the first moment are computed in frame N, which does not turn with this joint.
     first_moment_unturned,
-    /// The second moments are formed in the frame that does not turn with this joint.
+    /// The moment of the second moments is computed in frame N, which does not turn with this joint.
     second_moment_unturned,
-    /// The wrench from the next joint arrives in the frame that does not turn with this joint.
+    /// The wrench of the next joint is added in frame N, which does not turn with this joint.
     wrench_unturned,
-    /// ω comes from the group of parallel axes by the summed angle (section 5.5).
+    /// ω is rotated from frame N of the group of parallel axes by the summed angle (section 5.5).
     group_omega,
-    /// ω̇ comes from the group of parallel axes by the summed angle.
+    /// ω̇ is rotated from frame N of the group of parallel axes by the summed angle.
     group_omega_dot,
-    /// The acceleration comes from the group of parallel axes by the summed angle.
+    /// The acceleration is rotated from frame N of the group of parallel axes by the summed angle.
     group_acceleration,
-    /// The wrench goes back to the group unturned.
+    /// The wrench is passed to the parent in frame N of the group, without rotation.
     group_wrench,
 }
 
 named! {
-    /// A parameter that a rod annuls: one of the link's own, or one of the link before.
+    /// A parameter that a rod of matter sets to zero: one of the link's own, or one of the link before.
     #[derive(Default)]
     RegroupingTarget, "target" {
         /// The link's own: mass, h_z and S33 in this order.
@@ -165,14 +167,14 @@ named! {
 }
 
 impl RegroupingTarget {
-    /// The parameters that each of the three rods of an axis may annul.
+    /// The parameters that each of the three rods of an axis may set to zero.
     pub const CHOICES: [&'static [Self]; 3] = [
         &[Self::Own, Self::Hx, Self::Hy],
         &[Self::Own, Self::Hy, Self::Hx, Self::Syz, Self::Sxz],
         &[Self::Own, Self::Syy, Self::Sxx, Self::Syz, Self::Sxz, Self::Sxy, Self::Difference],
     ];
 
-    /// The entry of the link before; `None` for the link's own.
+    /// Returns the parameter of the link before; `None` for the link's own.
     pub(crate) const fn entry(self) -> Option<Entry> {
         Some(match self {
             Self::Own => return None,
@@ -189,71 +191,71 @@ impl RegroupingTarget {
 }
 
 named! {
-    /// A rule for where on its axis a frame's origin sits; never a number.
+    /// A rule for where a frame's origin is on its joint axis; each rule gives a shift along the axis.
     #[derive(Default)]
     OriginShift, "origin shift" {
-        /// Where the table has it.
+        /// No shift: the origin is where the table has it.
         #[default] None = "none",
-        /// -d: the offset moves on to the next joint.
+        /// Shift by -d: the offset is moved to the next joint.
         MinusD = "minus_d",
-        /// Annuls S13.
+        /// The shift that makes S13 zero.
         AnnulS13 = "annul_s13",
-        /// Annuls S23.
+        /// The shift that makes S23 zero.
         AnnulS23 = "annul_s23",
-        /// The offsets of all parallel axes behind this one are gathered here.
+        /// Shift by the sum of the offsets of all parallel axes after this one in its group.
         GroupInward = "group_inward",
-        /// The offset of the next axis alone is gathered here.
+        /// Shift by the offset of the next axis.
         NextOffset = "next_offset",
-        /// The offset of the next axis less the own one.
+        /// Shift by the offset of the next axis minus the own one.
         NextLessOwn = "next_less_own",
-        /// The offsets of the parallel axes up to this one are handed on.
+        /// Shift by minus the sum of the offsets of the group's parallel axes up to this one.
         GroupOutward = "group_outward",
-        /// One point mass then annuls both h_x and h_y of the link before.
+        /// The shift with which one point mass makes both h_x and h_y of the link before zero.
         AnnulParentH = "annul_parent_h",
     }
 }
 
 named! {
-    /// Where an offset along an axis acts.
+    /// The frame in which an offset along an axis is added.
     #[derive(Default)]
     Side, "side" {
         /// In the link's frame.
         #[default] Link = "link",
         /// In the axes of the link before.
         Parent = "parent",
-        /// In the frame on the axis that does not turn with the joint.
+        /// In frame N on the joint axis, which does not turn with the joint.
         Joint = "joint",
     }
 }
 
 named! {
-    /// The three equal forms of a link's moment.
+    /// Three equal forms of the formula for a link's moment.
     #[derive(Default)]
     Moment, "moment" {
-        /// Second moments.
+        /// antisym(U S), with the second moments S.
         #[default] Second = "second",
-        /// Second moments, with the diagonal split into accelerations and products of rates.
+        /// antisym(U S), but with the diagonal of S multiplied by angular accelerations and products of rates.
         Diagonal = "diagonal",
-        /// J ω̇ + ω × J ω.
+        /// J ω̇ + ω × J ω, with the inertia J.
         Inertia = "inertia",
     }
 }
 
-/// The number of the arm that a scale of lengths or forces is taken from.
+/// The number of the robot by which lengths or forces are scaled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, PartialOrd, Ord)]
 pub enum Scale {
-    /// For lengths: none. For forces: that of lengths.
+    /// For lengths: λ = 1. For forces: μ = 1/λ.
     #[default]
     Default,
     /// No scale.
     One,
-    /// The length a of a row, counted from 1.
+    /// The length a of a row of the table, counted from 1.
     A(usize),
-    /// The offset d of a row.
+    /// The offset d of a row of the table, counted from 1.
     D(usize),
-    /// A first moment of a link: joint and axis, 0 to 2.
+    /// A component of a link's first moment: link from 1, axis 0 to 2.
     FirstMoment(usize, usize),
-    /// The mass of a link.
+    /// The mass of a link, counted from 1.
     Mass(usize),
 }
 
@@ -270,7 +272,7 @@ impl fmt::Display for Scale {
     }
 }
 
-/// A number of digits alone: no sign, which the standard library would take.
+/// Parses a number that has digits only: no sign, which the standard library would accept.
 pub(crate) fn count(digits: &str) -> Option<usize> {
     let is_plain = digits.chars().all(|c| c.is_ascii_digit()) && (digits == "0" || !digits.starts_with('0'));
     if is_plain { digits.parse().ok() } else { None }
@@ -304,7 +306,7 @@ impl FromStr for Scale {
 }
 
 impl Plan {
-    /// No choice made.
+    /// Returns the plan in which no choice is made.
     #[must_use]
     pub fn new(dof: usize) -> Self {
         Self {
@@ -319,7 +321,8 @@ impl Plan {
         }
     }
 
-    /// The choices in words, those of the arm and then those of each joint, without those that are not made.
+    /// Returns the choices in words: those of the arm, then those of each joint; choices that are not made are left
+    /// out.
     #[must_use]
     pub fn choices(&self) -> Vec<String> {
         let mut lines = Vec::new();
@@ -357,7 +360,7 @@ impl Plan {
         lines
     }
 
-    /// The plan without scales.
+    /// Returns the plan without scales.
     pub(crate) fn unscaled(mut self) -> Self {
         (self.length_scale, self.force_scale) = (Scale::Default, Scale::Default);
         for joint in &mut self.joints {

@@ -1,4 +1,4 @@
-//! The mass matrix by composite bodies: everything behind a joint as one body, from tip to base.
+//! The mass matrix by composite bodies: for each joint all links after it as one rigid body, from tip to base.
 //!
 //! ```text
 //! P_i = own matter of link i + P_{i+1}, turned and moved into its frame;   P = [S h; hᵀ m]
@@ -7,9 +7,9 @@
 //! M_jj = n_z;   M_ij = n_z of the same wrench, turned and moved to joint i < j
 //! ```
 //!
-//! After R. Featherstone, "Rigid Body Dynamics Algorithms" (2008), section 6.2, over regrouped matter. Turns are made
-//! in two steps, about the joint's axis and about the twist; in frame N, between the two, a column costs nothing to
-//! begin with.
+//! After R. Featherstone, "Rigid Body Dynamics Algorithms" (2008), section 6.2, with regrouped inertial parameters.
+//! Rotations are done in two steps, about the joint's axis and about the twist. In frame N, between both steps, a new
+//! column takes no products.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
@@ -25,18 +25,18 @@ pub(crate) use crate::reduced::inward::ExpressedIn;
 use crate::ir::Axis::{self, X, Y, Z};
 use crate::ir::{Builder, Name, Quantity, Symbol, Vector, WithRespectTo};
 
-/// The matter of all links from one on.
+/// Mass, first and second moments of a link and all links after it.
 #[derive(Clone, Copy)]
 pub(crate) struct Composite<'s> {
     pub(crate) mass: Symbol<'s>,
     pub(crate) h: Vector<'s>,
     pub(crate) s: Symmetric<'s>,
-    /// S11 + S22, which a turn about z leaves alone, where it has been turned so.
+    /// S11 + S22, if it is known from before a rotation about z, which does not change it.
     pub(crate) around: Option<Symbol<'s>>,
 }
 
 impl<'s> Composite<'s> {
-    /// The matter of a link; of the last one with its payload.
+    /// Returns the inertial parameters of a link, for the link of the tip with its payload.
     pub(crate) fn of_link(arm: &Arm<'_, 's>, index: usize, matter: &PseudoInertia) -> Self {
         let own = Self::of_matter(arm.builder, matter);
         arm.payload_on(index).map_or(own, |payload| own.plus(payload.matter(arm)))
@@ -47,7 +47,7 @@ impl<'s> Composite<'s> {
         Self { mass: builder.number(matter.mass), h: builder.vector(matter.h), s, around: None }
     }
 
-    /// Names what is there, in frame N of a joint.
+    /// Names these moments, which are in frame N of a joint.
     pub(crate) fn name(&self, builder: &'s Builder, joint: usize) {
         builder.name_vector(Quantity::CompositeFirstMoment, joint, self.h);
         let elements = [(X, X), (Y, Y), (Z, Z), (X, Y), (X, Z), (Y, Z)];
@@ -56,12 +56,12 @@ impl<'s> Composite<'s> {
         }
     }
 
-    /// S11 + S22: the inertia about z.
+    /// Returns S11 + S22, the inertia about z.
     pub(crate) fn around(&self) -> Symbol<'s> {
         self.around.unwrap_or_else(|| self.s[0] + self.s[1])
     }
 
-    /// The wrench that gives its points the accelerations b + e × r.
+    /// Returns the wrench that gives each point r of the body the acceleration b + e × r.
     pub(crate) fn carried(&self, e: Vector<'s>, b: Vector<'s>) -> Wrench<'s> {
         let ([xx, yy, zz, xy, xz, yz], [x, y, z]) = (self.s, e.0);
         // J = tr(S) 1 - S
@@ -73,13 +73,13 @@ impl<'s> Composite<'s> {
         Wrench { force: b * self.mass + e.cross(self.h), moment: momentum + self.h.cross(b) }
     }
 
-    /// The wrench that accelerates it about the z axis with 1 rad/s².
+    /// Returns the wrench that accelerates the body about the z axis with 1 rad/s².
     pub(crate) fn turning(&self, builder: &'s Builder) -> Wrench<'s> {
         let ([hx, hy, _], [_, _, _, _, xz, yz]) = (self.h.0, self.s);
         Wrench { force: Vector([-hy, hx, builder.zero()]), moment: Vector([-xz, -yz, self.around()]) }
     }
 
-    /// The wrench that accelerates it along u with 1 m/s².
+    /// Returns the wrench that accelerates the body along u with 1 m/s².
     pub(crate) fn sliding(&self, u: Vector<'s>) -> Wrench<'s> {
         Wrench { force: u * self.mass, moment: self.h.cross(u) }
     }
@@ -97,14 +97,14 @@ impl<'s> Body<'s> for Composite<'s> {
 }
 
 impl<'s> Inward<'s> for Composite<'s> {
-    /// R P Rᵀ
+    /// Rotates the moments: R P Rᵀ.
     fn turned(self, turn: Turned<'s>) -> Self {
         let (h, s) = (turn.of(self.h), turn.of_symmetric(self.s));
         let around = if let Turned::AboutZ(_) = turn { Some(self.around()) } else { None };
         Self { mass: self.mass, h, s, around }
     }
 
-    /// The same matter about a point from which the old one is at t.
+    /// Returns the moments about another point, from which the old one is at t.
     fn moved(self, t: Vector<'s>) -> Self {
         let ([hx, hy, hz], [x, y, z]) = (self.h.0, t.0);
         let m = self.mass;
@@ -127,7 +127,7 @@ impl<'s> Inward<'s> for Composite<'s> {
     }
 }
 
-/// The column of M of a joint, counted from 0.
+/// The column of M of a joint: the joint, counted from 0, and the wrench for its unit acceleration.
 pub(crate) type Column<'s> = (usize, Wrench<'s>);
 
 impl<'s> Inward<'s> for Column<'s> {
@@ -140,7 +140,7 @@ impl<'s> Inward<'s> for Column<'s> {
     }
 }
 
-/// Names what is there, in frame N of a joint.
+/// Names the composite body and the columns, in frame N of a joint.
 fn name<'s>(builder: &'s Builder, joint: usize, carried: &Carried<Composite<'s>, Column<'s>>) {
     if let Some(composite) = &carried.behind {
         composite.name(builder, joint);
@@ -154,8 +154,8 @@ fn name<'s>(builder: &'s Builder, joint: usize, carried: &Carried<Composite<'s>,
     }
 }
 
-/// The upper half of M of the joints: row i holds its elements (i, i) to (i, n). And the rows of a base that nothing
-/// holds, which is the last body to be gathered.
+/// Returns the upper half of M of the joints: row i has its elements (i, i) to (i, n). For a floating base, also
+/// returns its rows; the base is the last body that is added.
 #[allow(clippy::type_complexity)] // rows of both kinds
 pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> (Vec<Vec<Symbol<'s>>>, Option<OfBase<'s>>) {
     let (builder, rows) = (arm.builder, arm.rows());
@@ -178,7 +178,7 @@ pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> (Vec<Vec<Symbol<'s>>>, Optio
         }
         let own = Composite::of_link(arm, index, &arm.parameters.links[index]);
         let u = builder.vector(row.axis);
-        // what the joint feels of a wrench
+        // the component of a wrench along the joint's axis
         let along = |wrench: &Wrench<'s>| match row.kind {
             Revolute => wrench.moment.0[2],
             Prismatic => u.dot(wrench.force),
@@ -189,7 +189,7 @@ pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> (Vec<Vec<Symbol<'s>>>, Optio
         }
         for (column, wrench) in load.own.columns.iter().chain(&load.unturned.columns) {
             let element = along(wrench);
-            // a rotor that turns with a joint, on a link that this joint moves
+            // a rotor that turns with this joint and is carried by a link that this joint moves counts twice
             let element = if *column == index { element + element } else { element };
             add(&mut matrix, index, *column, element);
         }
@@ -226,7 +226,8 @@ pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> (Vec<Vec<Symbol<'s>>>, Optio
     ((0..dof).map(|row| (row..dof).map(|column| element(row, column)).collect()).collect(), of_base)
 }
 
-/// The rows of a floating base, in its axes and about its origin, from what its joints carry.
+/// Returns the rows of a floating base, in its axes and about its origin, given the bodies and columns that its joints
+/// carry.
 fn of_base<'s>(arm: &Arm<'_, 's>, base: &Carrier, mut load: LoadOfLink<Composite<'s>, Column<'s>>) -> OfBase<'s> {
     let (builder, rows) = (arm.builder, arm.rows());
     builder.at(Quantity::BaseForce, 0);
@@ -246,13 +247,13 @@ fn of_base<'s>(arm: &Arm<'_, 's>, base: &Carrier, mut load: LoadOfLink<Composite
     OfBase { mass, h, inertia: [yy + zz, xx + zz, xx + yy, -xy, -xz, -yz], columns }
 }
 
-/// Adds to an element of the upper half of a symmetric matrix.
+/// Adds a number to an element of the upper half of a symmetric matrix.
 fn add<'s>(matrix: &mut [Vec<Symbol<'s>>], row: usize, column: usize, element: Symbol<'s>) {
     let place = &mut matrix[row.min(column)][row.max(column)];
     *place = if place.is_zero() { element } else { *place + element };
 }
 
-/// Adds a column to that of the same joint, if there is one.
+/// Adds a column to the column of the same joint, if there is one already.
 fn gather<'s>(columns: &mut Vec<Column<'s>>, (joint, wrench): Column<'s>) {
     match columns.iter_mut().find(|(other, _)| *other == joint) {
         Some((_, known)) => *known = known.plus(wrench),
@@ -260,11 +261,11 @@ fn gather<'s>(columns: &mut Vec<Column<'s>>, (joint, wrench): Column<'s>) {
     }
 }
 
-/// Gravity torques from the first moments of the composite bodies only: τ = (h × a)_z.
+/// Returns the gravity torques; they need only the first moments of the composite bodies: τ = (h × a)_z.
 pub(crate) fn gravity_torques<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
     let (builder, rows) = (arm.builder, arm.rows());
     let dof = rows.len();
-    // acceleration of the base in the frame N of each joint, or of its group, and in the axes of its link
+    // acceleration of the base in frame N of each joint or of its group, and in the axes of its link
     let mut fields: Vec<[Vector<'s>; 2]> = Vec::with_capacity(dof);
     for (index, row) in rows.iter().enumerate() {
         builder.at(Quantity::OriginAcceleration, index + 1);
@@ -293,7 +294,7 @@ pub(crate) fn gravity_torques<'s>(arm: &Arm<'_, 's>) -> Vec<Symbol<'s>> {
         let own = arm.payload_on(index).map_or(own, |payload| own.plus(payload.first_moment(arm)));
         let ([field, _], load) = (fields[index], loads.take(index));
         let [carried, unturned] = [load.own.behind, load.unturned.behind];
-        // what is behind is written first
+        // the mass of the links after this one is added first
         let behind = [carried, unturned].into_iter().flatten().reduce(Body::plus);
         let mass = behind.map_or(builder.zero(), |behind| behind.mass) + own.mass;
         let h = match (carried, unturned) {

@@ -1,12 +1,13 @@
-//! The way out, base to tip: how each link moves (the reduced form, sections 3 and 5).
+//! The outward pass of the Newton-Euler recursion, base to tip: the motion of each link (the reduced form, sections 3
+//! and 5).
 //!
 //! ```text
 //! ω_i = R_iᵀ ω_{i-1} + q̇ z     ω̇_i = R_iᵀ ω̇_{i-1} + q̇ (ω_y, -ω_x, 0) + q̈ z     a_i = R_iᵀ (a_{i-1} + U_{i-1} p_i)
 //! U = [ω̇]× + [ω]×[ω]×              acceleration of the point r of a link: a + U r;       a_0 = -g
 //! ```
 //!
-//! R_i = Rx(α) Rz(θ) turns in two steps. Between them stands frame N, on the axis but not turning with the joint; a
-//! group of parallel axes shares one N.
+//! R_i = Rx(α) Rz(θ) is done in two steps. Between them is frame N, which is on the axis but does not turn with the
+//! joint; all joints of a group of parallel axes share one N.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
@@ -18,7 +19,7 @@ use crate::reduced::regrouping::{group_start, is_parallel};
 use crate::reduced::siblings::point_acceleration;
 use crate::reduced::{JointFrame, JointFrames, JointPlan, Parameters, Plan, Side, SymbolicTurn, Turned};
 
-/// U = [ω̇]× + [ω]×[ω]×, with the differences of its diagonal.
+/// The matrix U = [ω̇]× + [ω]×[ω]×, with the differences of its diagonal elements.
 #[derive(Clone, Copy)]
 pub(crate) struct Gradient<'s> {
     pub(crate) u: [[Symbol<'s>; 3]; 3],
@@ -37,7 +38,7 @@ impl<'s> Gradient<'s> {
         }
     }
 
-    /// When U z is known already, with ω and ω̇_z (section 5.3).
+    /// Returns U if U z is already known, from it, ω and ω̇_z (section 5.3).
     fn with_axis_column(omega: Vector<'s>, omega_dot_z: Symbol<'s>, column: Vector<'s>) -> Self {
         let ([x, y, z], [u13, u23, u33]) = (omega.0, column.0);
         let (xx, zz, xy, xz, yz) = (x * x, z * z, x * y, x * z, y * z);
@@ -50,12 +51,12 @@ impl<'s> Gradient<'s> {
         }
     }
 
-    /// U v
+    /// Returns U v.
     pub(crate) fn of(&self, v: Vector<'s>) -> Vector<'s> {
         Vector([0, 1, 2].map(|row| Vector(self.u[row]).dot(v)))
     }
 
-    /// U z
+    /// Returns U z.
     fn column_z(&self) -> Vector<'s> {
         Vector([0, 1, 2].map(|row| self.u[row][2]))
     }
@@ -71,23 +72,23 @@ pub(crate) struct Motion<'s> {
     pub(crate) gradient: Gradient<'s>,
 }
 
-/// The motion of a link, as the way back needs it.
+/// The motion of a link, with all that the inward pass needs.
 #[derive(Clone, Copy)]
 pub(crate) struct Moved<'s> {
-    /// In the link's frame.
+    /// Motion in the link's frame.
     pub(crate) own: Motion<'s>,
-    /// In frame N on its axis.
+    /// Motion in frame N on the joint's axis.
     pub(crate) unturned: Motion<'s>,
     pub(crate) twist: Twist<'s>,
-    /// Transform from frame N of the group to the frame of the link.
+    /// Rotation from the frame of the link to frame N of its group.
     pub(crate) group_turn: SymbolicTurn<'s>,
-    /// From the frame of the link before, about z.
+    /// Rotation about z by the angle of this joint alone, from the frame of the link.
     pub(crate) turn: SymbolicTurn<'s>,
-    /// The motion of its group of parallel axes up to this joint; `None` for a prismatic joint.
+    /// The motion that the group of parallel axes shares, up to this joint; `None` for a prismatic joint.
     group: Option<Group<'s>>,
 }
 
-/// Rz(γ) Rx(α): from frame N of a joint to the axes of its parent.
+/// The rotation Rz(γ) Rx(α) from frame N of a joint to the axes of its parent.
 #[derive(Clone, Copy)]
 pub(crate) struct Twist<'s> {
     gamma: Option<SymbolicTurn<'s>>,
@@ -100,48 +101,48 @@ impl<'s> Twist<'s> {
         Self { gamma, alpha: builder.fixed_turn(row.alpha) }
     }
 
-    /// Rz(γ) v
+    /// Returns Rz(γ) v.
     pub(crate) fn about_parent(self, v: Vector<'s>) -> Vector<'s> {
         self.gamma.map_or(v, |turn| turn.about_z(v))
     }
 
-    /// Rz(γ)ᵀ v
+    /// Returns Rz(γ)ᵀ v.
     fn back_about_parent(self, v: Vector<'s>) -> Vector<'s> {
         self.gamma.map_or(v, |turn| turn.back_about_z(v))
     }
 
-    /// Rz(γ) Rx(α) v
+    /// Returns Rz(γ) Rx(α) v.
     pub(crate) fn of(self, v: Vector<'s>) -> Vector<'s> {
         self.about_parent(self.alpha.about_x(v))
     }
 
-    /// Both turns, one after the other.
+    /// Returns both rotations in the order in which they are applied.
     pub(crate) fn turns(self) -> impl Iterator<Item = Turned<'s>> {
         [Some(Turned::AboutX(self.alpha)), self.gamma.map(Turned::AboutZ)].into_iter().flatten()
     }
 
-    /// (Rz(γ) Rx(α))ᵀ v
+    /// Returns (Rz(γ) Rx(α))ᵀ v.
     pub(crate) fn back(self, v: Vector<'s>) -> Vector<'s> {
         self.alpha.back_about_x(self.back_about_parent(v))
     }
 }
 
-/// One group of parallel axes: what its frame N takes over from the link before the group.
+/// A group of parallel axes: the motion of the link before the group, in frame N, and the summed rates of the group.
 #[derive(Clone, Copy)]
 struct Group<'s> {
     omega: Vector<'s>,
     omega_dot: Vector<'s>,
-    /// U z of the first axis, in N.
+    /// U z of the first axis of the group, in N.
     column: Vector<'s>,
     rate: Symbol<'s>,
     rate_dot: Symbol<'s>,
 }
 
-/// The arm under a plan, as its formulas see it.
+/// The robot under a plan, with all that the formulas need.
 #[derive(Clone, Copy)]
 pub(crate) struct Arm<'a, 's> {
     pub(crate) builder: &'s Builder,
-    /// How algorithms of bodies gather these.
+    /// The frames in which algorithms with composite or articulated bodies express these bodies.
     pub(crate) expressed_in: ExpressedIn,
     pub(crate) joint_frames: &'a JointFrames,
     pub(crate) plan: &'a Plan,
@@ -153,8 +154,8 @@ impl<'a> Arm<'a, '_> {
         &self.joint_frames.rows
     }
 
-    /// From the parent's frame to axis i, in axes of the parent and with the slide of its frame, and d with that of
-    /// frame i; times `scale`.
+    /// Returns two lengths, both times `scale`: the vector from the origin of the parent's frame to axis i, in the axes
+    /// of the parent, and the offset d along axis i. Both include the shifts of the origins along their axes.
     pub(crate) fn lengths(&self, index: usize, scale: Number) -> ([Number; 3], Number) {
         let row = &self.rows()[index];
         let [x, y, z] = row.offset;
@@ -165,7 +166,7 @@ impl<'a> Arm<'a, '_> {
         ([x, y, z - before].map(|length| length * scale), d * scale)
     }
 
-    /// The point of its parent, in the axes of the parent, whose acceleration a joint takes over, times λ.
+    /// Returns the point of the parent, in the parent's axes, whose acceleration is passed to a joint; times λ.
     pub(crate) fn outward_point(&self, index: usize) -> [Number; 3] {
         let (offset, d) = self.lengths(index, self.parameters.lambda[index]);
         let row = &self.rows()[index];
@@ -173,7 +174,7 @@ impl<'a> Arm<'a, '_> {
         if is_whole { plus(offset, row.along_axis(d)) } else { offset }
     }
 
-    /// Whether this is the last link, and the plan makes it a spinning sphere (section 5.6).
+    /// Whether this is the last link, and the plan takes it as a spinning sphere (section 5.6).
     pub(crate) fn is_spin(&self, index: usize) -> bool {
         self.parameters.sphere.is_some() && index + 1 == self.rows().len()
     }
@@ -183,7 +184,7 @@ pub(crate) fn plus(a: [Number; 3], b: [Number; 3]) -> [Number; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// The motion of a floating base, in frame 0, from the arguments of the function.
+/// Returns the motion of a floating base, in frame 0, from the arguments of the function.
 pub(crate) fn motion_of_base<'s>(arm: &Arm<'_, 's>) -> Motion<'s> {
     let builder = arm.builder;
     if builder.moving.get() == Moving::RatesForAccelerations {
@@ -200,7 +201,7 @@ pub(crate) fn motion_of_base<'s>(arm: &Arm<'_, 's>) -> Motion<'s> {
     Motion { omega, omega_dot, acceleration, gradient }
 }
 
-/// The acceleration of the origin of frame 0 less gravity.
+/// Returns the acceleration of the origin of frame 0, less gravity.
 pub(crate) fn acceleration_of_base<'s>(arm: &Arm<'_, 's>) -> Vector<'s> {
     if arm.builder.function.what() == What::GravityTorques {
         return base_rotation(arm.builder).transpose()
@@ -209,8 +210,8 @@ pub(crate) fn acceleration_of_base<'s>(arm: &Arm<'_, 's>) -> Vector<'s> {
     of_base(arm.builder, Quantity::Acceleration) - of_base(arm.builder, Quantity::Gravity)
 }
 
-/// A vector of the motion of the base: accelerations, gravity included, are zero where they are no arguments and were
-/// not solved for.
+/// Returns a vector of the motion of the base. Angular velocity, accelerations and gravity are zero if they are neither
+/// arguments nor were solved for.
 fn of_base(builder: &Builder, quantity: Quantity) -> Vector<'_> {
     let is_still = builder.function.what() == What::GravityTorques;
     if quantity == Quantity::Omega && !is_still || builder.function.takes(Argument::Base) {
@@ -220,7 +221,7 @@ fn of_base(builder: &Builder, quantity: Quantity) -> Vector<'_> {
     }
 }
 
-/// The motion of such a base with velocities in the place of accelerations, where the function has them.
+/// Returns the motion of a floating base with velocities in the place of accelerations; zero if they are no arguments.
 fn twist_of_base<'s>(arm: &Arm<'_, 's>) -> Motion<'s> {
     let builder = arm.builder;
     let told = |quantity| {
@@ -237,7 +238,7 @@ fn twist_of_base<'s>(arm: &Arm<'_, 's>) -> Motion<'s> {
     Motion { omega: at_rest, omega_dot: omega, acceleration: velocity, gradient: Gradient::new(at_rest, omega) }
 }
 
-/// The motion of all links.
+/// Returns the motion of all links.
 pub(crate) fn motions<'s>(arm: &Arm<'_, 's>) -> Vec<Moved<'s>> {
     let zeros = arm.builder.no_vector();
     let floating = arm.joint_frames.base.as_ref().map(|_| motion_of_base(arm));
@@ -263,9 +264,8 @@ pub(crate) fn motions<'s>(arm: &Arm<'_, 's>) -> Vec<Moved<'s>> {
     moved
 }
 
-/// The acceleration of the next joint's point, in the axes of the link before, and the part of it that is U p.
-///
-/// It may be formed in the frame N of the link before: then its own part is in N.
+/// Returns the acceleration of the next joint's point in the axes of the parent, the part of it that is U p, and
+/// whether this part is in frame N of the parent, where it may be computed; otherwise it is in the axes of the parent.
 fn joint_point<'s>(
     arm: &Arm<'_, 's>,
     index: usize,
@@ -293,14 +293,14 @@ fn joint_point<'s>(
     }
 }
 
-/// A revolute joint while the motion of its link is written.
+/// The data of a revolute joint while the motion of its link is being written.
 struct Revolving<'s, 'a> {
     builder: &'s Builder,
     row: &'a JointFrame,
-    /// Counted from 1.
+    /// The number of the joint, counted from 1.
     joint: usize,
     plan: &'a JointPlan,
-    /// Whether its axis is parallel to the one before, so that both share N.
+    /// Whether the joint's axis is parallel to the one before, so that both share frame N.
     parallel: bool,
     twist: Twist<'s>,
     turn: SymbolicTurn<'s>,
@@ -350,14 +350,14 @@ fn revolute<'s>(arm: &Arm<'_, 's>, index: usize, before: Motion<'s>, moved: &[Mo
 }
 
 impl<'s> Revolving<'s, '_> {
-    /// A last link that is only a spin: what it needs is ω and ω̇ of the link before, in N.
+    /// Returns the motion for a last link that is a spinning sphere: only ω and ω̇ of the link before are needed, in N.
     fn spin(&self, before: Motion<'s>) -> Moved<'s> {
         let motion =
             Motion { omega: self.twist.back(before.omega), omega_dot: self.twist.back(before.omega_dot), ..before };
         Moved { own: motion, unturned: motion, twist: self.twist, group_turn: self.turn, turn: self.turn, group: None }
     }
 
-    /// The motion that frame N takes over from before the group, and the rates of the group so far.
+    /// Returns the motion of the link before the group, in frame N, and the sums of the group's rates up to this joint.
     fn share(&self, before: Motion<'s>, group: Option<Group<'s>>) -> Group<'s> {
         self.builder.at(Quantity::OmegaUnturned, self.joint);
         match group {
@@ -377,7 +377,8 @@ impl<'s> Revolving<'s, '_> {
         }
     }
 
-    /// Rz(θ)ᵀ (Rz(γ) Rx(α))ᵀ v; for a twist that is no right angle seven products are enough (section 5.1).
+    /// Returns Rz(θ)ᵀ (Rz(γ) Rx(α))ᵀ v; if the twist is no right angle, this can take seven products instead of eight
+    /// (section 5.1).
     fn outward(&self, v: Vector<'s>) -> Vector<'s> {
         let Self { twist, turn, .. } = *self;
         let (true, Some(scaled)) = (self.plan.switches.scaled_twist_outward, ScaledTwist::new(self.row)) else {
@@ -390,7 +391,8 @@ impl<'s> Revolving<'s, '_> {
         Vector([turn.c * x + s * u, c * u - turn.s * x, twist.alpha.c * z - twist.alpha.s * y])
     }
 
-    /// ω, ω̇ and U in the link's frame and in N; accelerations are left as they were.
+    /// Returns the motion of the link in its frame and in N: ω, ω̇ and U are computed, the accelerations are copied
+    /// from `before`.
     fn rates(&self, before: Motion<'s>, shared: &Group<'s>) -> [Motion<'s>; 2] {
         let (builder, joint, on) = (self.builder, self.joint, self.plan.switches);
         let omega_unturned = builder.name_vector(Quantity::OmegaUnturned, joint, shared.omega.plus_z(shared.rate));
@@ -439,7 +441,8 @@ impl<'s> Revolving<'s, '_> {
         ]
     }
 
-    /// a in the link's frame and in N, with the part of the offset `d` that acts on the axis or in the link.
+    /// Returns a in the link's frame and in N. The offset `d` is added here if the plan adds it in frame N or in the
+    /// link's frame.
     fn acceleration(
         &self,
         point: Vector<'s>,
@@ -472,13 +475,14 @@ impl<'s> Revolving<'s, '_> {
     }
 }
 
-/// ω̇ + q̇ (ω_y, -ω_x, 0) + q̈ z
+/// Returns ω̇ + q̇ (ω_y, -ω_x, 0) + q̈ z.
 fn spun<'s>(omega: Vector<'s>, rate: Symbol<'s>, rate_dot: Symbol<'s>, omega_dot: Vector<'s>) -> Vector<'s> {
     let ([wx, wy, _], [x, y, z]) = (omega.0, omega_dot.0);
     Vector([x + rate * wy, y - rate * wx, z + rate_dot])
 }
 
-/// A sliding link turns as the link before: a = Rᵀ (a_{i-1} + U_{i-1} p) + (d + q) U u + 2 q̇ ω × u + q̈ u.
+/// Returns the motion of a prismatic link, which turns as the link before: a = Rᵀ (a_{i-1} + U_{i-1} p) + (d + q) U u +
+/// 2 q̇ ω × u + q̈ u.
 fn prismatic<'s>(arm: &Arm<'_, 's>, index: usize, before: Motion<'s>, moved: &[Moved<'s>]) -> Moved<'s> {
     let builder = arm.builder;
     let (rows, joint) = (arm.rows(), index + 1);
@@ -517,7 +521,7 @@ fn prismatic<'s>(arm: &Arm<'_, 's>, index: usize, before: Motion<'s>, moved: &[M
     Moved { own, unturned: own, twist, group_turn: turn, turn, group: None }
 }
 
-/// The smaller of sin α and cos α as a multiple of the larger.
+/// sin α and cos α of a twist, with the smaller one given as a multiple (`ratio`) of the larger.
 pub(crate) struct ScaledTwist {
     pub(crate) ratio: Number,
     pub(crate) larger: Number,
@@ -525,7 +529,7 @@ pub(crate) struct ScaledTwist {
 }
 
 impl ScaledTwist {
-    /// `None` for right angles.
+    /// Returns `None` for multiples of a right angle.
     pub(crate) fn new(row: &JointFrame) -> Option<Self> {
         let (s, c) = (row.alpha.sin, row.alpha.cos);
         if row.alpha.quarters().is_some() {

@@ -1,9 +1,10 @@
 //! Rotors of the list `motors` (the reduced form, section 16).
 //!
-//! A rotor of spin s = Σ n q̇ about the axis a on link c has energy ½ Jm s² + Jm s a · ω_c: with constants for the
-//! joints alone, and a product of s and the spin of its carrier about a. If the axes of joints are parallel to a, this
-//! product is a difference of squares of spins of links, so inertias of links about a: no operation is left of it. Of
-//! the other joints with which a rotor turns it stays what it is, a gyrostat: angular momentum Jm s a of the carrier.
+//! A rotor of spin s = Σ n q̇ about the axis a on link c has the energy ½ Jm s² + Jm s a · ω_c. The first term only
+//! adds constants to M. The second one is a product of s and the spin of the carrier about a. If the axes of the joints
+//! with which the rotor turns are parallel to a, this product is a difference of squares of link spins, so it only
+//! changes inertias of links about a and costs no operation. For all other joints with which the rotor turns, the
+//! carrier is a gyrostat: it has the angular momentum Jm s a in addition.
 
 use std::collections::BTreeMap;
 
@@ -15,30 +16,31 @@ use crate::reduced::crba::Column;
 use crate::reduced::link_parameters::{about_x, apply, sum};
 use crate::reduced::{Arm, JointFrame, PseudoInertia, Triple, Wrench};
 
-/// A rotor on a link, with the joints whose axes are not parallel to its own.
+/// A rotor on a link, with those of its joints whose axes are not parallel to its own.
 #[derive(Clone, Debug)]
 pub(crate) struct Gyrostat {
-    /// a, in the axes of the link.
+    /// The rotor's axis a, in the axes of the link.
     pub(crate) axis: Triple,
-    /// The joints with which it turns, counted from 0, and n Jm.
+    /// The joints with which the rotor turns, counted from 0, each with n Jm.
     pub(crate) turns: Vec<(usize, Number)>,
 }
 
-/// The elements (i, j), i ≤ j, of a symmetric matrix C: torques C q̈, whatever the positions are.
+/// The elements (i, j), i ≤ j, of a symmetric matrix C that does not depend on the positions; its torques are C q̈.
 type Elements = BTreeMap<(usize, usize), Number>;
 
-/// Links whose joints turn about parallel axes, all parallel to that of a rotor.
+/// The links whose joints turn about axes that are parallel to that of a rotor.
 struct Parallel {
     /// The link nearest to the base; `None` for the base itself.
     root: Option<usize>,
     /// The axis of the rotor in the axes of the root.
     axis: Triple,
-    /// For each joint that turns about a parallel axis: a · z.
+    /// For each joint that turns about a parallel axis: a · z; for other joints `None`.
     along: Vec<Option<Number>>,
 }
 
 impl Parallel {
-    /// The links that turn about the axis of a rotor relative to its carrier, or as which the carrier turns.
+    /// Finds the joints with axes parallel to a rotor's axis: those after the carrier, and those before it that turn
+    /// the carrier about this axis.
     fn of(rows: &[JointFrame], on: Option<usize>, axis: Triple) -> Self {
         let (mut root, mut axis) = (on, axis);
         while let Some(row) = root.map(|link| &rows[link]).filter(|row| row.kind == Revolute) {
@@ -61,7 +63,7 @@ impl Parallel {
         Self { root, axis, along }
     }
 
-    /// The spin of a link about the axis relative to the root, Σ x q̇.
+    /// Returns the spin Σ x q̇ of a link about the axis relative to the root: the joints with their x.
     fn spin(&self, rows: &[JointFrame], link: Option<usize>) -> Vec<(usize, Number)> {
         let way = std::iter::successors(link.filter(|_| link != self.root), |&link| {
             rows[link].parent.filter(|_| rows[link].parent != self.root)
@@ -69,7 +71,7 @@ impl Parallel {
         way.filter_map(|joint| Some((joint, self.along[joint]?))).collect()
     }
 
-    /// The spin Σ n q̇ of a rotor as Σ κ (spin of a link): κ of each joint's link.
+    /// Writes the spin Σ n q̇ of a rotor as Σ κ (spin of a link), and returns κ for each of these links.
     fn shares(&self, rows: &[JointFrame], turns: &[(usize, Number)]) -> Option<Vec<(usize, Number)>> {
         let mut shares: Elements = BTreeMap::new();
         for &(joint, n) in turns {
@@ -83,16 +85,16 @@ impl Parallel {
     }
 }
 
-/// A floating base: it carries rotors as a link does.
+/// A floating base, which carries rotors as a link does.
 #[derive(Clone, Debug)]
 pub(crate) struct Carrier {
     pub(crate) matter: PseudoInertia,
-    /// The rotors on it that are not part of its matter.
+    /// The rotors on the base that are not included in its inertial parameters.
     pub(crate) gyrostats: Vec<Gyrostat>,
 }
 
-/// Puts the rotors of a robot into its rows and into a floating base, if it has one, and their constants into
-/// `rotors`, the diagonal of C. What is left are the elements of C above it. `None` where a number has no inverse.
+/// Adds the rotors of a robot to its rows and to a floating base, if it has one, and their constants to `rotors`, the
+/// diagonal of C. Returns the elements of C above the diagonal; `None` if a number has no inverse.
 pub(crate) fn put_rotors(
     robot: &Robot,
     embedding: Embedding,
@@ -120,7 +122,7 @@ pub(crate) fn put_rotors(
                 add(&mut elements, [joint, other], if joint == other { element + element } else { element });
             }
         }
-        // a base that the world holds does not turn
+        // a fixed base does not turn
         if parallel.root.is_some() || base.is_some() {
             for (link, share) in parallel.shares(rows, &along)? {
                 let share = share * inertia;
@@ -150,7 +152,7 @@ pub(crate) fn put_rotors(
         if row != column {
             above.push((row, column, element));
         } else if rows[row].parent.is_none() && base.is_none() && rows[row].kind == Revolute {
-            // the same as an inertia of the first link about its joint
+            // such an element is added to the inertia of the first link about its joint, which has the same effect
             rows[row].matter =
                 rows[row].matter + PseudoInertia::about([Number::ZERO, Number::ZERO, Number::ONE], element, half);
         } else {
@@ -165,7 +167,7 @@ fn add(elements: &mut Elements, [row, column]: [usize; 2], element: Number) {
     *place = *place + element;
 }
 
-/// Adds factor · x xᵀ.
+/// Adds factor · x xᵀ to the elements.
 fn add_square(elements: &mut Elements, x: &[(usize, Number)], factor: Number) {
     for (at, &(row, a)) in x.iter().enumerate() {
         for &(column, b) in &x[at..] {
@@ -179,20 +181,20 @@ fn cross(a: Triple, b: Triple) -> Triple {
 }
 
 impl Gyrostat {
-    /// Σ n Jm x, of rates or accelerations x of the rows.
+    /// Returns Σ n Jm x, where x is the rate or the acceleration of each joint.
     pub(crate) fn of_joints<'s>(&self, arm: &Arm<'_, 's>, of_joint: impl Fn(usize) -> Symbol<'s>) -> Symbol<'s> {
         let terms = self.turns.iter().map(|&(joint, n)| of_joint(joint).signed(arm.rows()[joint].reversed).times(n));
         terms.reduce(|sum, term| sum + term).unwrap_or_else(|| arm.builder.zero())
     }
 
-    /// Jm ṡ a + ω × Jm s a: the moment that accelerates the carrier with its rotor.
+    /// Returns Jm ṡ a + ω × Jm s a: the moment that accelerates the carrier with its rotor.
     pub(crate) fn moment<'s>(&self, arm: &Arm<'_, 's>, omega: Vector<'s>) -> Vector<'s> {
         let axis = arm.builder.vector(self.axis);
         let (rate, rate_dot) = (|joint| arm.rate(joint), |joint| arm.rate_dot(joint));
         axis * self.of_joints(arm, rate_dot) + omega.cross(axis * self.of_joints(arm, rate))
     }
 
-    /// The columns of M of the joints with which it turns, by what moves its carrier.
+    /// Returns the columns of M for the joints with which the rotor turns: the moments on its carrier.
     pub(crate) fn columns<'s>(&self, arm: &Arm<'_, 's>) -> impl Iterator<Item = Column<'s>> {
         self.turns.iter().map(|&(joint, n)| {
             let n = if arm.rows()[joint].reversed { -n } else { n };
@@ -202,8 +204,8 @@ impl Gyrostat {
     }
 }
 
-/// The part of the rotors in the torque of a joint, in the direction of its row: Σ n Jm a · y, with the angular
-/// accelerations y of the links that carry them; `None` is a floating base.
+/// Returns the part of the rotors in the torque of a joint, with the sign of its row: Σ n Jm a · y, with the angular
+/// accelerations y of the carriers, which `of_link` returns (`None`: the floating base).
 pub(crate) fn resistance<'s>(
     arm: &Arm<'_, 's>,
     joint: usize,
@@ -220,7 +222,7 @@ pub(crate) fn resistance<'s>(
     terms.reduce(|sum, term| sum + term)
 }
 
-/// C q̈ of a joint but for its own acceleration, in the direction of its row.
+/// Returns the terms of C q̈ in the torque of a joint that are due to other joints, with the sign of its row.
 pub(crate) fn of_other_joints<'s>(arm: &Arm<'_, 's>, joint: usize) -> Option<Symbol<'s>> {
     let rows = arm.rows();
     let others = arm.joint_frames.coupled.iter().filter_map(|&(row, column, element)| match joint {

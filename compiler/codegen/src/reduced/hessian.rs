@@ -1,18 +1,19 @@
 //! The Hessian of λᵀτ by composite bodies.
 //!
 //! λᵀτ is the virtual power L = ∫ ξ · a dm, with the velocities ξ that all points would have if the joints had the
-//! velocities λ. Joint j turns or slides everything behind it as one body (`rnea_derivatives`), so L changes with it by
-//! what the motion before it does there: ξ linearly, a linearly, and the velocities v in a = … + 2 Ω × v. The first
-//! derivatives of L by the motion before a joint are the wrench f, n of what is behind, its momentum p, k under ξ, and
-//! the vector W = ∫ 2 v × ξ dm:
+//! velocities λ. Joint j turns or slides all links after it as one body (see `rnea_derivatives`). So q_j changes L only
+//! through the motion before the joint: through ξ and a, on which L depends linearly, and through the velocities v in
+//! the term 2 Ω × v of a. The first derivatives of L with respect to the motion before a joint are the wrench f, n of
+//! the links after it, their momentum p, k under ξ, and the vector W = ∫ 2 v × ξ dm:
 //!
 //! ```text
 //! by ξ: f, n          by a and ω̇: p, k          by ω, with a and ω̇ of the twists of `rnea_derivatives`: W
 //! ```
 //!
-//! A column of joint j is the derivative of all of them by q_j, by q̇_j and by q̈_j. Moved inward to joint i it meets
-//! what q_i, q̇_i and q̈_i do to the motion before i: both derivatives of L. With δ = ξ' × z of the motion before j
-//! under λ (two vectors), Ω = ω' × z, and Gξ = ∫ r ξᵀ dm beside G = ∫ r 2vᵀ dm:
+//! A column of joint j has the derivatives of all of them with respect to q_j, q̇_j and q̈_j. It is moved inward to
+//! joint i and multiplied there by the changes that q_i, q̇_i and q̈_i make to the motion before i: that gives the
+//! second derivatives of L. With δ = ξ' × z of the motion before j under λ (two vectors), Ω = ω' × z, and Gξ = ∫ r ξᵀ
+//! dm in addition to G = ∫ r 2vᵀ dm:
 //!
 //! ```text
 //! by q_j:  f, n as there    p, k: those of the twist δ, and z × p, z × k
@@ -20,7 +21,7 @@
 //! by q̇_j:  f, n as there    W: -2 (tr(Gξ) - Gξ) z          by q̈_j:  f, n: the column of M
 //! ```
 //!
-//! W does not depend on the point about which it is taken, nor does it change from one side of a joint to the other.
+//! W does not depend on the reference point, and it is the same before and after a joint.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
@@ -31,7 +32,7 @@ use crate::reduced::joint_motion::{JointMotion, Motion, stations};
 use crate::reduced::rnea_derivatives::{self, Behind, Moment, Twists, add, matter, moment_of, twists};
 use crate::reduced::{Arm, Body, Composite, Gyrostat, Inward, Outward, SymbolicTurn, Turned, Wrench};
 
-/// Velocities under the rates λ, in some axes.
+/// The velocities of a link for the joint rates λ, in some axes.
 #[derive(Clone, Copy)]
 struct Virtual<'s> {
     omega: Vector<'s>,
@@ -48,7 +49,7 @@ impl<'s> Outward<'s> for Virtual<'s> {
     }
 }
 
-/// Velocities of the parent at a joint, and of the link, in frame N and in its axes.
+/// The velocities for the rates λ at a joint: of the parent, and of the link in frame N and in its axes.
 struct VirtualMotion<'s> {
     before: Virtual<'s>,
     unturned: Virtual<'s>,
@@ -81,7 +82,7 @@ fn virtual_motions<'s>(arm: &Arm<'_, 's>, stations: &[JointMotion<'s>]) -> Vec<V
     motions
 }
 
-/// The links from a joint on, about its origin, with their velocities under λ.
+/// A link and all links after it, about the origin of its joint, with their velocities for the rates λ.
 #[derive(Clone, Copy)]
 struct Weighted<'s> {
     behind: Behind<'s>,
@@ -89,7 +90,7 @@ struct Weighted<'s> {
     momentum: Vector<'s>,
     /// ∫ r ξᵀ dm
     moment: Moment<'s>,
-    /// Its first two diagonal elements, as of [`Behind`].
+    /// The sum of the first two diagonal elements of `moment`, if it is known, as in [`Behind`].
     around: Option<Symbol<'s>>,
     /// ∫ 2 v × ξ dm
     mixed: Vector<'s>,
@@ -101,13 +102,13 @@ impl<'s> Weighted<'s> {
         let behind = rnea_derivatives::own(body, motion);
         let momentum = velocity * body.mass + omega.cross(body.h);
         let moment = moment_of(body.h, &full(body.s), omega, velocity);
-        // 2v × (ξ₀ + η × r)
+        // 2v × (ξ₀ + η × r), integrated over the mass of the link
         let mixed = behind.momentum.cross(velocity) + behind.about(omega);
         let own = Self { behind, momentum, moment, around: None, mixed };
         arm.rows()[index].gyrostats.iter().fold(own, |own, gyrostat| own.with_rotor(arm, gyrostat, motion, omega))
     }
 
-    /// With a rotor on the link, as [`Behind::with_rotor`].
+    /// Adds a rotor on the link, as [`Behind::with_rotor`] does.
     fn with_rotor(self, arm: &Arm<'_, 's>, gyrostat: &Gyrostat, motion: &Motion<'s>, omega: Vector<'s>) -> Self {
         let two = Number::integer(2);
         let behind = self.behind.with_rotor(arm, gyrostat, motion, two);
@@ -126,7 +127,7 @@ impl<'s> Weighted<'s> {
         self.around.unwrap_or_else(|| self.moment[0][0] + self.moment[1][1])
     }
 
-    /// (tr(Gξ) - Gξ) v
+    /// Returns (tr(Gξ) - Gξ) v.
     fn about(&self, v: Vector<'s>) -> Vector<'s> {
         rnea_derivatives::about(&self.moment, self.around(), v)
     }
@@ -172,12 +173,13 @@ impl<'s> Inward<'s> for Weighted<'s> {
     }
 }
 
-/// R G Rᵀ. About z the sum and the difference of what stands off the diagonal there turn by the doubled angle.
+/// Returns R G Rᵀ. For a rotation about z, the sum and the difference of the off-diagonal elements turn by the doubled
+/// angle.
 fn turned<'s>(moment: &Moment<'s>, turn: Turned<'s>) -> Moment<'s> {
     let SymbolicTurn { s: sine, c: cosine } = match turn {
         Turned::AboutZ(turn) => turn,
         Turned::AboutX(turn) => {
-            // the same with y, z, x in the places of x, y, z
+            // a rotation about x is one about z after the axes are renamed: y, z, x for x, y, z
             let turned = turned(&square(|i, j| moment[(i + 1) % 3][(j + 1) % 3]), Turned::AboutZ(turn));
             return square(|i, j| turned[(i + 2) % 3][(j + 2) % 3]);
         }
@@ -191,17 +193,18 @@ fn turned<'s>(moment: &Moment<'s>, turn: Turned<'s>) -> Moment<'s> {
     [[u + yy, w - yx, xz], [w - xy, xx - u, yz], [zx, zy, zz]]
 }
 
-/// The derivatives by the motion of joint `joint` of what the motion before a joint nearer to the base is paired with.
+/// The derivatives of f, n, p, k and W with respect to the motion of joint `joint`. They are moved inward and
+/// multiplied by the changes of the motion before a joint nearer to the base.
 #[derive(Clone, Copy)]
 struct Column<'s> {
     joint: usize,
-    /// f, n by q̈: the column of M.
+    /// Derivative of f, n with respect to q̈: the column of M.
     unit: Wrench<'s>,
-    /// f, n by q and by q̇.
+    /// Derivatives of f, n with respect to q and q̇.
     wrench: [Wrench<'s>; 2],
-    /// p, k by q.
+    /// Derivative of p, k with respect to q.
     momentum: Wrench<'s>,
-    /// W by q and by q̇.
+    /// Derivatives of W with respect to q and q̇.
     mixed: [Vector<'s>; 2],
 }
 
@@ -237,7 +240,7 @@ impl<'s> Inward<'s> for Column<'s> {
     }
 }
 
-/// The columns of the joints with which a rotor turns, by what moves its carrier.
+/// Returns the columns of the joints with which a rotor turns: their effect on the rotor's carrier.
 fn columns_of<'s>(arm: &Arm<'_, 's>, gyrostat: &Gyrostat, carrier: &Motion<'s>, omega: Vector<'s>) -> Vec<Column<'s>> {
     let (nothing, none) = (Wrench::zero(arm.builder), arm.builder.no_vector());
     let column = |(joint, unit): (usize, Wrench<'s>)| Column {
@@ -250,7 +253,7 @@ fn columns_of<'s>(arm: &Arm<'_, 's>, gyrostat: &Gyrostat, carrier: &Motion<'s>, 
     gyrostat.columns(arm).map(column).collect()
 }
 
-/// Adds a column to that of the same joint, if there is one.
+/// Adds a column to the column of the same joint, if there is one already.
 fn gather<'s>(columns: &mut Vec<Column<'s>>, column: Column<'s>) {
     match columns.iter_mut().find(|other| other.joint == column.joint) {
         Some(known) => *known = known.plus(column),
@@ -258,10 +261,10 @@ fn gather<'s>(columns: &mut Vec<Column<'s>>, column: Column<'s>) {
     }
 }
 
-/// Changes of the motion before a joint by its own motion.
+/// Changes that a joint's own motion makes to the motion before it.
 struct Turns<'s> {
     twists: Twists<'s>,
-    /// Angular and linear, under λ.
+    /// Change of the velocities for the rates λ: angular and linear.
     weighted: [Vector<'s>; 2],
 }
 
@@ -275,7 +278,7 @@ fn turns_of<'s>(arm: &Arm<'_, 's>, index: usize, station: &JointMotion<'s>, befo
     Turns { twists: twists(arm, index, station), weighted }
 }
 
-/// The contribution of a joint to elements of joints nearer to the base.
+/// Returns the column that a joint contributes to the elements of joints nearer to the base.
 fn column<'s>(arm: &Arm<'_, 's>, index: usize, turns: &Turns<'s>, whole: &Weighted<'s>) -> Column<'s> {
     let (row, builder) = (&arm.rows()[index], arm.builder);
     let Turns { twists, weighted: [angular, linear] } = turns;
@@ -288,7 +291,7 @@ fn column<'s>(arm: &Arm<'_, 's>, index: usize, turns: &Turns<'s>, whole: &Weight
         Revolute => {
             let quarter = |v: Vector<'s>| Vector([-v.0[1], v.0[0], builder.zero()]);
             let g = &whole.moment;
-            // ∫ r × ξ dm
+            // ∫ r × ξ dm, from the off-diagonal elements of Gξ
             let angular_momentum = Vector([g[1][2] - g[2][1], g[2][0] - g[0][2], builder.zero()]);
             let turned = Wrench { force: quarter(whole.momentum), moment: quarter(angular_momentum) };
             let by_position =
@@ -306,11 +309,11 @@ fn column<'s>(arm: &Arm<'_, 's>, index: usize, turns: &Turns<'s>, whole: &Weight
     Column { joint: index, unit: of_torques.unit, wrench, momentum, mixed }
 }
 
-/// All second derivatives, by the rows: the symmetric ones in their upper halves.
+/// All second derivatives by rows; symmetric matrices have only their upper halves.
 struct Found<'s>(Hessian<Vec<Vec<Symbol<'s>>>>);
 
 impl<'s> Found<'s> {
-    /// Adds the elements that a column gives for its joint and joint `index`.
+    /// Adds the second derivatives with respect to joint `index` and the joint of a column.
     fn meet(&mut self, arm: &Arm<'_, 's>, index: usize, turns: &Turns<'s>, column: &Column<'s>) {
         let Turns { twists, weighted: [angular, linear] } = turns;
         let (row, other) = (&arm.rows()[index], column.joint);
@@ -330,7 +333,7 @@ impl<'s> Found<'s> {
         add(&mut self.0.dqd_dqd[first][second], by_rate);
     }
 
-    /// Adds those with both joints exchanged, where its joint is another or its motion is that of a rotor.
+    /// Adds the mixed derivatives with both joints exchanged; only for columns of another joint or of a rotor.
     fn meet_back(&mut self, arm: &Arm<'_, 's>, index: usize, turns: &Turns<'s>, column: &Column<'s>) {
         let Turns { twists, weighted: [angular, linear] } = turns;
         let virtually = |wrench: &Wrench<'s>| wrench.moment.dot(*angular) + wrench.force.dot(*linear);
@@ -338,13 +341,13 @@ impl<'s> Found<'s> {
         add(&mut self.0.dq_dqd[index][column.joint], by_rate);
         add(&mut self.0.dq_dqdd[index][column.joint], virtually(&column.unit));
         if index == column.joint && arm.rows()[index].kind == Revolute {
-            // of the spin and of the motion of the carrier, in both orders
+            // the product of the rotor's spin and its carrier's motion, differentiated in both orders
             add(&mut self.0.dqd_dqd[index][index], column.mixed[1].0[2]);
         }
     }
 }
 
-/// The Hessian of λᵀτ of the joints, all matrices whole but for the lower halves of the symmetric ones.
+/// Returns the Hessian of λᵀτ with respect to the joints; symmetric matrices have only their upper halves.
 pub(crate) fn hessian<'s>(arm: &Arm<'_, 's>) -> Hessian<Vec<Vec<Symbol<'s>>>> {
     let (builder, rows) = (arm.builder, arm.rows());
     let stations = stations(arm, Number::integer(2));
@@ -357,7 +360,7 @@ pub(crate) fn hessian<'s>(arm: &Arm<'_, 's>) -> Hessian<Vec<Vec<Symbol<'s>>>> {
         builder.at(Quantity::ReducedForce, index + 1);
         let (row, station, motion) = (&rows[index], &stations[index], &motions[index]);
         let own = Weighted::of_link(arm, index, &station.own, motion.own);
-        // everything in frame N of this joint
+        // all bodies and columns are turned into frame N of this joint
         let (mut load, turn) = (loads.take(index), (row.kind == Revolute).then_some(station.turn));
         for gyrostat in &row.gyrostats {
             for column in columns_of(arm, gyrostat, &station.own, motion.own.omega) {

@@ -1,4 +1,4 @@
-//! From link to link towards the base: turned in two steps and moved, as every joint asks.
+//! Moves quantities from link to link towards the base: they are rotated in two steps and moved to the parent's origin.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
@@ -6,7 +6,7 @@ use crate::ir::{Number, Symbol, Vector};
 use crate::reduced::regrouping::{group_start, is_parallel};
 use crate::reduced::{Arm, SymbolicTurn, Twist, Wrench};
 
-/// The frames in which composite and articulated bodies are expressed, and gathered.
+/// The frames in which composite and articulated bodies are expressed and added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExpressedIn {
     /// The frame of each joint.
@@ -18,12 +18,12 @@ pub enum ExpressedIn {
 /// A symmetric matrix: xx, yy, zz, xy, xz, yz.
 pub(crate) type Symmetric<'s> = [Symbol<'s>; 6];
 
-/// All elements of a symmetric matrix, by rows.
+/// Returns all elements of a symmetric matrix, by rows.
 pub(crate) fn full([xx, yy, zz, xy, xz, yz]: Symmetric<'_>) -> [[Symbol<'_>; 3]; 3] {
     [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
 }
 
-/// A turn about an axis of the frames on both sides of it.
+/// A rotation about an axis that the frames before and after it have in common.
 #[derive(Clone, Copy)]
 pub(crate) enum Turned<'s> {
     AboutX(SymbolicTurn<'s>),
@@ -31,7 +31,7 @@ pub(crate) enum Turned<'s> {
 }
 
 impl<'s> Turned<'s> {
-    /// R v
+    /// Returns R v.
     pub(crate) fn of(self, v: Vector<'s>) -> Vector<'s> {
         match self {
             Self::AboutX(turn) => turn.about_x(v),
@@ -39,12 +39,12 @@ impl<'s> Turned<'s> {
         }
     }
 
-    /// R S Rᵀ
+    /// Returns R S Rᵀ.
     pub(crate) fn of_symmetric(self, [xx, yy, zz, xy, xz, yz]: Symmetric<'s>) -> Symmetric<'s> {
         let SymbolicTurn { s: sine, c: cosine } = match self {
             Self::AboutZ(turn) => turn,
             Self::AboutX(turn) => {
-                // the same with y, z, x in the places of x, y, z
+                // a rotation about x is one about z after the axes are renamed: y, z, x for x, y, z
                 let [yy, zz, xx, yz, xy, xz] = Self::AboutZ(turn).of_symmetric([yy, zz, xx, yz, xy, xz]);
                 return [xx, yy, zz, xy, xz, yz];
             }
@@ -58,20 +58,20 @@ impl<'s> Turned<'s> {
     }
 }
 
-/// A quantity that can be given in other axes and about another point.
+/// A quantity that can be converted to other axes and to another reference point.
 pub(crate) trait Inward<'s>: Sized {
     fn turned(self, turn: Turned<'s>) -> Self;
 
-    /// About a point from which the old one is at t.
+    /// Returns the quantity about another point, from which the old one is at t.
     fn moved(self, t: Vector<'s>) -> Self;
 }
 
-/// A body that is gathered on the way to the base.
+/// A body to which other bodies are added on the way to the base.
 pub(crate) trait Body<'s>: Inward<'s> + Copy {
     fn plus(self, other: Self) -> Self;
 }
 
-/// Matter without its second moments.
+/// Mass and first moment of a body.
 #[derive(Clone, Copy)]
 pub(crate) struct FirstMoment<'s> {
     pub(crate) mass: Symbol<'s>,
@@ -94,16 +94,16 @@ impl<'s> Inward<'s> for FirstMoment<'s> {
     }
 }
 
-/// A motion that can be given in the axes of a link farther out and at another of its points.
+/// The motion of a link, which can be converted to the axes of the next link and to another point.
 pub(crate) trait Outward<'s>: Copy {
     fn turned_back(self, f: impl Fn(Vector<'s>) -> Vector<'s>) -> Self;
 
-    /// At the point p of the link.
+    /// Returns the motion of the point p of the link.
     fn at(self, p: Vector<'s>) -> Self;
 }
 
-/// A load of a link: the bodies that its joints move and the columns of these joints, about the origin of its frame, in
-/// its axes or in the frame N of its group.
+/// The bodies that a link's joints move, with the columns of these joints: about the origin of the link's frame, in its
+/// axes or in frame N of its group.
 pub(crate) struct Carried<B, C> {
     pub(crate) behind: Option<B>,
     pub(crate) columns: Vec<C>,
@@ -117,18 +117,18 @@ impl<B, C> Carried<B, C> {
     }
 }
 
-/// The loads of the links whose joints have been passed on the way to the base.
+/// The loads on links whose joints have been processed on the way to the base.
 pub(crate) struct Loads<B, C>(Vec<Load<B, C>>);
 
 struct Load<B, C> {
     on: usize,
-    /// In the frame N of the group of link `on`, not in its axes.
+    /// Whether the load is in frame N of the group of link `on`, not in the axes of the link.
     unturned: bool,
     carried: Carried<B, C>,
 }
 
-/// The sum of the loads on one link. Loads in the axes of the link and in frame N of its group are kept apart, because
-/// one of them must be rotated before they are added.
+/// The sum of the loads on one link. Loads in the axes of the link and loads in frame N of its group are separate sums,
+/// because one of them must be rotated before both are added.
 pub(crate) struct LoadOfLink<B, C> {
     /// In the axes of the link.
     pub(crate) own: Carried<B, C>,
@@ -141,12 +141,12 @@ impl<'s, B: Body<'s>, C> Loads<B, C> {
         Self(Vec::new())
     }
 
-    /// Puts a load on a link.
+    /// Adds a load to a link.
     pub(crate) fn put(&mut self, on: usize, unturned: bool, carried: Carried<B, C>) {
         self.0.push(Load { on, unturned, carried });
     }
 
-    /// Takes all loads off a link.
+    /// Removes all loads from a link and returns their sum.
     pub(crate) fn take(&mut self, on: usize) -> LoadOfLink<B, C> {
         let (mut own, mut unturned) = (Carried::NOTHING, Carried::NOTHING);
         for load in self.0.extract_if(.., |load| load.on == on) {
@@ -159,19 +159,19 @@ impl<'s, B: Body<'s>, C> Loads<B, C> {
 }
 
 impl<'s, B: Body<'s>, C: Inward<'s>> LoadOfLink<B, C> {
-    /// The link itself with the bodies that are given in its axes.
+    /// Returns the link plus the bodies whose load is in the link's axes.
     pub(crate) fn with_link(&self, link: B) -> B {
         self.own.behind.map_or(link, |behind| link.plus(behind))
     }
 
-    /// Everything in one frame: frame N of a revolute joint with this turn, or the axes of a sliding link. `in_axes` is
-    /// given in the axes of the link.
+    /// Returns the sum of all bodies in one frame: in frame N of a revolute joint with the rotation `turn`, or in the
+    /// axes of a prismatic link. `in_axes` is the part that is in the axes of the link.
     pub(crate) fn whole(&self, in_axes: B, turn: Option<SymbolicTurn<'s>>) -> B {
         let own = turn.map_or(in_axes, |turn| in_axes.turned(Turned::AboutZ(turn)));
         self.unturned.behind.map_or(own, |behind| own.plus(behind))
     }
 
-    /// All columns, in the same frame.
+    /// Returns all columns, in the frame that [`Self::whole`] uses.
     pub(crate) fn columns(&mut self, turn: Option<SymbolicTurn<'s>>) -> Vec<C> {
         let turned = |column: C| match turn {
             Some(turn) => column.turned(Turned::AboutZ(turn)),
@@ -215,20 +215,21 @@ impl<'s> Arm<'_, 's> {
         self.expressed_in == ExpressedIn::GroupFrame && is_parallel(self.rows(), index)
     }
 
-    /// From the axes of a revolute link to frame N of its group.
+    /// Returns the rotation from the axes of a revolute link to frame N of its group.
     pub(crate) fn turn_of_group(&self, index: usize) -> SymbolicTurn<'s> {
         self.turn(if self.is_grouped(index) { group_start(self.rows(), index) } else { index }, index)
     }
 
-    /// From the parent to the origin of a joint, in frame N (prismatic: in the axes of the sliding link). In the frame
-    /// N of a group `unturned` of the joint before goes on, whose turn is `turn`.
+    /// Returns the motion of the parent at the origin of a joint, in frame N (prismatic: in the axes of the link).
+    /// `last` is the parent's motion in its axes. If both joints share frame N, the parent's motion in N, `unturned`,
+    /// is used instead, and `turn` is the rotation of the parent in N.
     pub(crate) fn outward<T: Outward<'s>>(&self, index: usize, last: T, unturned: T, turn: SymbolicTurn<'s>) -> T {
         let (builder, row) = (self.builder, &self.rows()[index]);
         let (offset, d) = self.lengths(index, Number::ONE);
         let (offset, twist) = (builder.vector(offset), Twist::new(builder, row));
         match row.kind {
             Revolute if self.is_grouped(index) => unturned.at(turn.about_z(offset) + builder.along_z(d)),
-            // the base is at the joint
+            // joints on a fixed base have their frame at the base
             Revolute if self.joint_frames.carrier(index).is_none() => last.turned_back(|v| twist.back(v)),
             Revolute => last.at(offset).turned_back(|v| twist.back(v)).at(builder.along_z(d)),
             Prismatic => {
@@ -240,8 +241,8 @@ impl<'s> Arm<'_, 's> {
         }
     }
 
-    /// From frame N of a joint, or the axes of a sliding link, to the axes of its parent and about its origin. The
-    /// frame N of a group goes on, but for its origin.
+    /// Converts a quantity from frame N of a joint, or from the axes of a prismatic link, to the axes of the parent and
+    /// about the parent's origin. If both joints share frame N, only the reference point changes.
     pub(crate) fn inward<T: Inward<'s>>(&self, index: usize, carried: T) -> T {
         let (builder, row) = (self.builder, &self.rows()[index]);
         let (offset, d) = self.lengths(index, Number::ONE);

@@ -1,11 +1,11 @@
-//! From the robot file to rows of joint-frame, link-origin parameters: frame i on joint axis i, fixed to link i.
+//! Converts a robot file to rows of parameters whose frame i is on joint axis i and fixed to link i.
 //!
-//! Whatever the table's convention, row i leads from the frame of its parent to frame i as a modified one does, Rx(α)
-//! Tx(a) Rz(θ) Tz(d), and the matter of link i is about the origin of frame i in its axes (the reduced form, section
-//! 2). What costs nothing is put right here: the base is turned into the frame of each joint on it, the constant angle
-//! of the last joint of a branch into its link, anti-parallel axes are made parallel. Where a link carries several
-//! joints, its frame is turned about its axis so that the first of them needs no other row; those of the others begin
-//! with one more constant turn Rz(γ) (section 15).
+//! In every convention of the table, row i leads from the frame of its parent to frame i as a modified row does, Rx(α)
+//! Tx(a) Rz(θ) Tz(d), and the moments of link i are about the origin of frame i in its axes (the reduced form, section
+//! 2). Changes of frames that never cost an operation are made here: the base is turned into the frame of each joint on
+//! it, the constant angle of the last joint of a branch is moved into its link, anti-parallel axes are made parallel.
+//! If a link carries several joints, its frame is turned about its axis so that the first of them is an ordinary row;
+//! the rows of the other joints begin with one more constant rotation Rz(γ) (section 15).
 
 use rne_model::{Convention, FixedFrame, Joint, JointKind, Link, Motor, QuarterTurns, Robot, Row, Transform};
 
@@ -15,22 +15,22 @@ use crate::reduced::gyrostats::{Carrier, put_rotors};
 use crate::reduced::link_parameters::{about_x, about_z, apply, compose, transpose};
 use crate::reduced::{Gyrostat, IDENTITY, PseudoInertia, Square, Triple};
 
-/// Frames stand far from the arm if one is farther from it than this, in parts of the longest way within the arm:
-/// second moments then lose more than two digits.
+/// Frames are too far from the arm if one is farther from it than this factor times the longest distance within the
+/// arm: second moments then lose more than two digits.
 const FAR: f64 = 10.0;
 
-/// How far along its axis a point near the arm is from where the table has each joint; `None` where the frames of the
-/// table stand near the arm. Any point of its axis serves a joint; the common normal of nearly parallel axes, where a
-/// table has one, may be hundreds of metres away.
+/// Returns, for each joint, the distance along its axis from the table's origin to a point near the arm; `None` if the
+/// frames of the table are near the arm. Any point of the axis can be the origin. The common normal of nearly parallel
+/// axes, where a table has it, may be hundreds of metres away.
 pub(crate) fn near_origins(robot: &Robot) -> Option<Vec<f64>> {
-    // who has none has no such normal, and waits for nothing
+    // without nearly parallel axes all frames are near the arm, and the search below is not needed
     let is_tilted = |joint: &Joint| joint.row.dh.alpha.right.is_none() && joint.row.dh.alpha.sin.abs() < 1.0 / FAR;
     if !robot.joints.iter().any(is_tilted) {
         return None;
     }
     let written = JointFrames::as_written(robot, false, Embedding::default())?;
     let (_, farthest, reach) = written.near(0.0);
-    // finer points leave numbers that are zero but for rounding
+    // with finer steps, numbers that should be zero would be nonzero from rounding
     (farthest > FAR * reach && farthest.is_finite()).then(|| written.near(reach / 64.0).0)
 }
 
@@ -40,31 +40,31 @@ pub(crate) struct JointFrame {
     /// The link that carries the joint, counted from 0; `None` for the base.
     pub(crate) parent: Option<usize>,
     pub(crate) kind: JointKind,
-    /// Whether q, q̇, q̈ and τ count the other way round.
+    /// Whether q, q̇, q̈ and τ have the opposite sign of the robot file's.
     pub(crate) reversed: bool,
-    /// Rz(γ), about the axis of the parent.
+    /// Rz(γ), the first rotation of the row, about the axis of the parent.
     pub(crate) gamma: ExactAngle,
-    /// Rx(α), the twist between the axes.
+    /// Rx(α), the rotation by the twist between both axes.
     pub(crate) alpha: ExactAngle,
-    /// The origin of the parent's frame to axis i, in the axes of the parent.
+    /// Vector from the origin of the parent's frame to axis i, in the axes of the parent.
     pub(crate) offset: Triple,
     /// The constant part of the joint angle.
     pub(crate) theta: ExactAngle,
-    /// Along axis i, without the joint variable.
+    /// Offset along axis i, without the joint variable.
     pub(crate) d: Number,
-    /// Along which a prismatic joint slides, in the axes of its link.
+    /// Direction in which a prismatic joint slides, in the axes of its link.
     pub(crate) axis: Triple,
-    /// A prismatic link in the axes of the revolute link before it: it turns nothing.
+    /// Whether a prismatic link keeps the axes of the revolute link before it, so that its row has no rotation.
     pub(crate) carried: bool,
     pub(crate) matter: PseudoInertia,
-    /// The rotors on the link that are not part of its matter.
+    /// The rotors on the link that are not included in its inertial parameters.
     pub(crate) gyrostats: Vec<Gyrostat>,
 }
 
-/// The tip frame in the frame of the link that carries it: rotation and translation.
+/// The pose of the tip frame in the frame of the link that carries it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tip {
-    /// The link that carries it, counted from 0.
+    /// The link that carries the tip, counted from 0.
     pub(crate) on: usize,
     pub(crate) rotation: Square,
     pub(crate) translation: Triple,
@@ -75,38 +75,39 @@ pub(crate) struct Tip {
 pub(crate) struct JointFrames {
     pub(crate) rows: Vec<JointFrame>,
     pub(crate) coordinates: Coordinates,
-    /// Acceleration of gravity in the frame of each joint on the base, at rest; zero for the other joints.
+    /// Acceleration of gravity in the frame of each joint on the base, at q = 0; zero for the other joints.
     pub(crate) gravity: Vec<Triple>,
     /// Acceleration of gravity on a floating base, in axes of the world.
     pub(crate) gravity_in_world: Triple,
     /// The tip frame, then those of the list `tips`.
     pub(crate) tips: Vec<Tip>,
     /// Constants on the diagonal of M, for each joint: G² Jm of a rotor that belongs to the arm, and the constant part
-    /// of those in the list `motors`.
+    /// of the rotors of the list `motors`.
     pub(crate) rotors: Vec<Number>,
-    /// The constants above the diagonal of M, by row and column.
+    /// Constants above the diagonal of M: row, column and value.
     pub(crate) coupled: Vec<(usize, usize, Number)>,
-    /// How the numbers of the file were read.
+    /// How the decimal numbers of the file were converted to exact numbers.
     pub(crate) embedding: Embedding,
-    /// Sines and cosines of the constant angles of the file, none negative.
+    /// Sines and cosines of the constant angles of the file, as absolute values.
     pub(crate) known: Vec<Number>,
-    /// The matter of a floating base, about the origin of frame 0 and in its axes.
+    /// A floating base: its moments are about the origin of frame 0 and in its axes.
     pub(crate) base: Option<Carrier>,
 }
 
-/// Choices that change the rows themselves.
+/// Choices of frames that change the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub(crate) struct FrameChoice {
     /// The last frame of each branch is turned about its axis so that h_y of its link vanishes (section 5.8).
     pub(crate) turned_last: bool,
     /// Prismatic links keep the axes of the last revolute link (section 5.9).
     pub(crate) carried: bool,
-    /// Nothing holds the base: it is a link, whose axes are those of frame 0 (section 17). The function decides.
+    /// The base is floating: it is a link, whose axes are those of frame 0 (section 17). The function, not the plan,
+    /// decides this.
     pub(crate) floating: bool,
 }
 
 impl JointFrame {
-    /// Rz(γ) Rx(α), from the axes of the joint at rest to those of its parent.
+    /// Returns Rz(γ) Rx(α), the rotation from the axes of the joint at rest to those of its parent.
     pub(crate) fn twist(&self) -> Square {
         let twist = about_x(self.alpha);
         if self.gamma == ExactAngle::NONE { twist } else { compose(&about_z(self.gamma), &twist) }
@@ -118,21 +119,21 @@ impl JointFrame {
         self.gyrostats.iter_mut().for_each(|gyrostat| gyrostat.axis = apply(rotation, gyrostat.axis));
     }
 
-    /// d along the axis, in the axes of the parent.
+    /// Returns the vector of length d along the joint axis, in the axes of the parent.
     pub(crate) fn along_axis(&self, d: Number) -> Triple {
         let along = [Number::ZERO, -(d * self.alpha.sin), d * self.alpha.cos];
         if self.gamma == ExactAngle::NONE { along } else { apply(&about_z(self.gamma), along) }
     }
 
-    /// Rz(γ) Rx(α) Rz(θ)
+    /// Returns Rz(γ) Rx(α) Rz(θ).
     pub(crate) fn rotation(&self) -> Square {
         compose(&self.twist(), &about_z(self.theta))
     }
 }
 
 impl JointFrame {
-    /// The row when it does not begin at the link frame of its parent, but at a placement there. `None` where there is
-    /// no root for the axes of the placement.
+    /// Returns the row of a joint that begins at a placement in the link frame of its parent. `None` if a square root
+    /// that the axes of the placement need does not exist in exact arithmetic.
     fn beginning_at(self, placement: &Transform, convention: Convention, embedding: Embedding) -> Option<Self> {
         let (rotation, translation) = pose(placement, embedding);
         let twist = about_x(self.alpha);
@@ -157,23 +158,23 @@ impl JointFrame {
 }
 
 impl JointFrames {
-    /// The rows of a robot; `None` when a choice of frames does not apply to it, or no reading of the numbers does:
-    /// each must have a root for every one that is wanted, and value and image of every number must agree about what is
-    /// zero.
+    /// Returns the rows of a robot; `None` if a choice of frames does not apply to it, or if none of the tried
+    /// conversions of its numbers to exact numbers works: all square roots must exist, and a number that is zero as a
+    /// float must be zero exactly.
     pub(crate) fn new(robot: &Robot, frames: FrameChoice) -> Option<Self> {
         if frames == (FrameChoice { floating: frames.floating, ..FrameChoice::default() })
             && let Some(joint_frames) = Self::read(robot, frames, Embedding::default())
         {
             return Some(joint_frames);
         }
-        // what no reading can mend is not read a hundred times
+        // if the choice does not apply to the robot, no conversion of the numbers helps, so none is tried
         let kinds: Vec<_> = robot.rows().map(|row| row.kind).collect();
         let can_carry = kinds.windows(2).any(|pair| pair == [JointKind::Revolute, JointKind::Prismatic]);
         let can_turn = kinds.last() == Some(&JointKind::Revolute);
         if (frames.carried && !can_carry) || (frames.turned_last && !can_turn) {
             return None;
         }
-        // roots: every fourth reading has a given one
+        // a needed square root exists in about every fourth conversion
         let Link { com, first_moment, .. } = robot.rows().last()?.link;
         let unknowns = [com[0], com[1], first_moment[0], first_moment[1]].map(|x| Some(x.abs()));
         let unknowns = [None].into_iter().chain(unknowns);
@@ -183,18 +184,18 @@ impl JointFrames {
             .find_map(|embedding| Self::read(robot, frames, embedding).filter(Self::agrees))
     }
 
-    /// The link that carries a joint, counted from 0: the number of links for a floating base, `None` for a
-    /// base that the world holds.
+    /// Returns the link that carries a joint, counted from 0. For a floating base it is the number of links, for a
+    /// fixed base `None`.
     pub(crate) fn carrier(&self, index: usize) -> Option<usize> {
         self.rows[index].parent.or_else(|| self.base.as_ref().map(|_| self.rows.len()))
     }
 
-    /// The same rows where nothing weighs.
+    /// Returns a copy of the rows with zero gravity.
     pub(crate) fn without_gravity(&self) -> Self {
         Self { gravity: vec![Triple::default(); self.rows.len()], gravity_in_world: Triple::default(), ..self.clone() }
     }
 
-    /// Whether nothing is zero in value alone.
+    /// Whether no number is zero only as a float but not exactly.
     fn agrees(&self) -> bool {
         let length = |row: &JointFrame| row.offset.map(|x| x.to_f64().abs()).iter().sum::<f64>() + row.d.to_f64().abs();
         let reach: f64 = self.rows.iter().map(length).sum();
@@ -236,13 +237,13 @@ impl JointFrames {
         Some(joint_frames)
     }
 
-    /// `None` where the reading has no root for the axes of a branch.
+    /// Returns the rows as the file has them; `None` if a square root that the axes of a branch need does not exist.
     fn as_written(robot: &Robot, floating: bool, embedding: Embedding) -> Option<Self> {
         let decimal = |x: f64| embedding.decimal(x);
         let half = decimal(0.5);
         let none = (ExactAngle::NONE, Number::ZERO);
         let written = |row: &Row| (embedding.turn(&row.dh.alpha), decimal(row.dh.a));
-        // a standard table: twist and length of the parent's row stand before the joint
+        // in a standard table, the twist and length of the parent's row come before the joint
         let before = |index: usize| match robot.convention {
             Convention::Modified => written(&robot.joints[index].row),
             Convention::Standard => robot.parent(index).map_or(none, |parent| written(&robot.joints[parent].row)),
@@ -290,7 +291,7 @@ impl JointFrames {
             if robot.convention != Convention::Standard {
                 return Some(tip);
             }
-            // twist and length of the row lead from the frame on its joint to the link frame
+            // in a standard table, twist and length of the row lead from the joint's frame to the link frame
             let (alpha, a) = written(&robot.joints[tip.on].row);
             let turn = about_x(alpha);
             let [x, y, z] = apply(&turn, tip.translation);
@@ -313,9 +314,9 @@ impl JointFrames {
         Some(Self { rows, coordinates, gravity, gravity_in_world, tips, rotors, coupled, embedding, known, base })
     }
 
-    /// Moves the origin of each frame to a point that is so far along its axis from where the row has its joint.
+    /// Moves the origin of each frame along its axis, by the distance in `near` from the origin that the row has.
     fn move_origins(&mut self, near: &[f64]) {
-        // from there to the origin of the table
+        // offsets from the new origins to the origins of the table
         let near: Vec<Number> = near.iter().map(|&along| self.embedding.decimal(along)).collect();
         let ends: Vec<Number> = self.rows.iter().zip(&near).map(|(row, &along)| row.d - along).collect();
         let along_z = |z: Number, [x, y, before]: Triple| [x, y, before + z];
@@ -331,15 +332,16 @@ impl JointFrames {
         }
     }
 
-    /// How far along each axis a point near the arm is: of a joint on a link, the foot of the perpendicular from the
-    /// point of the link's own joint; of a joint on the base, that from the origin of frame 0. They are multiples of
-    /// `step`, unless that is 0. Then the longest such way to a point of the table, and the longest way within the arm.
+    /// Returns the distance along each axis to a point near the arm. For a joint on a link it is the foot of the
+    /// perpendicular from the point of the link's own joint, for a joint on the base that from the origin of frame 0.
+    /// Distances are multiples of `step`, unless `step` is 0. Also returns the largest distance of these points from
+    /// the table's origins, and the longest distance within the arm.
     fn near(&self, step: f64) -> (Vec<f64>, f64, f64) {
         let raised = |v: Triple, by: f64| [v[0].to_f64(), v[1].to_f64(), v[2].to_f64() + by];
         let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let norm = |v: [f64; 3]| dot(v, v).sqrt();
         let (mut near, mut farthest, mut reach) = (Vec::new(), 0.0_f64, 0.0_f64);
-        // from the points to the origins of the table
+        // offsets from the points near the arm to the origins of the table
         let mut ends: Vec<f64> = Vec::new();
         for row in &self.rows {
             let point = raised(row.offset, row.parent.map_or(0.0, |parent| ends[parent]));
@@ -359,7 +361,7 @@ impl JointFrames {
         (near, farthest, reach)
     }
 
-    /// α = ±π becomes 0: from there on all turns count the other way round, until the next such row.
+    /// Replaces α = ±π by 0: from there on all rotations have the opposite sign, until the next such row.
     fn straighten(&mut self) {
         let flip = about_x(ExactAngle { sin: Number::ZERO, cos: -Number::ONE });
         let is_floating = self.base.is_some();
@@ -381,7 +383,7 @@ impl JointFrames {
                 row.turn_link(&flip);
             }
             if row.alpha == ExactAngle::NONE && row.gamma != ExactAngle::NONE {
-                // both turns are about one axis
+                // both rotations are about one axis, so their angles add
                 row.theta = row.gamma.then(row.theta);
                 row.gamma = ExactAngle::NONE;
             }
@@ -390,7 +392,7 @@ impl JointFrames {
         self.turn_tips(|on| is_reversed[on], &flip);
     }
 
-    /// Turns the frame of each link about its axis, so that the first row on it begins without a turn.
+    /// Turns the frame of each link about its axis, so that the first row on it needs no rotation Rz(γ).
     fn turn_carriers(&mut self) {
         for index in 0..self.rows.len() {
             let Some(first) = self.rows.iter().position(|row| row.parent == Some(index)) else { continue };
@@ -415,7 +417,7 @@ impl JointFrames {
         }
     }
 
-    /// The base is turned into the frame of each joint on it at q = 0. Where it stands is no matter.
+    /// Turns the base into the frame of each joint on it at q = 0. The position of a fixed base changes no torque.
     fn normalise_first(&mut self) {
         for (row, gravity) in self.rows.iter_mut().zip(&mut self.gravity).filter(|(row, _)| row.parent.is_none()) {
             *gravity = apply(&transpose(&row.rotation()), *gravity);
@@ -424,13 +426,13 @@ impl JointFrames {
         }
     }
 
-    /// The links that carry no joint, counted from 0.
+    /// Returns the links that carry no joint, counted from 0.
     fn ends(&self) -> Vec<usize> {
         let carries = |index: usize| self.rows.iter().any(|row| row.parent == Some(index));
         (0..self.rows.len()).filter(|&index| !carries(index)).collect()
     }
 
-    /// The constant angle of the last joint of each branch, if that is revolute, goes into its link.
+    /// Moves the constant angle of the last joint of each branch into its link, if the joint is revolute.
     fn normalise_last(&mut self) {
         for end in self.ends() {
             self.normalise_end(end);
@@ -447,7 +449,8 @@ impl JointFrames {
         }
     }
 
-    /// Turns the frames of the links that `is_turned` says, and so what is known of tips on them.
+    /// Turns the poses of the tips on links for which `is_turned` is true, because the frames of these links were
+    /// turned.
     fn turn_tips(&mut self, is_turned: impl Fn(usize) -> bool, rotation: &Square) {
         for tip in self.tips.iter_mut().filter(|tip| is_turned(tip.on)) {
             tip.rotation = compose(rotation, &tip.rotation);
@@ -455,13 +458,13 @@ impl JointFrames {
         }
     }
 
-    /// The tip frame.
+    /// Returns the tip frame.
     pub(crate) fn tip(&self) -> &Tip {
         &self.tips[0]
     }
 
-    /// Turns the last frame of each branch by φ = atan2(h_y, h_x), where that gains something; false when it does
-    /// nowhere, or a root is missing.
+    /// Turns the last frame of each branch by φ = atan2(h_y, h_x), so that h_y vanishes. Returns false if that changes
+    /// nothing at any branch, or if a square root is missing.
     fn turn_last(&mut self) -> bool {
         let mut gains = false;
         for end in self.ends() {
@@ -474,7 +477,7 @@ impl JointFrames {
         gains
     }
 
-    /// Whether there is something to gain; `None` when there is no root.
+    /// Turns the frame of one last link. Returns whether that saves operations; `None` if a square root is missing.
     fn turn_end(&mut self, end: usize) -> Option<bool> {
         let embedding = self.embedding;
         let last = &mut self.rows[end];
@@ -483,7 +486,7 @@ impl JointFrames {
             return Some(false);
         }
         if y.is_zero() {
-            // the angle of the file serves
+            // h_y is zero already if the angle of the file is kept
             return Some(last.theta.quarters() != Some(QuarterTurns::Zero));
         }
         let phi = direction(y, x, embedding)?;
@@ -494,11 +497,12 @@ impl JointFrames {
         Some(true)
     }
 
-    /// Puts prismatic links behind a revolute one into its axes. One constant rotation Rz(φ1) Rx(α') Rz(φ2) is left at
-    /// the next revolute joint: φ2 joins its angle, φ1 that of the revolute joint before, whose link it turns. So a
-    /// prismatic joint costs no rotation at all. False when there is no such link, or no root.
+    /// Turns the prismatic links after a revolute link into the axes of that link. At the next revolute joint one
+    /// constant rotation Rz(φ1) Rx(α') Rz(φ2) remains: φ2 is added to its angle, φ1 to the angle of the revolute joint
+    /// before, whose link it turns. So a prismatic joint needs no rotation at all. Returns false if there is no such
+    /// link, or if a square root is missing.
     fn carry_prismatics(&mut self) -> bool {
-        // what stands behind a link is not one run of rows where it branches
+        // in a branched robot, the links after a link are not consecutive rows, so this is not done
         if self.rows.iter().enumerate().any(|(index, row)| row.parent != index.checked_sub(1)) {
             return false;
         }
@@ -509,9 +513,9 @@ impl JointFrames {
         carriers.peek().is_some() && carriers.all(|first| self.carry_behind(first, end(first)))
     }
 
-    /// Carries the prismatic rows behind the revolute row `first`, up to `end`.
+    /// Does this for the prismatic rows after the revolute row `first`, up to `end`.
     fn carry_behind(&mut self, first: usize, end: usize) -> bool {
-        // from the axes of the revolute link to those of each link behind it
+        // rotation from the axes of each link after `first` to those of the link `first`
         let mut axes = IDENTITY;
         for index in first + 1..end {
             let row = &mut self.rows[index];
@@ -546,7 +550,7 @@ impl JointFrames {
     }
 }
 
-/// The matter of the base: none where the robot file has no `floating_base`.
+/// Returns the inertial parameters of the base: zero if the robot file has no `floating_base`.
 fn matter_of_base(robot: &Robot, embedding: Embedding) -> PseudoInertia {
     let decimal = |x: f64| embedding.decimal(x);
     robot.floating_base.as_ref().map_or_else(PseudoInertia::default, |base| {
@@ -555,11 +559,11 @@ fn matter_of_base(robot: &Robot, embedding: Embedding) -> PseudoInertia {
     })
 }
 
-/// R = Rz(φ1) Rx(α) Rz(φ2). The sine of α may be one of those `known`.
+/// Returns φ1, α and φ2 of R = Rz(φ1) Rx(α) Rz(φ2). The sine of α may be one of those `known`.
 fn decomposed(rotation: &Square, embedding: Embedding, known: &[Number]) -> Option<[ExactAngle; 3]> {
     let [[xx, _, xz], [yx, _, yz], [zx, zy, zz]] = *rotation;
     if xz.is_zero() && yz.is_zero() {
-        // the axes are parallel, so all turning is about one
+        // the z axes are parallel, so the two rotations about z are one
         return Some([
             ExactAngle::NONE,
             ExactAngle { sin: Number::ZERO, cos: zz },
@@ -567,7 +571,7 @@ fn decomposed(rotation: &Square, embedding: Embedding, known: &[Number]) -> Opti
         ]);
     }
     let square = xz * xz + yz * yz;
-    // an angle of the file, or one that no angle of the file is
+    // the sine is that of an angle of the file, if one matches exactly; otherwise a root is computed
     let known = known.iter().find(|known| known.residue * known.residue == square.residue);
     let sine = match known {
         Some(&known) => known,
@@ -581,15 +585,15 @@ fn decomposed(rotation: &Square, embedding: Embedding, known: &[Number]) -> Opti
     ])
 }
 
-/// The turn whose tangent is y/x.
+/// Returns the angle whose tangent is y/x.
 fn direction(y: Number, x: Number, embedding: Embedding) -> Option<ExactAngle> {
     let scale = hypotenuse(x, y, embedding)?.inverse()?;
     Some(ExactAngle { sin: y * scale, cos: x * scale })
 }
 
-/// √(x² + y²)
+/// Returns √(x² + y²).
 fn hypotenuse(x: Number, y: Number, embedding: Embedding) -> Option<Number> {
-    // a rational number, of which the fields might take roots of different signs
+    // if x or y is zero the root is rational; in the finite fields, `root` could return it with different signs
     match (x.is_zero(), y.is_zero()) {
         (true, _) => Some(y.abs()),
         (_, true) => Some(x.abs()),
@@ -597,8 +601,8 @@ fn hypotenuse(x: Number, y: Number, embedding: Embedding) -> Option<Number> {
     }
 }
 
-/// The positive root. That of the square of a short decimal is that decimal; any other is an unknown over the
-/// rationals, of which either root in the field serves.
+/// Returns the positive root. If it is a short decimal, the exact number is that decimal. Any other root is irrational,
+/// and either of its two images in the finite field can be used.
 fn root(square: Number, embedding: Embedding) -> Option<Number> {
     let decimal = embedding.decimal(square.value.sqrt().to_f64());
     if decimal.residue * decimal.residue == square.residue {
@@ -607,7 +611,7 @@ fn root(square: Number, embedding: Embedding) -> Option<Number> {
     square.sqrt()
 }
 
-/// R = Rz(yaw) Ry(pitch) Rx(roll)
+/// Returns R = Rz(yaw) Ry(pitch) Rx(roll) of a placement, and its translation.
 fn pose(transform: &Transform, embedding: Embedding) -> (Square, Triple) {
     let [roll, pitch, yaw] = transform.rpy.map(|angle| embedding.turn(&angle));
     let (zero, one) = (Number::ZERO, Number::ONE);

@@ -1,4 +1,4 @@
-//! How the links move, with the velocities of their points: what derivatives and articulated bodies need.
+//! The motion of the links with the velocities of their points, as derivatives and articulated bodies need it.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
@@ -6,7 +6,7 @@ use crate::ir::{Number, Quantity, Vector};
 use crate::reduced::forward::{acceleration_of_base, motion_of_base};
 use crate::reduced::{Arm, Gradient, Outward, SymbolicTurn};
 
-/// How a link moves, in some axes. `twice` are velocities times a factor, 2 or 1.
+/// The motion of a link, in one frame. The fields `twice_...` are velocities times a factor, 2 or 1.
 #[derive(Clone, Copy)]
 pub(crate) struct Motion<'s> {
     pub(crate) omega: Vector<'s>,
@@ -16,15 +16,15 @@ pub(crate) struct Motion<'s> {
     pub(crate) twice_velocity: Vector<'s>,
 }
 
-/// Motion of a link and of the link before it, where the joint between them is.
+/// The motion of a link and of its parent, both at the joint between them.
 pub(crate) struct JointMotion<'s> {
-    /// Motion of the parent, at this joint's origin, in frame N (prismatic: in the axes of the link).
+    /// Motion of the parent at this joint's origin, in frame N (prismatic: in the axes of the link).
     pub(crate) before: Motion<'s>,
     /// Motion of the link in frame N.
     pub(crate) unturned: Motion<'s>,
-    /// Motion of the link, in its axes.
+    /// Motion of the link in its axes.
     pub(crate) own: Motion<'s>,
-    /// From the axes of the link to N.
+    /// Rotation from the axes of the link to N.
     pub(crate) turn: SymbolicTurn<'s>,
 }
 
@@ -49,7 +49,7 @@ impl<'s> Outward<'s> for Motion<'s> {
     }
 }
 
-/// The motion of a floating base, whose velocity does not matter.
+/// Returns the motion of a floating base; its linear velocity does not change the results and is zero.
 pub(crate) fn of_floating_base<'s>(arm: &Arm<'_, 's>, factor: Number) -> Motion<'s> {
     let base = motion_of_base(arm);
     Motion {
@@ -61,7 +61,7 @@ pub(crate) fn of_floating_base<'s>(arm: &Arm<'_, 's>, factor: Number) -> Motion<
     }
 }
 
-/// How all links move.
+/// Returns the motion of all links; velocities are multiplied by `factor`.
 pub(crate) fn stations<'s>(arm: &Arm<'_, 's>, factor: Number) -> Vec<JointMotion<'s>> {
     let (builder, rows) = (arm.builder, arm.rows());
     let (zeros, zero) = (builder.no_vector(), builder.zero());

@@ -18,7 +18,7 @@ pub(crate) const IDENTITY: Square = [
     [Number::ZERO, Number::ZERO, Number::ONE],
 ];
 
-/// The matter of a link: P = [S h; hᵀ m], with h = ∫ r dm and S = ∫ r rᵀ dm about the origin of its frame.
+/// Moments of the mass of a link: P = [S h; hᵀ m], with h = ∫ r dm and S = ∫ r rᵀ dm about the origin of its frame.
 ///
 /// S = ½ tr(J) 1 - J for the inertia J about the origin. A change of frame is a congruence of P.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -28,7 +28,7 @@ pub(crate) struct PseudoInertia {
     pub(crate) s: Square,
 }
 
-/// An entry of a pseudo-inertia, or the one difference that a choice of gauge may annul.
+/// An element of a pseudo-inertia, or the difference S11 - S22, which regrouping can set to zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) enum Entry {
     Mass,
@@ -45,7 +45,7 @@ impl Entry {
 }
 
 impl PseudoInertia {
-    /// From mass, centre of mass and inertia about it.
+    /// Returns the moments of a body, given its mass, its centre of mass and the inertia about that.
     pub(crate) fn of_body(mass: Number, com: Triple, inertia: Square, half: Number) -> Self {
         let trace = (inertia[0][0] + inertia[1][1] + inertia[2][2]) * half;
         let s = square(|i, j| {
@@ -55,13 +55,13 @@ impl PseudoInertia {
         Self { mass, h: com.map(|c| mass * c), s }
     }
 
-    /// With a first moment about a point beside that of the mass.
+    /// Adds a first moment that is given about a point in addition to that of the mass.
     pub(crate) fn with_first_moment(self, moment: Triple, about: Triple) -> Self {
         let s = square(|i, j| self.s[i][j] + moment[i] * about[j] + about[i] * moment[j]);
         Self { h: [0, 1, 2].map(|i| self.h[i] + moment[i]), s, ..self }
     }
 
-    /// No matter, but an inertia about an axis through the origin: J = inertia · a aᵀ.
+    /// Returns moments without mass that are an inertia about an axis through the origin: J = inertia · a aᵀ.
     pub(crate) fn about(axis: Triple, inertia: Number, half: Number) -> Self {
         let trace = sum(axis.into_iter().map(|x| x * x)) * inertia * half;
         let s = square(|i, j| {
@@ -80,13 +80,13 @@ impl PseudoInertia {
         }
     }
 
-    /// S11, S22, S33, S12, S13, S23
+    /// Returns S11, S22, S33, S12, S13, S23.
     pub(crate) fn second_moments(&self) -> [Number; 6] {
         let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = self.s;
         [xx, yy, zz, xy, xz, yz]
     }
 
-    /// The same matter in axes turned by a rotation: every point r becomes R r.
+    /// Returns the moments after a rotation: every point r becomes R r.
     pub(crate) fn turned(&self, rotation: &Square) -> Self {
         let half = square(|i, j| sum((0..3).map(|k| rotation[i][k] * self.s[k][j])));
         Self {
@@ -96,7 +96,7 @@ impl PseudoInertia {
         }
     }
 
-    /// The same matter about another origin: every point r becomes r + t.
+    /// Returns the moments about another origin: every point r becomes r + t.
     pub(crate) fn moved(&self, t: Triple) -> Self {
         Self {
             mass: self.mass,
@@ -105,7 +105,8 @@ impl PseudoInertia {
         }
     }
 
-    /// A rod of matter along the line through `p` with direction `u`: mass, first and second moment along it.
+    /// Returns the moments of a rod along the line through `p` with direction `u`, given its mass, and its first and
+    /// second moment along the line.
     pub(crate) fn rod([mass, first, second]: Triple, p: Triple, u: Triple) -> Self {
         Self {
             mass,
@@ -131,7 +132,7 @@ pub(crate) fn sum(terms: impl Iterator<Item = Number>) -> Number {
     terms.fold(Number::ZERO, |sum, term| sum + term)
 }
 
-/// R v
+/// Returns R v.
 pub(crate) fn apply(rotation: &Square, v: Triple) -> Triple {
     [0, 1, 2].map(|i| sum((0..3).map(|k| rotation[i][k] * v[k])))
 }
@@ -144,13 +145,13 @@ pub(crate) fn transpose(a: &Square) -> Square {
     square(|i, j| a[j][i])
 }
 
-/// Rx(α)
+/// Returns Rx(α).
 pub(crate) fn about_x(turn: ExactAngle) -> Square {
     let (zero, one, ExactAngle { sin, cos }) = (Number::ZERO, Number::ONE, turn);
     [[one, zero, zero], [zero, cos, -sin], [zero, sin, cos]]
 }
 
-/// Rz(θ)
+/// Returns Rz(θ).
 pub(crate) fn about_z(turn: ExactAngle) -> Square {
     let (zero, one, ExactAngle { sin, cos }) = (Number::ZERO, Number::ONE, turn);
     [[cos, -sin, zero], [sin, cos, zero], [zero, zero, one]]
@@ -185,7 +186,7 @@ mod tests {
 
     #[test]
     fn a_rod_is_matter_on_a_line() {
-        // a point of mass 2 at (1, 2, 3), seen as a rod through the origin along z that has been moved there
+        // a point of mass 2 at (1, 2, 3), as a rod through that point along z
         let [zero, one, two, three] = numbers([0.0, 1.0, 2.0, 3.0]);
         let rod = PseudoInertia::rod([two, zero, zero], [one, two, three], [zero, zero, one]);
         let point = PseudoInertia { mass: two, ..PseudoInertia::default() }.moved([one, two, three]);

@@ -1,11 +1,11 @@
 //! The reduced form: the same torques with far fewer operations.
 //!
-//! Regrouped parameters, one matrix U for all accelerations of a link, turns in two steps, gravity in the acceleration
-//! of the base, and choices per joint that a search makes. Only the torques keep a physical meaning.
+//! It uses regrouped parameters, one matrix U for all accelerations of a link, rotations in two steps, gravity in the
+//! acceleration of the base, and choices for each joint that a search makes. Only the torques keep a physical meaning.
 //!
-//! `joint_frames`, `link_parameters` and `regrouping` prepare the numbers under a plan; `forward` and `backward` write
-//! the recursion with them (RNEA); `crba`, `aba`, `momentum`, `rnea_derivatives` and `hessian` write other recursions.
-//! `algorithm` names the ways in which a function can be written, and `results` writes it in one of them.
+//! `joint_frames`, `link_parameters` and `regrouping` prepare the numbers under a plan. `forward` and `backward` write
+//! the Newton-Euler recursion (RNEA) with them; `crba`, `aba`, `momentum`, `rnea_derivatives` and `hessian` write other
+//! recursions. `algorithm` lists the algorithms of each function, and `results` writes a function by one of them.
 
 pub(crate) mod aba;
 pub(crate) mod algorithm;

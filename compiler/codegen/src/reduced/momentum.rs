@@ -1,4 +1,5 @@
-//! The momentum of the joints and its rate, of regrouped matter (the reduced form, section 14).
+//! The generalized momentum of the joints and its rate, with regrouped inertial parameters (the reduced form, section
+//! 14).
 //!
 //! ```text
 //! p = M(q) q̇ = τ(q, 0, q̇) without gravity                           the recursion, with velocities for accelerations
@@ -6,12 +7,12 @@
 //! rate    = τ + ∂T/∂q - g(q)
 //! ```
 //!
-//! With a floating base, the recursion ends with the momentum, and the angular momentum about the origin of
-//! frame 0.
+//! With a floating base, the recursion also gives the momentum of the robot, and its angular momentum about the origin
+//! of frame 0.
 //!
-//! With q̇ in the place of q̈ the recursion finds ω for ω̇ and the velocity v of the frame's origin for its acceleration;
-//! f_i and n_i are momenta then, of the link and all behind it. Matter that is regrouped has the torques of the arm, so
-//! its mass matrix and its kinetic energy too.
+//! If q̇ is given to the recursion in the place of q̈, it computes ω in the place of ω̇, and the velocity v of the
+//! frame's origin in the place of its acceleration. Then f_i and n_i are the momenta of the link and of all links after
+//! it. Regrouping keeps the torques of the arm, so it also keeps its mass matrix and its kinetic energy.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
@@ -20,7 +21,7 @@ use crate::reduced::backward::{Carried, inward, torques_of_floating_base};
 use crate::reduced::forward::motions;
 use crate::reduced::{Arm, Motion, Moved, Wrench, crba};
 
-/// p and its rate without external torques, base to tip.
+/// Returns p and its rate without external torques, base to tip.
 pub(crate) fn momentum_and_rate<'s>(arm: &Arm<'_, 's>) -> [Vec<Symbol<'s>>; 2] {
     let builder = arm.builder;
     let gravity = crba::gravity_torques(arm);
@@ -41,17 +42,17 @@ pub(crate) fn momentum_and_rate<'s>(arm: &Arm<'_, 's>) -> [Vec<Symbol<'s>>; 2] {
     [carried.iter().map(|carried| carried.torque).collect(), rates]
 }
 
-/// The momentum of a robot with a floating base, and its angular momentum about the origin of frame 0.
+/// Returns the momentum of a robot with a floating base, and its angular momentum about the origin of frame 0.
 pub(crate) fn of_floating_base<'s>(arm: &Arm<'_, 's>) -> Wrench<'s> {
     let joint_frames = arm.joint_frames.without_gravity();
     let weightless = Arm { joint_frames: &joint_frames, ..*arm };
     arm.builder.moving(Moving::RatesForAccelerations, || torques_of_floating_base(&weightless)).0
 }
 
-/// ∂T/∂q_i
+/// Returns ∂T/∂q_i.
 fn of_motion<'s>(arm: &Arm<'_, 's>, index: usize, link: &Moved<'s>, carried: &Carried<'s>) -> Symbol<'s> {
     let row = &arm.rows()[index];
-    // a spin is the same at every angle
+    // a sphere's spin about its axis does not depend on q
     if arm.is_spin(index) {
         return arm.builder.zero();
     }
@@ -59,7 +60,7 @@ fn of_motion<'s>(arm: &Arm<'_, 's>, index: usize, link: &Moved<'s>, carried: &Ca
     let per_length = mu.inverse().unwrap_or(Number::ONE);
     let per_both = (lambda * mu).inverse().unwrap_or(Number::ONE);
     let found = match row.kind {
-        // both frames have the axis in common, and a point of it
+        // the link's frame and N share the axis and a point of it
         Revolute => {
             let about_z = |v: Vector<'s>, of: Vector<'s>| v.0[1] * of.0[0] - v.0[0] * of.0[1];
             let of_frame = |motion: &Motion<'s>, wrench: &Wrench<'s>| {

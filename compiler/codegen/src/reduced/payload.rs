@@ -4,29 +4,32 @@
 //! r = R c + t        F = m (a + U r)        N = moment of (R I Rᵀ + J_n) + r × F
 //! ```
 //!
-//! Where bodies are gathered, it is matter of the last link: m, m r, and S = R (½ tr(I) 1 - I) Rᵀ + m r rᵀ.
+//! In algorithms with composite bodies, the payload is added to the moments of the last link: m, m r, and S = R (½
+//! tr(I) 1 - I) Rᵀ + m r rᵀ.
 //!
-//! R and t lead from the tip to the frame of the last link, J_n is what regrouping has left of that link's own inertia.
+//! R and t are the pose of the tip in the frame of the last link. J_n is the inertia that the last link has after
+//! regrouping.
 
 use crate::formulate::Payload;
 use crate::ir::{Builder, Matrix, Number, Vector};
 use crate::reduced::{Arm, Composite, FirstMoment, Motion, Moved, PseudoInertia, SymbolicTurn, Wrench};
 
-/// A payload, and the axes in which what it asks for is written.
+/// A payload, and the frame in which its wrench is computed.
 #[derive(Clone, Copy)]
 pub(crate) struct Load<'s> {
     pub(crate) payload: Payload<'s>,
-    /// Frame N of the last joint, if that is revolute; otherwise the last link's.
+    /// Whether this is frame N of the last joint, if that is revolute; otherwise it is the frame of the last link.
     pub(crate) unturned: bool,
 }
 
 impl<'s> Arm<'_, 's> {
-    /// The payload of the function that is being written, on the link of the tip.
+    /// Returns the payload of the function on a link; `None` if the link does not carry the tip or the function takes
+    /// no payload.
     pub(crate) fn payload_on(&self, index: usize) -> Option<Payload<'s>> {
         (index == self.joint_frames.tip().on).then(|| Payload::argument(self.builder, self.rows().len())).flatten()
     }
 
-    /// The payload as the recursion takes it.
+    /// Returns the payload for the Newton-Euler recursion, if the function takes one.
     pub(crate) fn load(&self, unturned: bool) -> Option<Load<'s>> {
         let payload = self.payload_on(self.joint_frames.tip().on)?;
         Some(Load { payload, unturned })
@@ -34,7 +37,8 @@ impl<'s> Arm<'_, 's> {
 }
 
 impl<'s> Payload<'s> {
-    /// R, and r: from the origin of the last frame to the centre of mass, in its axes.
+    /// Returns R, and r: the vector from the origin of the last frame to the payload's centre of mass, in the axes of
+    /// that frame.
     fn on_link(&self, arm: &Arm<'_, 's>) -> (Matrix<'s>, Vector<'s>) {
         let builder = arm.builder;
         let tip = arm.joint_frames.tip();
@@ -44,13 +48,14 @@ impl<'s> Payload<'s> {
         (rotation, rotation * self.com + builder.vector([x, y, z - origin_shift]))
     }
 
-    /// Its mass and first moment, in the axes of the last link and about the origin of its frame.
+    /// Returns the payload's mass and first moment, in the axes of the last link and about the origin of its frame.
     pub(crate) fn first_moment(&self, arm: &Arm<'_, 's>) -> FirstMoment<'s> {
         let (_, r) = self.on_link(arm);
         FirstMoment { mass: self.mass, h: r * self.mass }
     }
 
-    /// Its mass, first moment and second moments, in the axes of the last link and about the origin of its frame.
+    /// Returns the payload's mass, first moment and second moments, in the axes of the last link and about the origin
+    /// of its frame.
     pub(crate) fn matter(&self, arm: &Arm<'_, 's>) -> Composite<'s> {
         let (rotation, r) = self.on_link(arm);
         let Matrix([Vector([xx, xy, xz]), Vector([_, yy, yz]), Vector([_, _, zz])]) =
@@ -60,14 +65,14 @@ impl<'s> Payload<'s> {
         let h = r * self.mass;
         let ([x, y, z], [hx, hy, hz]) = (r.0, h.0);
         let s = [trace - xx + hx * x, trace - yy + hy * y, trace - zz + hz * z, hx * y - xy, hx * z - xz, hy * z - yz];
-        // S11 + S22 without the halves of the trace
+        // S11 + S22 is computed without the halves of the trace
         Composite { mass: self.mass, h, s, around: Some(zz + (hx * x + hy * y)) }
     }
 }
 
 impl<'s> Load<'s> {
-    /// The wrench of the payload, and of the second moments of the last link with it: about the origin of the last
-    /// frame.
+    /// Returns the wrench of the payload together with the moment of the last link's second moments, about the origin
+    /// of the last frame.
     pub(crate) fn with_link(
         &self,
         arm: &Arm<'_, 's>,
@@ -93,7 +98,7 @@ impl<'s> Load<'s> {
     }
 }
 
-/// J = tr(S) 1 - S of what is left of the link.
+/// Returns J = tr(S) 1 - S of the moments that the link has after regrouping.
 fn of_link<'s>(builder: &'s Builder, matter: &PseudoInertia) -> Matrix<'s> {
     let s = matter.s;
     let trace = s[0][0] + s[1][1] + s[2][2];
@@ -102,7 +107,7 @@ fn of_link<'s>(builder: &'s Builder, matter: &PseudoInertia) -> Matrix<'s> {
     )
 }
 
-/// Rz J Rzᵀ
+/// Returns Rz J Rzᵀ.
 fn turned<'s>(j: Matrix<'s>, turn: SymbolicTurn<'s>) -> Matrix<'s> {
     let SymbolicTurn { s, c } = turn;
     let [Vector([xx, xy, xz]), Vector([_, yy, yz]), Vector([_, _, zz])] = j.0;
@@ -114,7 +119,7 @@ fn turned<'s>(j: Matrix<'s>, turn: SymbolicTurn<'s>) -> Matrix<'s> {
     Matrix::from_rows([[yy + u, xy, xz], [xy, xx - u, yz], [xz, yz, zz]])
 }
 
-/// J ω̇ + ω × J ω, by the elements of U (the form `diagonal` of section 3.3).
+/// Returns J ω̇ + ω × J ω, computed from the elements of U (the form `diagonal` of section 3.3).
 fn moment<'s>(j: Matrix<'s>, motion: &Motion<'s>) -> Vector<'s> {
     let [Vector([xx, xy, xz]), Vector([_, yy, yz]), Vector([_, _, zz])] = j.0;
     let ([x, y, z], [dx, dy, dz]) = (motion.omega.0, motion.omega_dot.0);

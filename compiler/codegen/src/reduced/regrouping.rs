@@ -1,5 +1,5 @@
-//! Matter on a joint axis belongs equally to the links on both sides: it is shared out so that as many parameters as
-//! possible vanish (the reduced form, section 4).
+//! Regrouping of inertial parameters: mass on a joint axis can be counted to the link before or after the joint without
+//! changing the torques. It is distributed so that as many parameters as possible vanish (the reduced form, section 4).
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
@@ -9,37 +9,37 @@ use crate::reduced::{
     Entry, IDENTITY, JointFrame, JointFrames, OriginShift, Plan, PseudoInertia, RegroupingTarget, Scale, Square, Triple,
 };
 
-/// A pivot of the three equations for the rods of an axis must not be smaller.
+/// Smallest pivot that is accepted in the three equations for the rods of an axis.
 const LEAST_PIVOT: f64 = 1e-5;
-/// Largest rod, in parts of the arm's own mass and moments.
+/// Largest rod, as a multiple of the arm's own mass and moments.
 const LARGEST_ROD: f64 = 1e3;
-/// Longest slide, in lengths of the arm.
+/// Largest shift of a frame's origin along its axis, as a multiple of the arm's length.
 const LONGEST_SLIDE: f64 = 5.0;
-/// Bounds of the scales.
+/// Allowed range of the scales λ and μ.
 const SCALES: std::ops::Range<f64> = 1e-3..1e3;
 
-/// The numbers of an arm under a plan.
+/// The parameters of an arm under a plan.
 #[derive(Clone, Debug)]
 pub(crate) struct Parameters {
     pub(crate) links: Vec<PseudoInertia>,
-    /// The matter of a floating base, with the matter that its joints have given it.
+    /// Moments of a floating base, including those that were moved to it from the links on it.
     pub(crate) base: PseudoInertia,
-    /// How far the origin of each frame has been slid along its axis.
+    /// The shift of each frame's origin along its axis.
     pub(crate) origin_shifts: Vec<Number>,
     /// I_zz of a last link that is a spinning sphere without mass.
     pub(crate) sphere: Option<Number>,
-    /// λ per joint: lengths of the outward pass are multiplied by it. All that one joint of the base carries has one.
+    /// λ for each joint, the factor of lengths in the outward pass. All joints after one joint on the base share its λ.
     pub(crate) lambda: Vec<Number>,
-    /// μ per joint: forces are multiplied by it.
+    /// μ for each joint, the factor of forces in the inward pass.
     pub(crate) mu: Vec<Number>,
 }
 
-/// The choices that a table offers, and the size of the arm.
+/// The choices that a table allows, and the size of the arm.
 #[derive(Clone, Debug)]
 pub(crate) struct Offers {
-    /// Per joint, the rules that give different slides.
+    /// For each joint, the rules that give different shifts of its origin.
     pub(crate) origin_shifts: Vec<Vec<(OriginShift, Number)>>,
-    /// Different lengths of the table.
+    /// The different lengths of the table.
     pub(crate) lengths: Vec<Scale>,
     /// Whether the last link is axisymmetric about its joint.
     pub(crate) gyrostat: bool,
@@ -47,8 +47,8 @@ pub(crate) struct Offers {
     rods: [f64; 3],
 }
 
-/// Whether a row's axis is parallel to that of its parent, both revolute, and the parent is the row before. A group of
-/// parallel axes is a run of rows.
+/// Whether a row's axis is parallel to that of its parent, where both are revolute and the parent is the row before. So
+/// a group of parallel axes is a sequence of consecutive rows.
 pub(crate) fn is_parallel(rows: &[JointFrame], index: usize) -> bool {
     index > 0
         && rows[index].parent == Some(index - 1)
@@ -58,12 +58,12 @@ pub(crate) fn is_parallel(rows: &[JointFrame], index: usize) -> bool {
         && rows[index].alpha.cos == Number::ONE
 }
 
-/// The last row of the group of parallel axes that a row belongs to.
+/// Returns the last row of the group of parallel axes to which a row belongs.
 pub(crate) fn group_end(rows: &[JointFrame], index: usize) -> usize {
     (index + 1..rows.len()).find(|&next| !is_parallel(rows, next)).unwrap_or(rows.len()) - 1
 }
 
-/// The first row of the group of parallel axes that a row belongs to.
+/// Returns the first row of the group of parallel axes to which a row belongs.
 pub(crate) fn group_start(rows: &[JointFrame], index: usize) -> usize {
     (0..=index).rev().find(|&at| !is_parallel(rows, at)).unwrap_or(0)
 }
@@ -105,7 +105,7 @@ impl Offers {
     }
 }
 
-/// The numbers of a table under a plan; `None` when a choice does not apply to it or leaves the bounds.
+/// Returns the parameters of a table under a plan; `None` if a choice does not apply to it or exceeds the limits.
 pub(crate) fn parameters(joint_frames: &JointFrames, offers: &Offers, plan: &Plan) -> Option<Parameters> {
     let origin_shifts =
         plan.joints.iter().enumerate().map(|(index, joint)| offers.origin_shift(index, joint.origin_shift));
@@ -115,7 +115,7 @@ pub(crate) fn parameters(joint_frames: &JointFrames, offers: &Offers, plan: &Pla
     Some(Parameters { links, base, origin_shifts, sphere, lambda, mu })
 }
 
-/// The links with matter moved along the arm, the base with its own, and the sphere that is left of the last link.
+/// Returns the links and the base after regrouping, and the inertia of the sphere that remains of the last link.
 fn regrouped(
     joint_frames: &JointFrames,
     origin_shifts: &[Number],
@@ -131,7 +131,7 @@ fn regrouped(
     let mut sphere = None;
     let mut end = rows.len();
     if plan.gyrostat {
-        // a massless sphere c·1 is left, which the link before absorbs but for its spin
+        // a massless sphere with S = c·1 remains; all of it but the spin is moved to the link before
         end -= 1;
         let parent = joint_frames.carrier(end).filter(|_| offers.gyrostat)?;
         let link = links[end];
@@ -152,14 +152,14 @@ fn regrouped(
         let s = std::mem::take(&mut links.list[index].s);
         links.add(index, PseudoInertia { s, ..PseudoInertia::default() });
     }
-    // the base is the last of those that carry joints
+    // after the links, a floating base is processed like a link that carries joints
     for index in (0..end).rev().chain(joint_frames.base.as_ref().map(|_| rows.len())) {
         let carried = |kind| {
             let is_carried = move |at: &usize| joint_frames.carrier(*at) == Some(index) && rows[*at].kind == kind;
             (0..end).rev().filter(is_carried)
         };
         for sliding in carried(Prismatic) {
-            // it turns as the link before: all second moments belong to that
+            // a prismatic link turns as the link before, so all its second moments are moved to that
             let s = std::mem::take(&mut links.list[sliding].s);
             links.add(index, PseudoInertia { s, ..PseudoInertia::default() }.turned(&rows[sliding].rotation()));
         }
@@ -173,7 +173,7 @@ fn regrouped(
     let mut links = links.list;
     let is_first = |index: usize| joint_frames.carrier(index).is_none() && rows[index].kind == Revolute;
     for (_, first) in links.iter_mut().take(rows.len()).enumerate().filter(|(index, _)| is_first(*index)) {
-        // only the inertia about its axis acts
+        // a first link on a fixed base turns only about its axis, so only the inertia about this axis acts
         let about_axis = first.s[0][0] + first.s[1][1];
         first.s = Square::default();
         first.s[0][0] = about_axis;
@@ -182,15 +182,15 @@ fn regrouped(
     Some((links, base, sphere))
 }
 
-/// The links while matter moves between them.
+/// The links while moments are moved between them.
 struct Links {
     list: Vec<PseudoInertia>,
-    /// For each link, the link that has its second moments, and the rotation to the axes of that.
+    /// For each link, the link to which its second moments are given, and the rotation to the axes of that link.
     holders: Vec<Option<(usize, Square)>>,
 }
 
 impl Links {
-    /// Adds matter to a link: its second moments to the link that has those of this one.
+    /// Adds moments to a link; the second moments go to the link that has those of this link.
     fn add(&mut self, link: usize, matter: PseudoInertia) {
         let PseudoInertia { mass, h, s } = matter;
         let first = PseudoInertia { mass, h, ..PseudoInertia::default() };
@@ -200,21 +200,22 @@ impl Links {
         }
     }
 
-    /// The link that has the second moments of a link, and these in its axes; `None` for a link that does not turn.
+    /// Returns the link that has the second moments of `link`, and `s` turned into its axes; `None` if the link does
+    /// not turn.
     fn second_moments(&self, link: usize, s: Square) -> Option<(usize, PseudoInertia)> {
         let (holder, rotation) = self.holders[link]?;
         let s = PseudoInertia { s, ..PseudoInertia::default() };
         Some((holder, if holder == link { s } else { s.turned(&rotation) }))
     }
 
-    /// The number of a link at an entry, or of the link that has its second moments.
+    /// Returns a moment of a link; a second moment is that of the link that has the second moments.
     fn had(&self, link: usize, entry: Entry) -> Number {
         let holder =
             if entry.is_of_second_moments() { self.holders[link].map(|(holder, _)| holder) } else { Some(link) };
         holder.map_or(Number::ZERO, |holder| self.list[holder].get(entry))
     }
 
-    /// The number that some matter adds to a link at an entry, or to the link that has its second moments.
+    /// Returns the number that `matter` adds to a moment of a link, or of the link that has its second moments.
     fn given(&self, link: usize, entry: Entry, matter: &PseudoInertia) -> Number {
         if !entry.is_of_second_moments() {
             return matter.get(entry);
@@ -223,7 +224,8 @@ impl Links {
     }
 }
 
-/// Moves three rods of matter from each of some revolute links on one parent to that, so that all targets vanish.
+/// Moves three rods of mass from each of some revolute links to their common parent, so that all target parameters
+/// vanish.
 fn share_rods(
     joint_frames: &JointFrames,
     origin_shifts: &[Number],
@@ -235,7 +237,7 @@ fn share_rods(
     const OWN: [Entry; 3] = [Entry::Mass, Entry::H(2), Entry::S(2, 2)];
     let Some(parent) = carried.first().map(|&link| joint_frames.carrier(link)) else { return Some(()) };
     let lines: Vec<(Triple, Triple)> = carried.iter().map(|&link| line(joint_frames, origin_shifts, link)).collect();
-    // the equations: the targets vanish
+    // one equation for each target: it vanishes
     let mut equations = Vec::with_capacity(3 * carried.len());
     for (place, &link) in carried.iter().enumerate() {
         for (k, target) in plan.joints[link].targets.into_iter().enumerate() {
@@ -257,7 +259,8 @@ fn share_rods(
     let rods = solved(equations)?;
     for ((&link, rods), (p, u)) in carried.iter().zip(rods.chunks(3)).zip(lines) {
         let rods = [rods[0], rods[1], rods[2]];
-        // what a link has of its own it can always give, in an arm without mass too
+        // a link's own parameters can always be moved; the limit on rods does not apply, which also works for an arm
+        // without mass
         let is_plain = parent.is_none() || plan.joints[link].targets == [RegroupingTarget::Own; 3];
         if !is_plain && rods.iter().zip(offers.rods).any(|(rod, limit)| rod.to_f64().abs() > limit) {
             return None;
@@ -270,7 +273,8 @@ fn share_rods(
     Some(())
 }
 
-/// Linear equations, each with its constant at the end, by Gauss and Jordan; `None` when a pivot is too small.
+/// Solves linear equations, each with its constant at the end, by Gauss-Jordan elimination; `None` if a pivot is too
+/// small.
 fn solved(mut rows: Vec<Vec<Number>>) -> Option<Vec<Number>> {
     let count = rows.len();
     for column in 0..count {
@@ -295,7 +299,7 @@ fn solved(mut rows: Vec<Vec<Number>>) -> Option<Vec<Number>> {
     rows.iter().map(|row| row.last().copied()).collect()
 }
 
-/// The axis of a row in axes of its parent: the origin of its frame, and its direction.
+/// Returns the axis of a row in axes of its parent: the origin of its frame, and its direction.
 fn line(joint_frames: &JointFrames, origin_shifts: &[Number], index: usize) -> (Triple, Triple) {
     let row = &joint_frames.rows[index];
     let u = row.along_axis(Number::ONE);
@@ -313,7 +317,7 @@ fn has_sphere(joint_frames: &JointFrames) -> bool {
     row.kind == Revolute && row.gyrostats.is_empty() && vanish.iter().all(|x| x.is_zero())
 }
 
-/// The slide by a rule, from the links of the plain gauge.
+/// Returns the shift that a rule gives, computed from the links that are regrouped by default targets.
 fn origin_shift(
     joint_frames: &JointFrames,
     links: &[PseudoInertia],
@@ -363,8 +367,8 @@ fn length_of(rows: &[JointFrame], scale: Scale) -> Option<Number> {
     }
 }
 
-/// λ and μ of each joint, those of the arm or those of the joint on the base that carries it; `None` outside their
-/// bounds, or where another joint has its own.
+/// Returns λ and μ of each joint: those of the arm, or those of the joint on the base that carries it. `None` if they
+/// exceed their bounds, or if a joint that is not on the base has its own.
 fn scales(joint_frames: &JointFrames, links: &[PseudoInertia], plan: &Plan) -> Option<Vec<(Number, Number)>> {
     let rows = &joint_frames.rows;
     let of_arm = scale(rows, links, plan.length_scale, plan.force_scale)?;
@@ -373,7 +377,7 @@ fn scales(joint_frames: &JointFrames, links: &[PseudoInertia], plan: &Plan) -> O
         let is_plain = (joint.length_scale, joint.force_scale) == (Scale::Default, Scale::Default);
         scales.push(match row.parent {
             Some(parent) if is_plain => scales[parent],
-            // what a floating base carries is one branch
+            // all joints on a floating base form one branch, with the scales of the arm
             None if is_plain || joint_frames.base.is_some() => of_arm,
             None => scale(rows, links, joint.length_scale, joint.force_scale)?,
             Some(_) => return None,
@@ -382,12 +386,12 @@ fn scales(joint_frames: &JointFrames, links: &[PseudoInertia], plan: &Plan) -> O
     Some(scales)
 }
 
-/// λ and μ by two choices; `None` outside their bounds.
+/// Returns λ and μ for two choices; `None` if they exceed their bounds.
 fn scale(rows: &[JointFrame], links: &[PseudoInertia], lengths: Scale, forces: Scale) -> Option<(Number, Number)> {
     let first_moment = |link: usize, axis: usize| Some(links.get(link.checked_sub(1)?)?.h.get(axis)?.abs());
     let lambda = match lengths {
         Scale::Default | Scale::One => Number::ONE,
-        // |h| / λ = 1 in the moments
+        // the scale makes |h| / λ = 1 in the moments
         Scale::FirstMoment(link, axis) => first_moment(link, axis)?,
         Scale::Mass(_) => return None,
         scale => length_of(rows, scale)?.abs().inverse()?,
@@ -395,9 +399,9 @@ fn scale(rows: &[JointFrame], links: &[PseudoInertia], lengths: Scale, forces: S
     let mu = match forces {
         Scale::Default => lambda.inverse()?,
         Scale::One => Number::ONE,
-        // μ |h| = 1 in the forces
+        // the scale makes μ |h| = 1 in the forces
         Scale::FirstMoment(link, axis) => first_moment(link, axis)?.inverse()?,
-        // m μ / λ = 1
+        // the scale makes m μ / λ = 1
         Scale::Mass(link) => lambda * links.get(link.checked_sub(1)?)?.mass.abs().inverse()?,
         scale => length_of(rows, scale)?.abs(),
     };

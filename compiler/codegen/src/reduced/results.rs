@@ -15,8 +15,8 @@ use crate::reduced::forward::motions;
 use crate::reduced::rnea_derivatives::{Sensitivity, sensitivity};
 use crate::reduced::{Algorithm, Arm, JointFrames, Wrench, aba, crba, hessian, momentum};
 
-/// Writes the builder's function: its results by name, in the order of its layout; `None` for a function that has no
-/// reduced recursion.
+/// Writes the builder's function and returns its results by name, in the order of its layout; `None` if the function
+/// has no reduced recursion.
 pub(crate) fn write<'s>(arm: Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) -> Option<Outputs<'s>> {
     let function = arm.builder.function;
     if function.is_of_closed_loops() {
@@ -26,7 +26,7 @@ pub(crate) fn write<'s>(arm: Arm<'_, 's>, robot: &Robot, algorithm: Algorithm) -
     if function.is_of_floating_base() { results.of_floating_base() } else { results.of_joints() }
 }
 
-/// The results of a function, as one algorithm computes them.
+/// Computes the results of a function by one algorithm.
 #[derive(Clone, Copy)]
 struct Results<'a, 's> {
     arm: Arm<'a, 's>,
@@ -35,7 +35,7 @@ struct Results<'a, 's> {
 }
 
 impl<'a, 's> Results<'a, 's> {
-    /// The results for a base that does not move or whose motion is an argument.
+    /// Returns the results for a base that does not move or whose motion is an argument.
     fn of_joints(&self) -> Option<Outputs<'s>> {
         let (builder, coordinates) = (self.builder(), self.coordinates());
         Some(match (builder.function.what(), self.algorithm) {
@@ -76,7 +76,8 @@ impl<'a, 's> Results<'a, 's> {
                 formulate::coriolis_matrix(builder, coordinates, &torques, half)
             }
             (What::ForwardDynamicsDerivatives | What::EulerStepDerivatives, _) => {
-                // the same quantities come again, at the accelerations that are solved for
+                // the torques at zero acceleration are not named: they are written again below with the solved
+                // accelerations
                 let bias = builder.unnamed(|| self.tau());
                 let (upper, system) = (self.upper_half(), self.system());
                 let inverse = adjoint::Inverse::of(builder, &system, &upper);
@@ -91,7 +92,7 @@ impl<'a, 's> Results<'a, 's> {
         })
     }
 
-    /// The results for a floating base.
+    /// Returns the results for a floating base.
     fn of_floating_base(&self) -> Option<Outputs<'s>> {
         let (builder, coordinates) = (self.builder(), self.coordinates());
         Some(match builder.function.what() {
@@ -137,12 +138,12 @@ impl<'a, 's> Results<'a, 's> {
         &self.arm.joint_frames.coordinates
     }
 
-    /// The equations of motion as a system of linear equations for the accelerations.
+    /// Returns the structure of the mass matrix: its coordinates, and the links that carry the joints.
     fn system(&self) -> System<'a> {
         System::new(self.builder().function, self.coordinates(), self.arm.rows().iter().map(|row| row.parent))
     }
 
-    /// Results of the same algorithm for other constants of the joints, such as those without gravity.
+    /// Returns the same algorithm for other rows, such as those without gravity.
     fn with<'b>(&self, joint_frames: &'b JointFrames) -> Results<'b, 's>
     where
         'a: 'b,
@@ -150,35 +151,35 @@ impl<'a, 's> Results<'a, 's> {
         Results { arm: Arm { joint_frames, ..self.arm }, ..*self }
     }
 
-    /// Torques of the joints by the recursion.
+    /// Returns the torques of the joints, computed by the Newton-Euler recursion.
     fn recursion(&self) -> Vec<Symbol<'s>> {
         torques(&self.arm, &motions(&self.arm), self.arm.load(self.algorithm == Algorithm::UnturnedPayload))
     }
 
-    /// Torques of the coordinates by the recursion.
+    /// Returns the torques of the coordinates, computed by the Newton-Euler recursion.
     fn tau(&self) -> Vec<Symbol<'s>> {
         self.coordinates().torques(&self.recursion())
     }
 
-    /// Numbers of the joints as results of the coordinates.
+    /// Returns one result for each coordinate, from one number for each joint.
     fn by_joint(&self, quantity: Quantity, of_joints: &[Symbol<'s>]) -> Outputs<'s> {
         formulate::by_joint(self.coordinates(), quantity, self.coordinates().torques(of_joints))
     }
 
-    /// The wrench on a floating base and the torques.
+    /// Returns the wrench on a floating base, then the torques.
     fn forces(&self) -> Outputs<'s> {
         let (Wrench { force, moment }, of_joints) = torques_of_floating_base(&self.arm);
         [formulate::on_base([force, moment]), self.by_joint(Quantity::Torque, &of_joints)].concat()
     }
 
-    /// The upper half of M.
+    /// Returns the upper half of M.
     fn upper_half(&self) -> Vec<Vec<Symbol<'s>>> {
         let of_joints =
             if self.algorithm == Algorithm::UnitColumns { self.unit_columns() } else { crba::mass_matrix(&self.arm).0 };
         self.coordinates().upper_half(self.builder(), of_joints)
     }
 
-    /// The upper half of M of the joints: one recursion per joint that accelerates.
+    /// Returns the upper half of M of the joints, computed by one recursion for each joint with a unit acceleration.
     fn unit_columns(&self) -> Vec<Vec<Symbol<'s>>> {
         let weightless = self.arm.joint_frames.without_gravity();
         let still = self.with(&weightless);
@@ -193,7 +194,7 @@ impl<'a, 's> Results<'a, 's> {
         rows
     }
 
-    /// The upper half of M of a floating base.
+    /// Returns the upper half of M of a robot with a floating base.
     fn floating_half(&self) -> Option<Vec<Vec<Symbol<'s>>>> {
         let (joints, of_base) = crba::mass_matrix(&self.arm);
         let joints = |of_base: OfBase<'s>| {
@@ -203,12 +204,12 @@ impl<'a, 's> Results<'a, 's> {
         of_base.map(joints)
     }
 
-    /// The floating base with everything that it carries, as one body.
+    /// Returns the floating base with all links as one body.
     fn composite_base(&self) -> Option<OfBase<'s>> {
         Some(crba::mass_matrix(&self.arm).1?.gathered(self.coordinates()))
     }
 
-    /// A wrench or momentum about the centre of mass of the whole robot.
+    /// Converts a wrench or momentum to one about the centre of mass of the whole robot.
     fn about_centre(&self, quantity: Quantity, Wrench { force, moment }: Wrench<'s>) -> Option<Outputs<'s>> {
         let OfBase { mass, h, .. } = self.composite_base()?;
         Some(centroid::about_centre(self.builder(), (mass, h), quantity, [force, moment]))
@@ -231,12 +232,13 @@ impl<'a, 's> Results<'a, 's> {
         Some(formulate::forward_dynamics(builder, &self.system(), &upper, &bias))
     }
 
-    /// Derivatives of the torques of the joints.
+    /// Returns the derivatives of the torques of the joints.
     fn sensitivity(&self) -> Sensitivity<'s> {
         sensitivity(&self.arm, Number::integer(2))
     }
 
-    /// A square matrix of the coordinates; `name` takes row and column as numbers of joints, counted from 1.
+    /// Names the elements of a square matrix of the coordinates; `name` takes row and column as numbers of joints,
+    /// counted from 1.
     fn named_square(&self, matrix: &[Vec<Symbol<'s>>], name: impl Fn(usize, usize) -> Name) -> Outputs<'s> {
         let joints = self.coordinates().joints();
         square(joints.len(), |row, column| {

@@ -1,37 +1,38 @@
-//! ∂τ/∂q and ∂τ/∂q̇ by composite bodies, from the recursion and not from its expressions.
+//! ∂τ/∂q and ∂τ/∂q̇ by composite bodies: the recursion is differentiated, not its expressions.
 //!
-//! Joint j turns or slides everything behind it as one body. Seen from there, only the motion of link j-1 changes, so
-//! that each body behind accelerates differently by
+//! Joint j turns or slides all links after it as one body. Seen from these links, a change of q_j or q̇_j changes only
+//! the motion of link j-1. So it changes the acceleration of each of them by
 //!
 //! ```text
 //! ∂/∂q_j:  the field of the twist (κ, b), and 2 Ω × (its velocity)        κ = U' z = ω̇' × z + ω' × Ω,   Ω = ω' × z
 //! ∂/∂q̇_j:  the field of the twist 2 (Ω, v' × z), and 2 z × (its velocity)  b = a' × z - 2 Ω × v'
 //! ```
 //!
-//! with ω', ω̇', a', v' of link j-1 at joint j, in frame N_j. What that takes is linear in P = Σ [S h; hᵀ m], G = Σ ∫ r
-//! vᵀ dm and p = Σ ∫ v dm of the bodies behind:
+//! with ω', ω̇', a', v' of link j-1 at joint j, in frame N_j. The wrench for this change is linear in P = Σ [S h; hᵀ
+//! m], G = Σ ∫ r vᵀ dm and p = Σ ∫ v dm of the links after the joint:
 //!
 //! ```text
 //! twist (e, b)    f = m b + e × h          n = J e + h × b
 //! Ω × velocity    f = Ω × p                n = tr(G) Ω - Gᵀ Ω
 //! ```
 //!
-//! For a torque nearer to the base than j this wrench is moved inward, with what the turn does to the wrench that is
-//! there: z × f, z × n. For one farther out, i > j, the roles are changed: the column of M for joint i is moved inward
-//! and meets the twist of joint j, and so does tr(G) z - G z of joint i.
+//! For the torque of a joint nearer to the base than j this wrench is moved inward, plus the change z × f, z × n that
+//! the rotation makes to the wrench at the joint. For the torque of a joint after j, i > j, the roles are exchanged:
+//! the column of M for joint i is moved inward and multiplied by the twist of joint j, and so is tr(G) z - G z of joint
+//! i.
 //!
-//! A floating base is the last body. Its angular velocity ω, of which the acceleration of its origin and its
-//! angular acceleration do not change, moves all bodies behind it:
+//! A floating base is the last body. Its angular velocity ω changes the motion of all links, while the acceleration of
+//! its origin and its angular acceleration stay the same:
 //!
 //! ```text
 //! ∂/∂ω_k:  the field of the twist (ω × e_k, 0), and 2 e_k × (its velocity)
 //! ```
 //!
-//! The wrenches at tips are those of their links, and turn with them.
+//! A wrench at a tip is fixed to its link, and turns with it.
 //!
-//! After J. Carpentier and N. Mansard (2018) and S. Singh, R. Russell and P. Wensing (2022), who have the same in
-//! spatial vectors; here over regrouped matter and in frames N. All velocities are doubled where they enter, which
-//! saves the factors 2.
+//! After J. Carpentier and N. Mansard (2018) and S. Singh, R. Russell and P. Wensing (2022), who use spatial vectors;
+//! here with regrouped inertial parameters and in frames N. All velocities are doubled at the start, which saves the
+//! factors 2.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
@@ -44,25 +45,26 @@ use crate::reduced::{
     Arm, Body, Carrier, Composite, Gradient, Gyrostat, Inward, JointFrame, PseudoInertia, Turned, Wrench,
 };
 
-/// ∂τ_i/∂q_j and ∂τ_i/∂q̇_j by row i and column j.
+/// ∂τ_i/∂q_j and ∂τ_i/∂q̇_j; i is the row and j the column.
 pub(crate) struct Sensitivity<'s> {
     pub(crate) by_position: Vec<Vec<Symbol<'s>>>,
     pub(crate) by_rate: Vec<Vec<Symbol<'s>>>,
     of_base: Option<OfBase<'s>>,
 }
 
-/// The derivatives with a floating base.
+/// The derivatives that a floating base adds.
 struct OfBase<'s> {
-    /// Derivatives of the wrench on the base by the position and by the rate of each joint.
+    /// Derivatives of the wrench on the base with respect to the position and the rate of each joint.
     by_joints: Vec<[Wrench<'s>; 2]>,
-    /// Derivatives of the torque of each joint by the angular velocity of the base.
+    /// Derivatives of the torque of each joint with respect to the angular velocity of the base.
     torques: Vec<Vector<'s>>,
-    /// Derivatives of the wrench on the base by the components of its angular velocity.
+    /// Derivatives of the wrench on the base with respect to the components of its angular velocity.
     wrench: [Wrench<'s>; 3],
 }
 
 impl<'s> Sensitivity<'s> {
-    /// The columns by q, by q̇ and by the angular velocity of a floating base: force, moment, torques.
+    /// Returns the columns of derivatives with respect to q, q̇ and the angular velocity of a floating base: in each,
+    /// force, moment and torques.
     pub(crate) fn with_base(&self, coordinates: &Coordinates) -> Option<Vec<Vec<Symbol<'s>>>> {
         let of_base = self.of_base.as_ref()?;
         let transposed =
@@ -85,16 +87,16 @@ impl<'s> Sensitivity<'s> {
     }
 }
 
-/// ∫ r vᵀ dm
+/// The moment ∫ r vᵀ dm of positions and velocities.
 pub(crate) type Moment<'s> = [[Symbol<'s>; 3]; 3];
 
-/// The links from a joint on, about its origin.
+/// A link and all links after it, about the origin of its joint.
 #[derive(Clone, Copy)]
 pub(crate) struct Behind<'s> {
     pub(crate) body: Composite<'s>,
-    /// Times the factor of the velocities.
+    /// ∫ r vᵀ dm, times the factor of the velocities.
     pub(crate) moment: Moment<'s>,
-    /// G11 + G22, which a turn about z leaves alone, where it has been turned so.
+    /// G11 + G22, if it is known from before a rotation about z, which does not change it.
     pub(crate) around: Option<Symbol<'s>>,
     pub(crate) momentum: Vector<'s>,
     pub(crate) wrench: Wrench<'s>,
@@ -104,7 +106,7 @@ pub(crate) struct Behind<'s> {
 #[derive(Clone, Copy)]
 pub(crate) struct Column<'s> {
     joint: usize,
-    /// The column of M.
+    /// The column of M: the wrench for a unit acceleration of the joint.
     pub(crate) unit: Wrench<'s>,
     /// tr(G) z - G z
     spin: Vector<'s>,
@@ -130,8 +132,8 @@ impl<'s> Behind<'s> {
         self.around.unwrap_or_else(|| self.moment[0][0] + self.moment[1][1])
     }
 
-    /// With a rotor on the link: of its angular momentum Jm s a the moment ∫ r vᵀ dm has half, as what turns
-    /// it is antisymmetric.
+    /// Adds a rotor on the link. Its angular momentum Jm s a enters the moment ∫ r vᵀ dm by half, as an antisymmetric
+    /// part.
     pub(crate) fn with_rotor(
         self,
         arm: &Arm<'_, 's>,
@@ -150,20 +152,20 @@ impl<'s> Behind<'s> {
         Self { moment, wrench, ..self }
     }
 
-    /// With what the link exerts at its tips, in its axes and about the origin of its frame. A spinning sphere stays in
-    /// frame N.
+    /// Adds the wrench that the link exerts at its tips, given in its axes and about the origin of its frame. For a
+    /// spinning sphere it is turned into frame N.
     fn with_wrench(self, arm: &Arm<'_, 's>, index: usize, wrench: Wrench<'s>) -> Self {
         let turn = arm.is_spin(index).then(|| Turned::AboutZ(arm.turn_of_group(index)));
         let wrench = turn.map_or(wrench, |turn| wrench.turned(turn));
         Self { wrench: self.wrench.plus(wrench), ..self }
     }
 
-    /// (tr(G) - G) v
+    /// Returns (tr(G) - G) v.
     pub(crate) fn about(&self, v: Vector<'s>) -> Vector<'s> {
         about(&self.moment, self.around(), v)
     }
 
-    /// 2 Ω × velocity, for a doubled velocity.
+    /// Returns the wrench for the acceleration 2 Ω × velocity, given the doubled velocities.
     fn deflected(&self, by: Vector<'s>) -> Wrench<'s> {
         let g = &self.moment;
         let [x, y, z] = by.0;
@@ -176,7 +178,7 @@ impl<'s> Behind<'s> {
     }
 }
 
-/// (tr(G) - G) v, with G11 + G22.
+/// Returns (tr(G) - G) v; `around` is G11 + G22.
 pub(crate) fn about<'s>(g: &Moment<'s>, around: Symbol<'s>, v: Vector<'s>) -> Vector<'s> {
     let [x, y, z] = v.0;
     Vector([
@@ -186,7 +188,7 @@ pub(crate) fn about<'s>(g: &Moment<'s>, around: Symbol<'s>, v: Vector<'s>) -> Ve
     ])
 }
 
-/// R G Rᵀ: rows, then columns.
+/// Returns R G Rᵀ; rows are rotated first, then columns.
 pub(crate) fn turned<'s>(moment: &Moment<'s>, turn: Turned<'s>) -> Moment<'s> {
     let rows = moment.map(|row| turn.of(Vector(row)).0);
     let columns = [0, 1, 2].map(|j| turn.of(Vector(rows.map(|row| row[j]))).0);
@@ -235,8 +237,8 @@ impl<'s> Inward<'s> for Column<'s> {
     }
 }
 
-/// The derivatives of the torques. `factor` is that of the velocities: 2 for derivatives; with 1 the derivatives by
-/// rates are the Coriolis matrix, half of them.
+/// Returns the derivatives of the torques. `factor` is that of the velocities: 2 for derivatives. With 1, the
+/// derivatives with respect to the rates are halved, which gives the Coriolis matrix.
 pub(crate) fn sensitivity<'s>(arm: &Arm<'_, 's>, factor: Number) -> Sensitivity<'s> {
     let builder = arm.builder;
     let stations = stations(arm, factor);
@@ -254,7 +256,7 @@ pub(crate) fn sensitivity<'s>(arm: &Arm<'_, 's>, factor: Number) -> Sensitivity<
         let own = row.gyrostats.iter().fold(own, |own, gyrostat| own.with_rotor(arm, gyrostat, &station.own, factor));
         let at_tips = tips.iter().filter(|(on, _)| *on == index).map(|(_, wrench)| *wrench).reduce(Wrench::plus);
         let own = at_tips.into_iter().fold(own, |own, wrench| own.with_wrench(arm, index, wrench));
-        // everything in frame N of this joint
+        // all bodies and columns are turned into frame N of this joint
         let (mut load, turn) = (loads.take(index), (row.kind == Revolute).then_some(station.turn));
         for column in row.gyrostats.iter().flat_map(|gyrostat| columns_of(arm, gyrostat, &station.own)) {
             gather(&mut load.own.columns, column);
@@ -285,7 +287,8 @@ pub(crate) fn sensitivity<'s>(arm: &Arm<'_, 's>, factor: Number) -> Sensitivity<
     found
 }
 
-/// The derivatives with a floating base, in its axes and about its origin, from what its joints carry.
+/// Returns the derivatives that a floating base adds, in its axes and about its origin, given the bodies that its
+/// joints carry.
 fn of_base<'s>(
     arm: &Arm<'_, 's>,
     base: &Carrier,
@@ -298,7 +301,7 @@ fn of_base<'s>(
     let own = own(Composite::of_matter(builder, &matter(arm, None)), &motion);
     let own = base.gyrostats.iter().fold(own, |own, gyrostat| own.with_rotor(arm, gyrostat, &motion, factor));
     let whole = load.with_link(own);
-    // rotors bring a joint's column over another branch than its own
+    // a rotor can be on another branch than its joint, so a joint can have more than one column here
     let mut columns = Vec::new();
     let of_rotors = base.gyrostats.iter().flat_map(|gyrostat| columns_of(arm, gyrostat, &motion));
     load.columns(None).into_iter().chain(of_rotors).for_each(|column| gather(&mut columns, column));
@@ -320,8 +323,8 @@ fn of_base<'s>(
     OfBase { by_joints, torques, wrench }
 }
 
-/// The matter of a link, or of a floating base. A last link that is a spinning sphere is one again: what the
-/// link before was given for it is taken back.
+/// Returns the moments of a link, or of a floating base (`None`). If the plan takes the last link as a spinning sphere,
+/// this undoes the transfer of the sphere's moments to the link before.
 pub(crate) fn matter(arm: &Arm<'_, '_>, link: Option<usize>) -> PseudoInertia {
     let mut matter = link.map_or(arm.parameters.base, |link| arm.parameters.links[link]);
     let Some(c) = arm.parameters.sphere else { return matter };
@@ -336,7 +339,7 @@ pub(crate) fn matter(arm: &Arm<'_, '_>, link: Option<usize>) -> PseudoInertia {
     matter
 }
 
-/// The columns of the joints with which a rotor turns, by what moves its carrier.
+/// Returns the columns of the joints with which a rotor turns: their effect on the rotor's carrier.
 fn columns_of<'s>(arm: &Arm<'_, 's>, gyrostat: &Gyrostat, carrier: &Motion<'s>) -> impl Iterator<Item = Column<'s>> {
     let half = Number::integer(2).inverse().unwrap_or_default();
     let nothing = Wrench::zero(arm.builder);
@@ -347,7 +350,7 @@ fn columns_of<'s>(arm: &Arm<'_, 's>, gyrostat: &Gyrostat, carrier: &Motion<'s>) 
     })
 }
 
-/// Adds a column to that of the same joint, if there is one.
+/// Adds a column to the column of the same joint, if there is one already.
 fn gather<'s>(columns: &mut Vec<Column<'s>>, column: Column<'s>) {
     match columns.iter_mut().find(|other| other.joint == column.joint) {
         Some(known) => {
@@ -363,7 +366,7 @@ fn gather<'s>(columns: &mut Vec<Column<'s>>, column: Column<'s>) {
     }
 }
 
-/// The contribution of a link alone, in its axes.
+/// Returns the quantities of one link alone, in its axes.
 pub(crate) fn own<'s>(body: Composite<'s>, motion: &Motion<'s>) -> Behind<'s> {
     let (h, m, s) = (body.h, body.mass, full(body.s));
     let moment = moment_of(h, &s, motion.twice_omega, motion.twice_velocity);
@@ -380,7 +383,7 @@ pub(crate) fn own<'s>(body: Composite<'s>, motion: &Motion<'s>) -> Behind<'s> {
     }
 }
 
-/// ∫ r vᵀ dm of a body with these moments.
+/// Returns ∫ r vᵀ dm of a body with these moments.
 pub(crate) fn moment_of<'s>(
     h: Vector<'s>,
     s: &[[Symbol<'s>; 3]; 3],
@@ -395,7 +398,7 @@ pub(crate) fn moment_of<'s>(
     })
 }
 
-/// The twists of a joint in its frame N: by its position and by its rate, each angular and linear, and Ω.
+/// The twists of a joint in its frame N, with respect to its position and to its rate, each angular and linear; and Ω.
 pub(crate) struct Twists<'s> {
     pub(crate) angular: Vector<'s>,
     pub(crate) linear: Vector<'s>,
@@ -435,7 +438,7 @@ pub(crate) fn twists<'s>(arm: &Arm<'_, 's>, index: usize, station: &JointMotion<
     }
 }
 
-/// The contribution of a joint to rows and columns of joints nearer to the base.
+/// Returns the column that a joint contributes to rows and columns of joints nearer to the base.
 pub(crate) fn column<'s>(arm: &Arm<'_, 's>, index: usize, twists: &Twists<'s>, behind: &Behind<'s>) -> Column<'s> {
     let builder = arm.builder;
     let row = &arm.rows()[index];
@@ -473,7 +476,7 @@ pub(crate) fn column<'s>(arm: &Arm<'_, 's>, index: usize, twists: &Twists<'s>, b
     }
 }
 
-/// The derivatives of the torque of a column's joint by that of joint `index`.
+/// Adds the derivatives of the torque of a column's joint with respect to joint `index`.
 fn meet<'s>(
     arm: &Arm<'_, 's>,
     index: usize,
@@ -491,7 +494,8 @@ fn meet<'s>(
     add(&mut found.by_rate[column.joint][index], by_rate);
 }
 
-/// The derivatives of the torque of joint `index` by the joint of a column from farther out, or from a rotor.
+/// Adds the derivatives of the torque of joint `index` with respect to the joint of a column, which is a joint after it
+/// or that of a rotor.
 fn meet_back<'s>(arm: &Arm<'_, 's>, index: usize, column: &Column<'s>, found: &mut Sensitivity<'s>) {
     let row = &arm.rows()[index];
     let along = |wrench: &Wrench<'s>| match row.kind {

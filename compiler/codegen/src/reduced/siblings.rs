@@ -1,31 +1,32 @@
-//! Several joints on one link: what their formulas share (the reduced form, section 15).
+//! Several joints on one link: subexpressions that their formulas share (the reduced form, section 15).
 //!
-//! Joints left and right of a plane have lengths that agree but for signs. A length is then a factor of the sum or the
-//! difference of two forces, and the part of U p that both have is added to a once.
+//! Joints to the left and right of a plane of symmetry have lengths that differ only in sign. Then one length can
+//! multiply the sum or the difference of two forces, and the part of U p that both joints share is added to a once.
 
 use crate::ir::{Builder, Number, Vector};
 use crate::reduced::{Arm, Motion, Triple, Wrench};
 
-/// Whether two lengths are one but for the sign, and not zero.
+/// Whether two lengths are equal but for the sign, and not zero.
 fn is_common(a: Number, b: Number) -> bool {
     !a.is_zero() && (a == b || a == -b)
 }
 
-/// How many lengths two joints have in common.
+/// Returns how many components two vectors to joints share, up to the sign.
 fn common(a: Triple, b: Triple) -> usize {
     (0..3).filter(|&axis| is_common(a[axis], b[axis])).count()
 }
 
-/// p along one axis alone.
+/// Returns the component of p along one axis, as a vector.
 fn along(builder: &Builder, p: Triple, axis: usize) -> Vector<'_> {
     let mut alone = Triple::default();
     alone[axis] = p[axis];
     builder.vector(alone)
 }
 
-/// The wrenches of several joints, each about a point p of the link, about the origin of the frame of the link.
+/// Returns the sum of the wrenches of several joints about the origin of the link's frame; each of them is given about
+/// a point p of the link.
 pub(crate) fn gathered<'s>(builder: &'s Builder, mut carried: Vec<(Wrench<'s>, Triple)>) -> Wrench<'s> {
-    // those with common lengths are added up first
+    // joints that share more lengths come first
     let lengths: Vec<Triple> = carried.iter().map(|(_, p)| *p).collect();
     carried.sort_by_key(|(_, p)| std::cmp::Reverse(lengths.iter().map(|other| common(*p, *other)).sum::<usize>()));
     let mut sum = carried.iter().map(|(wrench, _)| *wrench).fold(Wrench::zero(builder), Wrench::plus);
@@ -44,7 +45,8 @@ pub(crate) fn gathered<'s>(builder: &'s Builder, mut carried: Vec<(Wrench<'s>, T
     sum
 }
 
-/// a + U p of a joint; first come the parts that another joint on the link has, too.
+/// Returns a + U p of a joint; the terms that another joint on the link shares come first, so that they are computed
+/// once.
 pub(crate) fn point_acceleration<'s>(arm: &Arm<'_, 's>, index: usize, link: &Motion<'s>, p: Triple) -> Vector<'s> {
     let rows = arm.rows();
     let others = (0..rows.len()).filter(|&other| other != index && rows[other].parent == rows[index].parent);

@@ -26,7 +26,7 @@ impl<'s> Wrench<'s> {
         self.force.is_zero() && self.moment.is_zero()
     }
 
-    /// n + p × f: the same wrench about a point from which the old one is at `p`.
+    /// Returns the wrench about another point, from which the old one is at `p`: its moment is n + p × f.
     pub(crate) fn about(self, p: Vector<'s>) -> Self {
         Self { moment: self.moment + p.cross(self.force), ..self }
     }

@@ -127,7 +127,7 @@ pub(crate) fn light_for_reach(cx: &Context, root: &Node, joints: &[Joint]) {
         let travel = travel.map_or(0.0, |(lower, upper)| lower.abs().max(upper.abs()));
         libm::hypot(joint.row.dh.a, joint.row.dh.d) + travel
     };
-    // such a length is in millimetres, and a lint says so
+    // a longer length is in millimetres, and another lint reports it
     if joints.iter().any(|joint| joint.row.dh.a.abs().max(joint.row.dh.d.abs()) > LONGEST) {
         return;
     }

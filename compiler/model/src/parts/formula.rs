@@ -195,7 +195,7 @@ mod tests {
         assert_eq!(formula.evaluate(&[0.7, 0.2]), -(0.7 * 3.0 - 0.2) / (0.1 + 0.7));
         assert!(formula.evaluate(&[0.7]).is_nan());
         assert_eq!(formula.parts(), 10);
-        // Constants are folded neither across nor in another order than written.
+        // The operations keep the written order: the two constants are not added first.
         let third = (x() + number(0.1)) + number(0.2);
         assert_eq!(third.evaluate(&[1e16]), 1e16 + 0.1 + 0.2);
         assert_eq!((x() * number(3.0) * number(0.1)).evaluate(&[0.7]), 0.7 * 3.0 * 0.1);

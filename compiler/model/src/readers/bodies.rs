@@ -1,4 +1,4 @@
-//! The list `bodies`.
+//! Reads the list `bodies` of a robot file.
 
 use crate::parts::body::overflow;
 use crate::readers::link::inertia_reference;
@@ -12,7 +12,7 @@ use crate::text::document::Node;
 use crate::text::source::quoted;
 use crate::{Bodies, Body, Entry, FixedFrame, Inertia, InertiaReference, Joint, Transform, readers::matter};
 
-/// Bodies of a file.
+/// Largest number of bodies in a file.
 const MAX_BODIES: usize = 256;
 
 /// Reads the list `bodies` of a file whose root is `root`. [`Bodies::add_to`] makes them parts of their links.
@@ -54,7 +54,7 @@ pub(crate) fn bodies(cx: &Context, root: &Node, format: u32, joints: &[Joint]) -
     valid.then_some(Bodies { list, ..Bodies::default() })
 }
 
-/// Why a link cannot carry a body.
+/// Returns an error if a link cannot carry a body: it has a first moment without mass, or varies at run time.
 fn unfit(cx: &Context, joint: &Joint, index: usize, place: &std::ops::Range<usize>) -> Option<Diagnostic> {
     if joint.row.link.has_first_moment() {
         let message =

@@ -7,7 +7,7 @@ use crate::text::document::Node;
 use crate::text::source::quoted;
 use crate::{Contact, ContactKind, Frame};
 
-/// Reads `contacts` of a file whose root is `root` and that has these tips.
+/// Reads the list `contacts` of a file whose root is `root` and whose tips are given.
 pub(crate) fn contacts(
     cx: &Context,
     root: &Node,
@@ -49,7 +49,7 @@ fn contact(cx: &Context, node: &Node, frames: &[Frame], tips: &[&str]) -> Option
     Some(Contact { tip, kind })
 }
 
-/// The place of a tip among all.
+/// Returns the index of a tip in the list of all tips.
 fn tip(cx: &Context, node: &Node, frames: &[Frame], tips: &[&str]) -> Option<usize> {
     let name = text(cx, node)?;
     if let Some(place) = tips.iter().position(|tip| *tip == name) {

@@ -1,4 +1,4 @@
-//! The list `couplings`.
+//! Reads the list `couplings` of a robot file.
 
 use crate::readers::names::{joint_names, named, ratios};
 use crate::readers::tree::items;
@@ -9,8 +9,8 @@ use crate::text::document::Node;
 use crate::text::source::{quoted, six_digits};
 use crate::{Coupling, Drive, Entry, Joint, JointKind, LARGEST_ANGLE, lints::single_value};
 
-/// Limits of followers that limit nothing: positions and speeds of one that follows several joints, efforts, and
-/// positions that the followed joint cannot have.
+/// Reports limits of followers that have no effect: all limits of a follower of several joints, effort limits, and
+/// position limits that the followed joint cannot satisfy.
 pub(crate) fn lint_limits(cx: &Context, root: &Node, joints: &[Joint]) {
     let items = root.list("joints");
     for (item, joint) in items.iter().zip(joints) {
@@ -43,7 +43,7 @@ pub(crate) fn lint_limits(cx: &Context, root: &Node, joints: &[Joint]) {
     }
 }
 
-/// An entry of the list `couplings`.
+/// An entry of the list `couplings`, as the file writes it.
 struct Written {
     joint: usize,
     coupling: Coupling,
@@ -85,7 +85,7 @@ pub(crate) fn couplings(cx: &Context, root: &Node, format: u32, joints: &mut [Jo
             let message = format!("the joint {name} has a `motor`, but it follows other joints, which move it");
             refused(Diagnostic::error(item.head(), message).label("a follower has no motor").help(help));
         }
-        // the offset of a joint that turns is an angle
+        // the offset of a sliding joint is a length that is added to `d`; that of a joint that turns is an angle
         let meets_offset = joints[*joint].row.kind == JointKind::Prismatic && coupling.offset != 0.0;
         if meets_offset && cx.run_time.borrow().entries.iter().any(|(entry, _)| *entry == Entry::D(*joint)) {
             let message = format!("`d` of the joint {name} varies at run time, and its coupling has an `offset`");
@@ -125,11 +125,11 @@ fn coupling(cx: &Context, node: &Node, names: &[String], joints: &[Joint]) -> Op
     });
     let mut follows = follows;
     follows.sort_by_key(|(joint, _)| *joint);
-    // a name of a joint that could not be read has no joint
+    // a joint whose own entry could not be read has no index in `joints`
     (joint < joints.len()).then_some(Written { joint, coupling: Coupling { follows, offset } })
 }
 
-/// Refuses couplings and the list `motors` for a function that takes robots without them.
+/// Refuses couplings and the list `motors` where the caller takes only robots without them.
 pub(crate) fn refuse(cx: &Context, root: &Node, joints: &[Joint], drives: &[Drive]) {
     if joints.iter().any(|joint| joint.coupling.is_some()) {
         let key = if root.has_entries("couplings") { "couplings" } else { "loops" };

@@ -1,4 +1,4 @@
-//! The list `motors`.
+//! Reads the list `motors` of a robot file.
 
 use crate::readers::names::{at_most, carrier, joint_names, ratios, taken};
 use crate::readers::texts::text_of_one_line;
@@ -11,10 +11,11 @@ use crate::text::document::Node;
 use crate::text::source::quoted;
 use crate::{Drive, Joint, Rotor};
 
-/// More motors than joints are a mistake of a program.
+/// Largest number of motors: a robot needs no more motors than joints.
 const MAX_DRIVES: usize = crate::text::document::MAX_JOINTS;
 
-/// Reads the list `motors` of a file whose root is `root`. `passive` are the dependent joints of closed loops.
+/// Reads the list `motors` of a file whose root is `root`. `passive` are the dependent joints of closed loops, with
+/// which no motor may turn.
 pub(crate) fn drives(
     cx: &Context,
     root: &Node,
@@ -37,7 +38,8 @@ pub(crate) fn drives(
         if let Some(first) = drives[..index].iter().position(|other| other.name == drive.name) {
             refused(taken(item, &drive.name, "motor", [index, first], "the names of motors"));
         }
-        // its speed would be no constant sum of those of the coordinates
+        // the speed of such a motor would not be a linear function, with constant factors, of the speeds of the
+        // coordinates
         let is_dependent = |joint: usize| {
             let coupling = joints[joint].coupling.as_ref();
             let mut followed = coupling.into_iter().flat_map(|coupling| &coupling.follows);
@@ -70,12 +72,12 @@ pub(crate) fn drives(
     valid.then_some(drives)
 }
 
-/// The `inertia` of the `motor` of a joint, counted from 0.
+/// Returns the value of `inertia` under `motor` of a joint, which is counted from 0.
 fn inertia_of_joint(root: &Node, joint: usize) -> Option<&Node> {
     root.list("joints").get(joint)?.get("motor")?.get("inertia")
 }
 
-/// The motor with this index, from 0.
+/// Reads the motor with this index, from 0.
 fn drive(cx: &Context, node: &Node, index: usize, names: &[String], joints: &[Joint]) -> Option<Drive> {
     const EXAMPLE: &str = "write the joints with which it turns and its turns per turn of each, such as `turns: \
                            {joint2: 42, joint3: -25}`";
@@ -89,11 +91,11 @@ fn drive(cx: &Context, node: &Node, index: usize, names: &[String], joints: &[Jo
         rotor.map(|(axis, on, inertia)| Rotor { axis, on: on.unwrap_or_else(|| parent(joints, first)), inertia });
     let mut turns = turns;
     turns.sort_by_key(|(joint, _)| *joint);
-    // a name of a joint that could not be read has no joint
+    // a joint whose own entry could not be read has no index in `joints`
     turns.iter().all(|(joint, _)| *joint < joints.len()).then_some(Drive { name, turns, rotor })
 }
 
-/// The axis, the link that carries it if the file says so, and the inertia.
+/// Reads a rotor: the axis, the link that carries it if the file names one, and the inertia.
 #[allow(clippy::option_option, clippy::type_complexity)] // the inner `None` is no key, or the base
 fn rotor(cx: &Context, node: &Node, names: &[String]) -> Option<([f64; 3], Option<Option<usize>>, f64)> {
     read_mapping!(cx, node, "`rotor`", {
@@ -104,7 +106,7 @@ fn rotor(cx: &Context, node: &Node, names: &[String]) -> Option<([f64; 3], Optio
     Some((axis, on, inertia))
 }
 
-/// A direction, as a unit vector.
+/// Reads a direction and returns it as a unit vector.
 fn axis(cx: &Context, node: &Node) -> Option<[f64; 3]> {
     let axis = list(cx, node, "[x, y, z]", |cx, node, _| fixed("the axis")(cx, node))?;
     let largest = axis.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
@@ -115,7 +117,7 @@ fn axis(cx: &Context, node: &Node) -> Option<[f64; 3]> {
     }
     let scaled = axis.map(|x| x / largest);
     let length = scaled.iter().map(|x| x * x).sum::<f64>().sqrt();
-    // a unit vector stays as it is written
+    // a unit vector keeps the digits that the file has
     let is_unit = (largest * length - 1.0).abs() < 4.0 * f64::EPSILON;
     Some(if is_unit { axis } else { scaled.map(|x| x / length) })
 }

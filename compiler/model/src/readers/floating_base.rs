@@ -1,4 +1,4 @@
-//! The key `floating_base`.
+//! Reads the key `floating_base` of a robot file.
 
 use crate::parts::frame::BASE;
 use crate::readers::link::inertia_reference;
@@ -10,7 +10,7 @@ use crate::text::document::{Content, Node};
 use crate::text::source::quoted;
 use crate::{FloatingBase, Inertia, InertiaReference, Link, readers::matter};
 
-/// The name of the floating base, whatever else is wrong with it.
+/// Reads the name of the floating base even if other keys of it are wrong.
 pub(crate) fn name_of_base(root: &Node) -> Option<String> {
     match root.get("floating_base")?.get("name").map(|name| &name.content) {
         Some(Content::Scalar(scalar)) => Some(scalar.text.trim_end().to_owned()),
@@ -61,7 +61,7 @@ fn base_name(cx: &Context, node: &Node, root: &Node) -> Option<String> {
     cx.refuse(Diagnostic::error(node.span.clone(), message).label("choose another name"))
 }
 
-/// Refuses a floating base for a function that takes serial arms on a fixed base only.
+/// Refuses a floating base where the caller takes only serial arms on a fixed base.
 pub(crate) fn refuse(cx: &Context, root: &Node) {
     let Some(node) = root.get("floating_base") else { return };
     let message = "the base of this robot floats, and floating bases are not supported here";

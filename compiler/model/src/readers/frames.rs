@@ -1,4 +1,4 @@
-//! The list `frames`.
+//! Reads the list `frames` of a robot file.
 
 use crate::parts::frame::BASE;
 use crate::readers::names::{at_most, carrier, joint_names, not_identifier, taken};
@@ -9,10 +9,10 @@ use crate::text::document::{Content, Node};
 use crate::text::source::quoted;
 use crate::{Angle, Entry, FixedFrame, Frame, Transform};
 
-/// Frames of a file. A chain of 64 joints with three frames on each link has fewer.
+/// Largest number of frames in a file, more than a chain of 64 joints with three frames on each link has.
 const MAX_FRAMES: usize = 256;
 
-/// The list `frames` of a robot file whose root is `root`.
+/// Reads the list `frames` of a robot file whose root is `root`.
 pub(crate) fn frames(cx: &Context, node: &Node, root: &Node) -> Option<Vec<Frame>> {
     let Content::Sequence(items) = &node.content else {
         let message = format!("found {} where a list of frames is needed", node.described());
@@ -36,7 +36,7 @@ pub(crate) fn frames(cx: &Context, node: &Node, root: &Node) -> Option<Vec<Frame
     unique.then_some(frames)
 }
 
-/// The frame with this index, from 0.
+/// Reads the frame with this index, from 0.
 fn frame(cx: &Context, node: &Node, index: usize, joints: &[String]) -> Option<Frame> {
     read_mapping!(cx, node, "a frame", {
         name: required "name" |cx, node| frame_name(cx, node, joints),

@@ -1,4 +1,4 @@
-//! The list `joints`: names, types and rows.
+//! Reads the list `joints` of a robot file: names, types and rows.
 
 use std::collections::HashMap;
 
@@ -48,7 +48,8 @@ pub(crate) fn joints(cx: &Context, node: &Node) -> Option<Vec<Joint>> {
     unique.then_some(joints)
 }
 
-/// A joint under a number or a name of its own, `- 1: {type: …}`: what is meant, if that is what stands there.
+/// Returns an error with help for a joint that is below a number or a name, such as `- 1: {type: …}`; `None` for any
+/// other item.
 fn wrapped_joint(node: &Node) -> Option<Diagnostic> {
     let Content::Mapping(entries) = &node.content else { return None };
     let [document::Entry { key, key_span, value }] = entries.as_slice() else { return None };
@@ -66,7 +67,7 @@ fn wrapped_joint(node: &Node) -> Option<Diagnostic> {
     Some(Diagnostic::error(key_span.clone(), message).label("not here").help(help))
 }
 
-/// The joint with this index, from 0.
+/// Reads the joint with this index, from 0.
 fn joint(cx: &Context, node: &Node, index: usize) -> Option<Joint> {
     if let Some(mistake) = wrapped_joint(node) {
         return cx.refuse(mistake);
@@ -89,7 +90,7 @@ fn joint(cx: &Context, node: &Node, index: usize) -> Option<Joint> {
     let (motor, [coulomb_width, coulomb_displacement]) =
         motor.map_or((None, [None; 2]), |(motor, changes)| (Some(motor), changes));
     let (dh, before) = dh;
-    // the link that carries it is not known yet
+    // `parent` is read later, so the joint is on the link of the row before for now
     let branch = at.or(before).map(|placement| FixedFrame { on: index.checked_sub(1), placement });
     let row = Row { kind, dh, link };
     Some(Joint {
@@ -98,7 +99,7 @@ fn joint(cx: &Context, node: &Node, index: usize) -> Option<Joint> {
         branch,
         written_inertia,
         limits,
-        // no joint below is known yet
+        // `couplings` are read later, when all joints are known
         coupling: None,
         motor,
         coulomb_width,
@@ -120,7 +121,7 @@ fn joint_kind(cx: &Context, node: &Node) -> Option<JointKind> {
     choice(cx, node, "joint type", &[("revolute", JointKind::Revolute), ("prismatic", JointKind::Prismatic)])
 }
 
-/// The row, and Rz(gamma) Tz(b) before it.
+/// Reads a row of the table, and the placement Rz(gamma) Tz(b) before it if there is one.
 fn dh(cx: &Context, node: &Node, joint: usize) -> Option<(Dh, Option<Transform>)> {
     read_mapping!(cx, node, "`dh`", {
         theta: required "theta" angle,

@@ -1,4 +1,4 @@
-//! The key `limits` of a joint.
+//! Reads the key `limits` of a joint.
 
 use crate::Limits;
 use crate::readers::varying::fixed;

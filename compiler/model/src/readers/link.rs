@@ -1,4 +1,4 @@
-//! The link of a robot file: its mass, centre of mass and inertia, and whether they are those of a body.
+//! Reads the key `link` of a joint: mass, centre of mass and inertia, and whether a physical body can have them.
 
 use crate::readers::varying::{com_of_first_moment, entry, inertia_about_com, inertia_element};
 use crate::text::decode::{Context, choice, list, not_negative, read_mapping};
@@ -6,7 +6,7 @@ use crate::text::diagnostic::Diagnostic;
 use crate::text::document::Node;
 use crate::{Entry, Inertia, InertiaReference, Link, lints, lints::single_value, readers::matter};
 
-/// The link with its inertia about the centre of mass, and the inertia as written.
+/// Reads a link. Returns it with its inertia about the centre of mass, and the inertia as the file writes it.
 pub(crate) fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, InertiaReference))> {
     read_mapping!(cx, node, "a link", {
         mass: or(0.0) "mass" |cx, node| mass(cx, node, joint),
@@ -37,13 +37,13 @@ pub(crate) fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (In
     Some((matter::checked(cx, place, link, (written, about), physical)?, (written, about)))
 }
 
-/// The first moment of a link without mass, about the origin of its frame.
+/// Reads the first moment of a link without mass, about the origin of the link frame.
 fn first_moment_alone(cx: &Context, node: &Node, joint: usize) -> Option<[f64; 3]> {
     list(cx, node, "[x, y, z] (kg m)", |cx, node, axis| entry(Entry::FirstMoment(joint, axis))(cx, node))
 }
 
-/// A link with a first moment and without mass is no body, which its file must know, and has no centre of mass: the
-/// point that its inertia refers to is the origin of its frame.
+/// Checks a link that has a first moment and no mass. It is no physical body, so its file must say `physical: false`;
+/// and it has no centre of mass, so its inertia refers to the origin of the link frame.
 fn no_body(
     cx: &Context,
     moment: &Node,

@@ -1,4 +1,4 @@
-//! The list `loops` of a robot file: parallelograms, which become couplings, and other closed loops.
+//! Reads the list `loops` of a robot file: parallelograms, which become couplings, and other closed loops.
 
 use std::rc::Rc;
 
@@ -16,7 +16,7 @@ use crate::text::document::{Content, Node};
 use crate::text::source::{quoted, six_digits};
 use crate::{ClosedLoop, ClosedLoops, Convention, Cut, Entry, FixedFrame, Joint, lints};
 
-/// A loop of a file.
+/// A loop as the file writes it.
 struct Written {
     name: Option<String>,
     is_parallelogram: bool,
@@ -25,8 +25,8 @@ struct Written {
     dependent: Vec<usize>,
 }
 
-/// Reads the list `loops` of a file whose root is `root`: gives the dependent joints of parallelograms their couplings,
-/// and returns the other loops with the joints that move them.
+/// Reads the list `loops` of a file whose root is `root`. Gives the dependent joints of parallelograms their couplings,
+/// and returns the other loops and the joints that move these.
 pub(crate) fn loops(
     cx: &Context,
     root: &Node,
@@ -111,7 +111,7 @@ fn two_ends(cx: &Context, node: &Node, names: &[String]) -> Option<[FixedFrame; 
     }
 }
 
-/// The joints that a list names, each once.
+/// Reads a list of names of joints, each of which may be there once.
 fn dependent(cx: &Context, node: &Node, names: &[String]) -> Option<Vec<usize>> {
     let items = match &node.content {
         Content::Sequence(items) if !items.is_empty() => items,
@@ -133,7 +133,7 @@ fn dependent(cx: &Context, node: &Node, names: &[String]) -> Option<Vec<usize>> 
     Some(joints)
 }
 
-/// Gives the dependent joints of a parallelogram their couplings.
+/// Computes the couplings of a parallelogram and gives them to its dependent joints.
 fn parallelogram_of(
     cx: &Context,
     item: &Node,
@@ -163,7 +163,7 @@ fn parallelogram_of(
     Some(())
 }
 
-/// Refuses a dependent joint that something else moves.
+/// Refuses a dependent joint that already follows other joints or has a motor.
 fn is_free(cx: &Context, item: &Node, joint: usize, joints: &[Joint]) -> Option<()> {
     let taken = match &joints[joint] {
         Joint { coupling: Some(_), .. } => "follows other joints already",
@@ -182,7 +182,7 @@ fn names_differ(cx: &Context, item: &Node, others: &[ClosedLoop], closed: &Close
     cx.refuse(at(item, "name", message).label("name taken").help("give each loop a `name` of its own"))
 }
 
-/// Refuses a loop whose places no joint moves against each other.
+/// Refuses a loop whose two places cannot move relative to each other.
 fn moves(cx: &Context, item: &Node, closed: &ClosedLoop, joints: &[Joint]) -> Option<()> {
     let [one, other] = closed.between.map(|end| way(joints, end.on));
     if one != other {
@@ -195,7 +195,7 @@ fn moves(cx: &Context, item: &Node, closed: &ClosedLoop, joints: &[Joint]) -> Op
     cx.refuse(at(item, "between", message).label("one link").help(help))
 }
 
-/// Checks the dependent joints of a loop one by one.
+/// Checks each dependent joint of a loop by itself.
 fn dependents(cx: &Context, item: &Node, closed: &ClosedLoop, joints: &[Joint], taken: &[usize]) -> Option<()> {
     let moves = moving(joints, closed);
     for &joint in &closed.dependent {
@@ -218,12 +218,12 @@ fn dependents(cx: &Context, item: &Node, closed: &ClosedLoop, joints: &[Joint], 
     Some(())
 }
 
-/// An error at a key of a loop.
+/// Makes an error at a key of a loop.
 fn at(item: &Node, key: &str, message: String) -> Diagnostic {
     Diagnostic::error(item.get(key).unwrap_or(item).head(), message)
 }
 
-/// Names of joints, in words.
+/// Lists the names of some joints, for a message.
 pub(crate) fn listed(joints: &[Joint], of: &[usize]) -> String {
     const MOST: usize = 12;
     let names: Vec<String> = of.iter().take(MOST).map(|&joint| quoted(&joints[joint].name)).collect();
@@ -231,14 +231,14 @@ pub(crate) fn listed(joints: &[Joint], of: &[usize]) -> String {
     format!("{}{rest}", names.join(", "))
 }
 
-/// Singular values, the largest first. What rounding leaves of a zero is 0.
+/// Writes singular values, the largest first, for a message; a value that is zero up to rounding is written as 0.
 fn values(of: &[f64]) -> String {
     let least = 1e-12 * of.first().copied().unwrap_or(0.0);
     let value = |&value: &f64| short(if value < least { 0.0 } else { value });
     of.iter().map(value).collect::<Vec<_>>().join(", ")
 }
 
-/// A number with three digits.
+/// Writes a number with three significant digits.
 pub(crate) fn short(value: f64) -> String {
     format!("{value:.2e}").parse().map_or_else(|_| six_digits(value), six_digits)
 }

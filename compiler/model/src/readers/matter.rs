@@ -1,5 +1,5 @@
-//! Mass, centre of mass and inertia that no run-time parameter changes, of a body and of a floating base; and whether
-//! those of any link are those of a body.
+//! Reads mass, centre of mass and inertia of a body or of a floating base, which no run-time parameter changes; and
+//! checks for any link whether a physical body can have them.
 
 use std::ops::Range;
 
@@ -28,7 +28,7 @@ pub(crate) fn fixed_tensor(cx: &Context, node: &Node) -> Option<Inertia> {
     tensor(cx, node, |_| fixed("the inertia"))
 }
 
-/// An inertia, each of whose elements `element` reads.
+/// Reads an inertia tensor; `element` returns the reader of each element.
 pub(crate) fn tensor<R: Fn(&Context, &Node) -> Option<f64>>(
     cx: &Context,
     node: &Node,
@@ -45,17 +45,17 @@ pub(crate) fn tensor<R: Fn(&Context, &Node) -> Option<f64>>(
     Some(Inertia { xx, yy, zz, xy, xz, yz })
 }
 
-/// Whether the numbers are those of a body, as the file says.
+/// Reads the key `physical`: whether the numbers must be those of a physical body.
 pub(crate) fn physical(cx: &Context, node: &Node) -> Option<bool> {
     choice(cx, node, "answer", &[("true", true), ("false", false)])
 }
 
-/// The place of an inertia in the file.
+/// Returns the place of an inertia in the file.
 pub(crate) fn place_of_inertia(node: &Node) -> Range<usize> {
     ["inertia", "inertia_about"].iter().find_map(|key| node.get(key)).unwrap_or(node).head()
 }
 
-/// The body of `node` with its inertia about the centre of mass, if its numbers are those of a body.
+/// Moves the inertia to the centre of mass and returns the link, if a physical body can have these numbers.
 pub(crate) fn link(
     cx: &Context,
     node: &Node,
@@ -71,7 +71,7 @@ pub(crate) fn link(
     checked(cx, place_of_inertia(node), link, (written, about), physical)
 }
 
-/// A link, if its numbers are those of a body, or `physical` says that they need not be.
+/// Returns the link if a physical body can have its numbers, or if `physical` is false, so that they need not be.
 pub(crate) fn checked(
     cx: &Context,
     place: Range<usize>,
@@ -85,7 +85,7 @@ pub(crate) fn checked(
     };
     let is_body = link.is_physical(&written);
     if link.has_first_moment() {
-        // that it is no body is said already
+        // the reader of the first moment has reported already that this is no body
         return Some(link);
     }
     if !is_body && !physical {

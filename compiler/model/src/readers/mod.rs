@@ -1,4 +1,4 @@
-//! Readers of a robot file: each reads a key with what is below it, or what several keys share.
+//! Readers of a robot file: most of them read one key and all values below it, the others are shared by several keys.
 
 pub(crate) mod bodies;
 pub(crate) mod contacts;

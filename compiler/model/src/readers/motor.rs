@@ -1,4 +1,4 @@
-//! The key `motor` of a joint.
+//! Reads the key `motor` of a joint.
 
 use crate::readers::varying::{entry, fixed};
 use crate::text::decode::{Context, list, not_negative, read_mapping};
@@ -6,7 +6,7 @@ use crate::text::diagnostic::Diagnostic;
 use crate::text::document::{Content, Node};
 use crate::{Entry, Motor, lints::single_value};
 
-/// The motor, and the speed about which its friction changes its sign, or the displacement over which it does.
+/// Reads the motor; also the speed about which its friction changes sign, and the displacement over which it does.
 pub(crate) fn motor(cx: &Context, node: &Node, joint: usize) -> Option<(Motor, [Option<f64>; 2])> {
     read_mapping!(cx, node, "`motor`", {
         inertia: or(0.0) "inertia" not_negative("rotor inertia", entry(Entry::MotorInertia(joint))),

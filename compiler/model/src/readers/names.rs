@@ -1,4 +1,4 @@
-//! Names of joints and of what they carry, as other keys refer to them.
+//! Names of joints, and of the links that carry things, as other keys of a robot file refer to them.
 
 use std::rc::Rc;
 
@@ -10,7 +10,7 @@ use crate::text::document;
 use crate::text::document::{Content, MAX_JOINTS, Node};
 use crate::text::source::quoted;
 
-/// The names of the joints, whatever else is wrong with them.
+/// Reads the names of the joints even if other keys of the joints are wrong.
 pub(crate) fn joint_names(root: &Node) -> Vec<String> {
     let name = |(index, joint): (usize, &Rc<Node>)| match joint.get("name").map(|name| &name.content) {
         Some(Content::Scalar(scalar)) => scalar.text.trim_end().to_owned(),
@@ -19,7 +19,8 @@ pub(crate) fn joint_names(root: &Node) -> Vec<String> {
     root.list("joints").iter().take(MAX_JOINTS).enumerate().map(name).collect()
 }
 
-/// The joint that moves the link that the value of `key` names, from 0; `None` for frame 0.
+/// Reads the name of a link from the value of `key`, and returns the joint that moves this link, from 0; `None` for
+/// frame 0.
 #[allow(clippy::option_option)] // the outer `None` is a reported mistake
 pub(crate) fn carrier(cx: &Context, node: &Node, joints: &[String], key: &str) -> Option<Option<usize>> {
     let name = text(cx, node)?;
@@ -49,11 +50,11 @@ pub(crate) fn carrier(cx: &Context, node: &Node, joints: &[String], key: &str) -
     cx.refuse(Diagnostic::error(node.span.clone(), message).label("two meanings").help("rename the joint"))
 }
 
-/// Magnitudes of ratios: squares of larger ones, times an inertia, are no numbers of single precision.
+/// Smallest and largest magnitude of a ratio: squares of larger ones, times an inertia, overflow in single precision.
 const LEAST_RATIO: f64 = 1e-6;
 const LARGEST_RATIO: f64 = 1e6;
 
-/// The joints that the value of `key` names, with their ratios, in the order of the file.
+/// Reads joints with their ratios from the value of `key`, in the order of the file.
 pub(crate) fn ratios(
     cx: &Context,
     node: &Node,
@@ -86,7 +87,7 @@ pub(crate) fn ratios(
     all.into_iter().collect()
 }
 
-/// The joint with this name, counted from 0.
+/// Returns the joint with this name, counted from 0, or reports that there is none.
 pub(crate) fn named(
     cx: &Context,
     name: &str,
@@ -104,21 +105,22 @@ pub(crate) fn named(
     cx.refuse(Diagnostic::error(span, message).label("no such joint").maybe_help(help))
 }
 
-/// The names of the joints of a file, in words.
+/// Lists the names of the joints of a file, for a message.
 fn listed(joints: &[String]) -> String {
     let listed = joints.iter().take(12).map(|name| quoted(name)).collect::<Vec<_>>().join(", ");
     let rest = if joints.len() > 12 { ", and the other joints of the file" } else { "" };
     format!("{listed}{rest}")
 }
 
-/// Refuses a list of more than `most` things; `one` and `several` are the words for them.
+/// Refuses a list of more than `most` items; `one` and `several` are the words for an item and for items.
 pub(crate) fn at_most(cx: &Context, items: &[Rc<Node>], most: usize, [one, several]: [&str; 2]) -> Option<()> {
     let Some(excess) = items.get(most) else { return Some(()) };
     let message = format!("{} {several}; at most {most} {several} are allowed", items.len());
     cx.refuse(Diagnostic::error(excess.head(), message).label(format!("{one} {}", most + 1)))
 }
 
-/// The mistake of an item whose name an earlier one has. Both are counted from 0; `names` are the names of all.
+/// Makes the error for an item whose name an earlier item already has. Both are counted from 0; `names` says in words
+/// which names must differ.
 pub(crate) fn taken(item: &Node, name: &str, what: &str, [index, first]: [usize; 2], names: &str) -> Diagnostic {
     let message = format!(
         "the name {} of {what} {} is already the name of {what} {}; {names} must differ",
@@ -130,7 +132,7 @@ pub(crate) fn taken(item: &Node, name: &str, what: &str, [index, first]: [usize;
     Diagnostic::error(span, message).label("name taken")
 }
 
-/// The message against a name that is no identifier; `what` has this name.
+/// Returns a message if a name is no identifier; `what` says in words which thing has the name.
 pub(crate) fn not_identifier(name: &str, what: &str) -> Option<String> {
     let is_identifier = name.starts_with(|c: char| c.is_ascii_alphabetic())
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');

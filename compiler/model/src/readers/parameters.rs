@@ -1,4 +1,4 @@
-//! The mapping `parameters`: numbers with names.
+//! Reads the mapping `parameters` of a robot file: numbers with names.
 
 use std::cell::Cell;
 
@@ -10,7 +10,7 @@ use crate::text::document::{Content, Node};
 use crate::text::expression::{Meaning, is_identifier, is_reserved};
 use crate::text::source::quoted;
 
-/// More than every number of 64 joints with a name of its own.
+/// Largest number of parameters, more than if every number of 64 joints had a name of its own.
 const MAX_PARAMETERS: usize = 2000;
 
 pub(crate) fn parameters(cx: &Context, node: &Node) -> Option<Vec<(String, f64)>> {
@@ -27,7 +27,7 @@ pub(crate) fn parameters(cx: &Context, node: &Node) -> Option<Vec<(String, f64)>
         let value = entry.value.span.clone();
         (entry.key.clone(), Parameter { span, value, meaning: Meaning::Later, used: Cell::new(false) })
     };
-    // A repeated name, an error already, keeps its first value.
+    // a repeated name is an error already; reversed, so that the first entry is the one that remains
     *cx.parameters.borrow_mut() = entries.iter().rev().map(declared).collect();
     let mut values = Vec::new();
     for (index, document::Entry { key, key_span, value }) in entries.iter().enumerate() {
@@ -38,7 +38,7 @@ pub(crate) fn parameters(cx: &Context, node: &Node) -> Option<Vec<(String, f64)>
         }
         values.push(name.zip(quantity.as_ref().map(|quantity| quantity.value)));
         if let Some(own) = cx.run_time_index(key) {
-            // What it is in the file is but its value there, whatever that depends on.
+            // A run-time parameter replaces the formula of its own expression: in the file it only has a value.
             quantity = quantity.map(|quantity| Quantity::parameter(own, quantity.value));
         } else if let Some(formula) = quantity.as_ref().and_then(Quantity::varying) {
             cx.run_time.borrow_mut().parameters.push((index, formula.clone()));

@@ -1,4 +1,4 @@
-//! Placements of a robot file, with the lengths and angles that they are made of.
+//! Reads placements of a robot file, and the lengths and angles in them.
 
 use crate::readers::names::carrier;
 use crate::readers::varying::{entry, fixed};
@@ -15,7 +15,7 @@ pub(crate) fn transform(cx: &Context, node: &Node, place: fn(usize) -> Entry) ->
     Some(Transform { xyz, rpy })
 }
 
-/// The tip frame on its link; which link that is, [`tree`] reads.
+/// Reads the placement of the tip frame on its link; [`tree`] reads which link that is.
 pub(crate) fn tool(cx: &Context, node: &Node) -> Option<Transform> {
     read_mapping!(cx, node, "`tool`", {
         _on: optional "on" |_, _| Some(()),
@@ -25,7 +25,7 @@ pub(crate) fn tool(cx: &Context, node: &Node) -> Option<Transform> {
     Some(Transform { xyz, rpy })
 }
 
-/// A placement that run-time parameters do not change.
+/// Reads a placement that run-time parameters do not change.
 pub(crate) fn fixed_transform(cx: &Context, node: &Node) -> Option<Transform> {
     read_mapping!(cx, node, "a placement", {
         xyz: or([0.0; 3]) "xyz" fixed_position,
@@ -34,7 +34,7 @@ pub(crate) fn fixed_transform(cx: &Context, node: &Node) -> Option<Transform> {
     Some(Transform { xyz, rpy })
 }
 
-/// Where the cut joint of a loop is on one of its links.
+/// Reads one end of a loop: a link, and the place of the cut joint on it.
 pub(crate) fn end_of_loop(cx: &Context, node: &Node, names: &[String]) -> Option<FixedFrame> {
     read_mapping!(cx, node, "an end of a loop", {
         on: required "on" |cx, node| carrier(cx, node, names, "on"),
@@ -44,12 +44,12 @@ pub(crate) fn end_of_loop(cx: &Context, node: &Node, names: &[String]) -> Option
     Some(FixedFrame { on, placement: Transform { xyz, rpy } })
 }
 
-/// A place that run-time parameters do not change.
+/// Reads a point that run-time parameters do not change.
 fn fixed_position(cx: &Context, node: &Node) -> Option<[f64; 3]> {
     list(cx, node, "[x, y, z] (m)", |cx, node, _| fixed_length(cx, node))
 }
 
-/// A length that run-time parameters do not change.
+/// Reads a length that run-time parameters do not change.
 pub(crate) fn fixed_length(cx: &Context, node: &Node) -> Option<f64> {
     let value = fixed("the length")(cx, node)?;
     single_value::length(cx, node, value);
@@ -83,7 +83,7 @@ pub(crate) fn length(place: Entry) -> impl Fn(&Context, &Node) -> Option<f64> {
     }
 }
 
-/// A point or a displacement; `place` says where its components stand in the table.
+/// Reads a point or a displacement; `place` returns the entry of the table for each component.
 pub(crate) fn position(cx: &Context, node: &Node, place: impl Fn(usize) -> Entry) -> Option<[f64; 3]> {
     list(cx, node, "[x, y, z] (m)", |cx, node, axis| length(place(axis))(cx, node))
 }

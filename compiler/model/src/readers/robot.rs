@@ -1,4 +1,4 @@
-//! The format itself: which keys a robot file has, what each means, and which values are allowed.
+//! Reads a whole robot file: which keys it has, what each means, and which values are allowed.
 
 use crate::readers::bodies::bodies;
 use crate::readers::contacts::contacts;
@@ -22,7 +22,7 @@ use crate::{
     lints::single_value, readers::tree,
 };
 
-/// The robots that a caller takes, beside serial arms.
+/// The kinds of robots that a caller takes in addition to serial arms.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Takes {
     pub(crate) trees: bool,
@@ -30,9 +30,9 @@ pub(crate) struct Takes {
     pub(crate) loops: bool,
 }
 
-/// A whole robot file.
+/// Reads the root of a robot file.
 pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
-    // In another format every key may mean something else.
+    // Stops here if the format is another one, because every key may have another meaning there.
     if let Some(version) = node.get("format") {
         format(cx, version)?;
     }
@@ -86,7 +86,7 @@ pub(crate) fn robot(cx: &Context, node: &Node, takes: Takes) -> Option<Robot> {
     with_references(cx, node, (format, takes), robot)
 }
 
-/// The robot with what refers to its joints and frames, after the checks that need all of it.
+/// Adds to the robot all that refers to its joints and frames, and does the checks that need the whole robot.
 fn with_references(cx: &Context, node: &Node, (format, takes): (u32, Takes), robot: Robot) -> Option<Robot> {
     let mut robot = robot;
     let (convention, joints) = (robot.convention, &mut robot.joints);
@@ -108,14 +108,14 @@ fn with_references(cx: &Context, node: &Node, (format, takes): (u32, Takes), rob
         single_value::gravity_upwards(cx, node, robot.gravity, &robot.base);
     }
     single_value::unused_parameters(cx);
-    // Where something else is wrong it may be that which has no effect.
+    // After an error it may be the wrong part that would use a parameter, so these reports would mislead.
     if !cx.has_errors() {
         without_effect(cx);
         lint_joints(cx, node, convention, &robot.joints, &of_loops);
         refuse_untaken(cx, node, takes, &robot);
     }
     robot.bodies.add_to(&mut robot.joints, robot.floating_base.as_mut());
-    // joints of closed loops do not move freely
+    // closed loops restrict the joints, but this check assumes that all joints move freely
     if let Some(base) = robot.floating_base.as_ref().filter(|_| !cx.has_errors() && robot.closed.is_empty()) {
         lints::inertia::floating_inertia(cx, node, &base.link, convention, &robot.joints);
     }
@@ -123,7 +123,7 @@ fn with_references(cx: &Context, node: &Node, (format, takes): (u32, Takes), rob
     Some(robot)
 }
 
-/// The lints that need all joints; closed loops move those of `of_loops`, too.
+/// Reports warnings that need all joints; the joints `of_loops` are also moved by closed loops.
 fn lint_joints(cx: &Context, node: &Node, convention: Convention, joints: &[Joint], of_loops: &[usize]) {
     lints::inertia::inertias(cx, node, convention, joints, of_loops);
     lints::arm::nearly_parallel(cx, joints);
@@ -131,7 +131,7 @@ fn lint_joints(cx: &Context, node: &Node, convention: Convention, joints: &[Join
     lints::arm::missing_friction(cx, node);
     mirror::twins(cx, node, joints);
     couplings::lint_limits(cx, node, joints);
-    // the reach of a tree is not the sum of its rows
+    // the check adds up the lengths of all rows, which is the reach only of a chain
     if joints.iter().all(|joint| joint.branch.is_none()) {
         lints::arm::light_for_reach(cx, node, joints);
     }
@@ -166,7 +166,7 @@ fn robot_name(cx: &Context, node: &Node) -> Option<String> {
     cx.refuse(Diagnostic::error(node.span.clone(), message).help("write a name for people into `title`"))
 }
 
-/// The acceleration of gravity in frame 0.
+/// Reads the acceleration of gravity in frame 0.
 fn gravity(cx: &Context, node: &Node) -> Option<[f64; 3]> {
     let gravity = list(cx, node, "[x, y, z] (m/s²)", |cx, node, axis| entry(Entry::Gravity(axis))(cx, node))?;
     single_value::gravity(cx, node, gravity);

@@ -1,4 +1,4 @@
-//! Texts of a robot file.
+//! Reads texts of a robot file.
 
 use crate::lints::single_value;
 use crate::text::decode::{Context, text};
@@ -6,7 +6,7 @@ use crate::text::diagnostic::Diagnostic;
 use crate::text::document::Node;
 use crate::text::source::{is_control, is_line_break, quoted};
 
-/// A text of one line: it stands in headings and in comments of generated code.
+/// Reads a text that must have one line, because headings and comments of generated code contain it.
 pub(crate) fn text_of_one_line(cx: &Context, node: &Node, what: &str) -> Option<String> {
     let text = printable(cx, node, &format!("the {what}"), is_line_break)?;
     if !text.contains(is_line_break) {
@@ -16,12 +16,12 @@ pub(crate) fn text_of_one_line(cx: &Context, node: &Node, what: &str) -> Option<
     cx.refuse(Diagnostic::error(node.span.clone(), message).label("more than one line"))
 }
 
-/// A text that may have several lines.
+/// Reads a text that may have several lines.
 pub(crate) fn lines(cx: &Context, node: &Node) -> Option<String> {
     printable(cx, node, "the text", |c| is_line_break(c) || c == '\t')
 }
 
-/// A text without control characters but those allowed.
+/// Reads a text and refuses control characters, except those that `is_allowed` accepts.
 fn printable(cx: &Context, node: &Node, what: &str, is_allowed: impl Fn(char) -> bool) -> Option<String> {
     let text = text(cx, node)?;
     let Some(control) = text.chars().find(|&c| is_control(c) && !is_allowed(c)) else {

@@ -1,4 +1,4 @@
-//! The list `tips`.
+//! Reads the list `tips` of a robot file.
 
 use crate::parts::tips::TIP;
 use crate::readers::tree::items;
@@ -8,7 +8,8 @@ use crate::text::document::{Content, Node};
 use crate::text::source::quoted;
 use crate::{Entry, FixedFrame, Frame, Joint, Transform};
 
-/// Reads the list `tips` of a file whose root is `root`: the frames that carry wrenches, each counted from 0.
+/// Reads the list `tips` of a file whose root is `root`. Returns the frames on which wrenches act, as indices into
+/// `frames`.
 pub(crate) fn tips(cx: &Context, root: &Node, format: u32, frames: &[Frame]) -> Option<Vec<usize>> {
     if root.get("tips").is_none()
         && let Some(frame) = frames.iter().position(|frame| frame.name == TIP)
@@ -61,8 +62,8 @@ fn unknown(cx: &Context, place: std::ops::Range<usize>, name: &str, frames: &[Fr
     Diagnostic::error(place, message).label("no such frame").help(help)
 }
 
-/// The tip frame of a file that has `tips` and no `tool`: the first of them. Its link is returned, if it is not the
-/// last one, with its place there.
+/// Returns the tip frame of a file that has `tips` and no `tool`: the first of the tips. It is returned as the joint
+/// that moves its link, or `None` for the last link, and its placement on this link.
 #[allow(clippy::type_complexity)] // a link and a placement
 pub(crate) fn first_tip(
     cx: &Context,

@@ -1,4 +1,5 @@
-//! Trees: which link carries each joint of a robot file, where its row begins there, and which link carries the tip.
+//! Reads the tree of a robot file: which link carries each joint, where its row begins on this link, and which link
+//! carries the tip.
 
 use std::rc::Rc;
 
@@ -10,8 +11,9 @@ use crate::text::document::{Content, Node};
 use crate::text::source::quoted;
 use crate::{Convention, FixedFrame, Joint, Transform};
 
-/// Gives each joint the link that carries it, and returns the joint whose link carries the tip if that is not the last.
-/// `joints` have the placements of their rows already. A branch that is that of a chain goes.
+/// Finds the link that carries each joint, and writes it into `branch`; a joint that continues the row before it, as in
+/// a chain, gets no branch. `joints` have the placements of their rows already. Returns the joint whose link carries
+/// the tip, if it is not the last joint.
 #[allow(clippy::option_option)] // the outer `None` is a reported mistake
 pub(crate) fn branches(
     cx: &Context,
@@ -57,7 +59,7 @@ pub(crate) fn branches(
     tip(cx, root, format, &names, joints)
 }
 
-/// The keys of a joint that a chain of `format: 1` does not have.
+/// Returns the keys of a joint that need `format: 2`, because a chain has none of them.
 fn keys(item: &Node) -> Vec<(&'static str, &Node)> {
     let of_joint = ["parent", "at"].map(|key| (key, item.get(key)));
     let of_row = ["gamma", "b"].map(|key| (key, item.get("dh").and_then(|dh| dh.get(key))));
@@ -71,7 +73,8 @@ pub(crate) fn needs_format_2(key: &str, node: &Node) -> Diagnostic {
         .help("write `format: 2` at the top of the file; everything else keeps its meaning")
 }
 
-/// The items of a list that files of `format: 2` may have, of things that `what` says; none where the file has no list.
+/// Returns the items of a list that only files of `format: 2` may have; none where the file has no such list. `what` is
+/// the word for the items.
 pub(crate) fn items<'n>(
     cx: &Context,
     root: &'n Node,
@@ -91,7 +94,7 @@ pub(crate) fn items<'n>(
     Some(items)
 }
 
-/// The mistake of a `gamma` or a `b` in a row that cannot have one.
+/// Returns an error for a `gamma` or a `b` in a row that cannot have it.
 fn misplaced(key: &str, node: &Node, convention: Convention, has_placement: bool) -> Option<Diagnostic> {
     if convention == Convention::Standard {
         let message = format!("a standard row has no `{key}`, because its frame 0 is the link frame of its parent");
@@ -105,7 +108,7 @@ fn misplaced(key: &str, node: &Node, convention: Convention, has_placement: bool
     })
 }
 
-/// The link that carries the joint with this index: an earlier row, or frame 0.
+/// Reads the link that carries the joint with this index: that of an earlier joint, or frame 0.
 #[allow(clippy::option_option)] // the outer `None` is a reported mistake
 fn carrier_of_row(cx: &Context, node: &Node, names: &[String], index: usize) -> Option<Option<usize>> {
     let on = carrier(cx, node, names, "parent")?;
@@ -125,7 +128,7 @@ fn carrier_of_row(cx: &Context, node: &Node, names: &[String], index: usize) -> 
     cx.refuse(Diagnostic::error(node.span.clone(), message).label("not an earlier joint").help(help))
 }
 
-/// The joint whose link carries the tip, if it is not the last one.
+/// Reads the joint whose link carries the tip, if it is not the last joint.
 #[allow(clippy::option_option)] // the outer `None` is a reported mistake
 fn tip(cx: &Context, root: &Node, format: u32, names: &[String], joints: &[Joint]) -> Option<Option<usize>> {
     let tool = root.get("tool");
@@ -143,7 +146,7 @@ fn tip(cx: &Context, root: &Node, format: u32, names: &[String], joints: &[Joint
     }
     let carries = |joint: usize| (joint..joints.len()).any(|other| parent(joints, other) == Some(joint));
     let ends: Vec<&Joint> = joints.iter().enumerate().filter(|(at, _)| !carries(*at)).map(|(_, joint)| joint).collect();
-    // without `tool`, the first of `tips` is the tip
+    // without `tool` the first frame of `tips` is the tip, so it need not be named
     if ends.len() < 2 || (tool.is_none() && root.has_entries("tips")) {
         return Some(None);
     }
@@ -163,8 +166,8 @@ fn tip(cx: &Context, root: &Node, format: u32, names: &[String], joints: &[Joint
     cx.refuse(Diagnostic::error(place, message).label("`tool` must name a link").help(help))
 }
 
-/// Refuses a tree for a function that takes serial arms only: at the first row that is not on the link of the row
-/// before, or at the tip, or else at the first row that begins at a place of its own.
+/// Refuses a tree where the caller takes serial arms only. The error is at the first row that is not on the link of the
+/// row before it, else at the tip, else at the first row that begins at a placement of its own.
 pub(crate) fn refuse(cx: &Context, root: &Node, joints: &[Joint], tip_on: Option<usize>) {
     let items = root.list("joints");
     let branches = || items.iter().zip(joints).enumerate().filter(|(_, (_, joint))| joint.branch.is_some());

@@ -1,4 +1,4 @@
-//! Reading numbers that may depend on run-time parameters, and refusing those that may not.
+//! Reads numbers that may depend on run-time parameters, and refuses dependence where it is not possible.
 
 use std::ops::Range;
 
@@ -9,15 +9,15 @@ use crate::text::document::{Content, Node};
 use crate::text::source::quoted;
 use crate::{Entry, Inertia, InertiaElement, InertiaReference, parts::inertia};
 
-/// More parameters than a message should list.
+/// Largest number of parameters that a message lists.
 const MOST_LISTED: usize = 12;
 
-/// The remedy for a number that cannot depend on a run-time parameter.
+/// Returns the help for a number that cannot depend on a run-time parameter.
 pub(crate) fn leave_out(name: &str) -> String {
     format!("remove {} from the run-time parameters: rne then uses its value in the file", quoted(name))
 }
 
-/// A number of the table.
+/// Returns a reader of a number of the table, which records the formula if the number varies at run time.
 pub(crate) fn entry(entry: Entry) -> impl Fn(&Context, &Node) -> Option<f64> {
     move |cx, node| {
         let quantity = nonzero(cx, node)?;
@@ -28,7 +28,7 @@ pub(crate) fn entry(entry: Entry) -> impl Fn(&Context, &Node) -> Option<f64> {
     }
 }
 
-/// An element of the inertia of a link, about whatever point.
+/// Returns a reader of an element of a link's inertia about any point, which records the formula if the number varies.
 pub(crate) fn inertia_element(joint: usize, element: InertiaElement) -> impl Fn(&Context, &Node) -> Option<f64> {
     move |cx, node| {
         let quantity = nonzero(cx, node)?;
@@ -39,7 +39,8 @@ pub(crate) fn inertia_element(joint: usize, element: InertiaElement) -> impl Fn(
     }
 }
 
-/// A number that is the same for all values of the run-time parameters; `what` says which, such as "the angle".
+/// Returns a reader of a number that no run-time parameter may change; `what` names it in messages, such as "the
+/// angle".
 pub(crate) fn fixed(what: &'static str) -> impl Fn(&Context, &Node) -> Option<f64> {
     move |cx, node| {
         let quantity = quantity(cx, node)?;
@@ -58,7 +59,7 @@ pub(crate) fn fixed(what: &'static str) -> impl Fn(&Context, &Node) -> Option<f6
     }
 }
 
-/// A number that is not zero in the file if it varies: zeros are folded away.
+/// Reads a number that must not be zero in the file if it varies, because zeros are folded away.
 fn nonzero(cx: &Context, node: &Node) -> Option<Quantity> {
     let quantity = quantity(cx, node)?;
     if quantity.value != 0.0 || quantity.varying().is_none() {
@@ -81,7 +82,7 @@ fn zero(span: Range<usize>, shown: &str, name: &str) -> Diagnostic {
     ))
 }
 
-/// The centre of mass of a joint's link from its first moment, kg m; the mass is read and not zero.
+/// Computes the centre of mass of a joint's link from its first moment, kg m; the mass was read before and is not zero.
 pub(crate) fn com_of_first_moment(cx: &Context, node: &Node, joint: usize, mass: f64) -> Option<[f64; 3]> {
     list(cx, node, "[x, y, z] (kg m)", |cx, node, axis| {
         let moment = quantity(cx, node)?;
@@ -98,8 +99,8 @@ pub(crate) fn com_of_first_moment(cx: &Context, node: &Node, joint: usize, mass:
     })
 }
 
-/// The inertia of a joint's link about its centre of mass, from the inertia as written; mass, centre of mass and the
-/// written elements are read. `place` is where the tensor stands.
+/// Computes the inertia of a joint's link about its centre of mass from the inertia that the file writes; all other
+/// numbers of the link were read before. `place` is the place of the tensor in the file.
 pub(crate) fn inertia_about_com(
     cx: &Context,
     place: Range<usize>,
@@ -146,13 +147,13 @@ pub(crate) fn inertia_about_com(
     zeros.is_empty().then_some(inertia)
 }
 
-/// The names asked for that stand nowhere under `parameters`.
+/// Reports the names of run-time parameters that the file does not define under `parameters`.
 pub(crate) fn unknown_names(cx: &Context, root: &Node) {
     let names = cx.run_time.borrow().names.clone();
     unknown(cx, root, names.iter().map(String::as_str), " for run time");
 }
 
-/// The names that are to have another value and stand nowhere there.
+/// Reports the names of parameters that the caller sets and the file does not define under `parameters`.
 pub(crate) fn unknown_settings(cx: &Context, root: &Node) {
     unknown(cx, root, cx.settings.iter().map(|(name, _)| *name), " to be set");
 }
@@ -162,7 +163,7 @@ fn unknown<'n>(cx: &Context, root: &Node, names: impl Iterator<Item = &'n str>, 
     let known: Vec<&str> = match parameters.map(|node| &node.content) {
         None => Vec::new(),
         Some(Content::Mapping(entries)) => entries.iter().map(|entry| entry.key.as_str()).collect(),
-        // Of another shape: reported where it is read.
+        // The reader of `parameters` reports a value that is no mapping.
         Some(_) => return,
     };
     for name in names {
@@ -185,7 +186,7 @@ fn unknown<'n>(cx: &Context, root: &Node, names: impl Iterator<Item = &'n str>, 
     }
 }
 
-/// The run-time parameters that no number of the table depends on.
+/// Reports the run-time parameters that no number of the table depends on.
 pub(crate) fn without_effect(cx: &Context) {
     let run_time = cx.run_time.borrow();
     let parameters = cx.parameters.borrow();

@@ -1,4 +1,5 @@
-//! Files on disk: which are read at all, how much of them, and what stands beside a robot file is called.
+//! Reads robot files and plans from disk, up to a size limit, and finds the names of the files that belong to a robot
+//! file.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
@@ -6,15 +7,15 @@ use std::path::{Path, PathBuf};
 
 use crate::text::spelling::did_you_mean;
 
-/// The largest robot file or plan that is read. The longest table, 64 joints, needs a fiftieth of it, a plan with a
-/// graph of as many dense joints a half.
+/// Largest size of a robot file or plan that is read, bytes. The longest table, 64 joints, needs a fiftieth of it; a
+/// plan with a dense graph for as many joints needs a half.
 pub const MAX_BYTES: usize = 1 << 20;
 
-/// The ending of the name of a plan file, in place of the extension of its robot file.
+/// The end of the name of a plan file; it replaces the extension of the robot file.
 const PLAN: &str = "plan.yaml";
 
-/// The bytes of a robot file for [`Reader::read`](crate::Reader::read), and no more of them than tell that a file is
-/// too long: a stream without an end, or a huge file, takes neither memory nor time.
+/// Reads the bytes of a robot file for [`Reader::read`](crate::Reader::read), but at most one more than the size limit,
+/// which is enough to see that a file is too long. So an endless stream or a huge file takes neither memory nor time.
 ///
 /// # Errors
 ///
@@ -25,7 +26,7 @@ pub fn read_limited(reader: impl Read) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The bytes of a robot file or a plan, [limited](read_limited).
+/// Reads the bytes of a robot file or a plan, up to the [limit](read_limited).
 ///
 /// # Errors
 ///
@@ -34,15 +35,15 @@ pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
     open_file(path).and_then(read_limited)
 }
 
-/// A file to read. What is no regular file is not opened: a pipe would keep its reader waiting, a device may have no
-/// end.
+/// Opens a file for reading. Anything but a regular file is refused: a pipe would block the reader, and a device may be
+/// endless.
 ///
 /// # Errors
 ///
 /// As [`File::open`]; a file that is not regular.
 pub fn open_file(path: &Path) -> io::Result<File> {
     let metadata = fs::metadata(path)?;
-    // of a folder, reading says best what is wrong
+    // a folder is let through, because the error of reading it says best what is wrong
     if !metadata.is_file() && !metadata.is_dir() {
         let message = "it is a pipe, a socket or a device, not a regular file";
         return Err(io::Error::new(ErrorKind::InvalidInput, message));
@@ -50,19 +51,20 @@ pub fn open_file(path: &Path) -> io::Result<File> {
     File::open(path)
 }
 
-/// The plan of a robot file: `NAME.plan.yaml` beside `NAME.yaml`.
+/// Returns the path of the plan of a robot file: `NAME.plan.yaml` beside `NAME.yaml`.
 pub fn plan_of(robot_file: &Path) -> PathBuf {
     robot_file.with_extension(PLAN)
 }
 
-/// The golden file of a robot file, a [`GoldenFile`](crate::GoldenFile): `NAME.golden.csv` beside `NAME.yaml`.
+/// Returns the path of the golden file of a robot file, a [`GoldenFile`](crate::GoldenFile): `NAME.golden.csv` beside
+/// `NAME.yaml`.
 pub fn golden_of(robot_file: &Path) -> PathBuf {
     robot_file.with_extension("golden.csv")
 }
 
-/// The file that was probably meant to be the [golden file](golden_of) of a robot file that has none: a file beside it
-/// whose name is that but for its case, a slip or two, or the point before `golden`. It is not that of another robot
-/// file there; and a digit tells robots apart.
+/// Finds the file that was probably meant to be the [golden file](golden_of) of a robot file that has none: a file in
+/// the same folder whose name differs only in case, in one or two letters, or in the separator before `golden`. A name
+/// with other digits, or the golden file of another robot file in the folder, is not meant.
 pub fn misnamed_golden_of(robot_file: &Path) -> Option<PathBuf> {
     let stem = robot_file.file_stem()?.to_str()?;
     let golden = golden_of(robot_file);
@@ -86,7 +88,8 @@ pub fn misnamed_golden_of(robot_file: &Path) -> Option<PathBuf> {
     names.iter().find(is_meant).map(|name| robot_file.with_file_name(name))
 }
 
-/// The robot file of a plan: `NAME.yaml` beside `NAME.plan.yaml`; `None` when a path is not that of a plan.
+/// Returns the path of the robot file of a plan: `NAME.yaml` beside `NAME.plan.yaml`; `None` when the path is not that
+/// of a plan.
 pub fn robot_of(plan: &Path) -> Option<PathBuf> {
     let name = plan.file_name()?.to_str()?.strip_suffix(PLAN)?.strip_suffix('.')?;
     Some(plan.with_file_name(format!("{name}.yaml")))
@@ -124,7 +127,7 @@ mod tests {
             "wrist_2_golden.csv",
             "wrist_2-golden.csv",
         ] {
-            // where case is no difference the file is there
+            // on file systems that ignore case the golden file exists under this name
             let found = meant(&["wrist_2.yaml", name]);
             assert!(
                 found.as_deref() == Some(name) || (found.is_none() && cfg!(any(windows, target_os = "macos"))),
@@ -148,7 +151,7 @@ mod tests {
     #[test]
     #[cfg(unix)]
     fn a_device_is_not_opened() {
-        // a pipe without a writer would keep this test waiting for ever
+        // if a pipe without a writer were opened, this test would wait for ever
         let folder = tempfile::tempdir().unwrap();
         let pipe = folder.path().join("pipe");
         let made = std::process::Command::new("mkfifo").arg(&pipe).status().is_ok_and(|status| status.success());

@@ -1,7 +1,7 @@
-//! Reading shapes out of the tree: mappings with known keys, numbers, lists, words and texts.
+//! Reads values out of the tree of a document: mappings with known keys, numbers, lists, words and texts.
 //!
-//! A reader gets a node and returns its value, or reports what is wrong and returns `None`. So one file's mistakes are
-//! all found, and a `None` always means that the file is refused.
+//! A reader gets a node and returns its value, or reports the mistake and returns `None`. So all mistakes of a file are
+//! found, and a `None` always means that the file is refused.
 
 mod context;
 mod mapping;
@@ -14,8 +14,8 @@ use crate::text::document::{Content, Node, Scalar, Style};
 use crate::text::expression::Expression;
 use crate::text::source::inside;
 
-/// A finite number: a decimal or an expression. What may vary at run time, and where, is for
-/// [`varying`](crate::readers::varying).
+/// Reads a finite number: a decimal or an expression. [`varying`](crate::readers::varying) checks which numbers may
+/// depend on run-time parameters.
 pub(crate) fn quantity(cx: &Context, node: &Node) -> Option<Quantity> {
     let Content::Scalar(scalar) = &node.content else { return cx.wrong_shape(node, "a number") };
     cx.problems.count(scalar.text.len().min(Expression::MAX_BYTES));
@@ -25,7 +25,8 @@ pub(crate) fn quantity(cx: &Context, node: &Node) -> Option<Quantity> {
         Ok(quantity) => Some(quantity.without_negative_zero()),
         Err(None) => None,
         Err(Some(mistake)) => {
-            // The place inside the scalar, unless escapes or line breaks stand between the text and its value.
+            // Points at the place of the mistake inside the scalar, unless escapes or line breaks make the value differ
+            // from the text.
             let raw = cx.raw(node);
             let lead = usize::from(scalar.style == Style::Quoted);
             let literal = raw.get(lead..).is_some_and(|raw| raw.starts_with(scalar.text.trim_end()));
@@ -36,7 +37,7 @@ pub(crate) fn quantity(cx: &Context, node: &Node) -> Option<Quantity> {
     }
 }
 
-/// A list of exactly `N` numbers; `read` gets the index of each.
+/// Reads a list of exactly `N` numbers; `read` gets the index of each.
 pub(crate) fn list<const N: usize>(
     cx: &Context,
     node: &Node,
@@ -56,7 +57,7 @@ pub(crate) fn list<const N: usize>(
     values.into_iter().collect::<Option<Vec<f64>>>()?.try_into().ok()
 }
 
-/// The help for `[0 -0.02 0]`, `0 0 0.3` or `[0, 0, 0,3]`, where as many numbers as are needed can be seen.
+/// Returns a help for `[0 -0.02 0]`, `0 0 0.3` or `[0, 0, 0,3]`, if `N` numbers can be recognised in the text.
 fn separated<const N: usize>(raw: &str) -> Option<String> {
     let inner = raw.trim_start_matches('[').trim_end_matches(']').trim();
     if inner.len() > 100 {
@@ -72,7 +73,7 @@ fn separated<const N: usize>(raw: &str) -> Option<String> {
         .then(|| format!("the decimal sign is a point: `[{}]`", points.join(", ")))
 }
 
-/// A number that is not negative.
+/// Reads a number that must not be negative.
 pub(crate) fn not_negative(
     what: &'static str,
     read: impl Fn(&Context, &Node) -> Option<f64>,
@@ -87,7 +88,7 @@ pub(crate) fn not_negative(
     }
 }
 
-/// A text that is not empty; numbers and `true` are texts too where a text is asked for, `~` and `null` are not.
+/// Reads a text that must not be empty. Numbers and `true` are accepted as texts, `~` and `null` are not.
 pub(crate) fn text(cx: &Context, node: &Node) -> Option<String> {
     match &node.content {
         Content::Scalar(Scalar { text, style: Style::Plain }) if matches!(text.as_str(), "~" | "null") => {}
@@ -100,7 +101,7 @@ pub(crate) fn text(cx: &Context, node: &Node) -> Option<String> {
     cx.wrong_shape(node, "a text")
 }
 
-/// One of a few words.
+/// Reads one of a few words.
 pub(crate) fn choice<T: Copy>(cx: &Context, node: &Node, what: &str, words: &[(&'static str, T)]) -> Option<T> {
     let allowed = words.iter().map(|(word, _)| format!("`{word}`")).collect::<Vec<_>>().join(" or ");
     let Content::Scalar(scalar) = &node.content else { return cx.wrong_shape(node, &allowed) };
@@ -118,7 +119,7 @@ pub(crate) fn choice<T: Copy>(cx: &Context, node: &Node, what: &str, words: &[(&
     )
 }
 
-/// The help for a kind of joint of URDF that does not exist here.
+/// Returns the help for a kind of joint of URDF that robot files do not have.
 fn no_joint(what: &str, word: &str) -> Option<String> {
     (what == "joint type").then_some(())?;
     Some(match word.to_lowercase().as_str() {
@@ -135,7 +136,7 @@ fn no_joint(what: &str, word: &str) -> Option<String> {
     })
 }
 
-/// The format's word for a word of others.
+/// Returns the word of robot files for a word of other formats.
 fn synonym(word: &str) -> Option<&'static str> {
     Some(match word.to_lowercase().as_str() {
         "r" | "rotary" | "rotational" | "rotation" | "hinge" | "continuous" | "turning" => "revolute",

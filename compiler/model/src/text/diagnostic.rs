@@ -1,53 +1,53 @@
-//! Mistakes and warnings as data: where, what is wrong, what to do.
+//! Errors and warnings as data: where they are, what is wrong, and what to do.
 
 use std::cell::{Cell, RefCell};
 use std::ops::Range;
 
 use crate::text::render;
 
-/// A choice of the caller that helps against a mistake: each door says it in its own words, as an option of the command
-/// line or a keyword of Python.
+/// A choice of the caller that solves a problem. Each interface names it in its own words, as an option of the command
+/// line or a keyword argument in Python.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Remedy {
-    /// A URDF was read as a robot file and must be imported.
+    /// The text is a URDF, not a robot file, and must be imported.
     ImportUrdf {
-        /// The file, where messages name one.
+        /// The file, where the message names one.
         file: Option<String>,
     },
-    /// The tree of a URDF has several ends: the link at the tip must be named.
+    /// The tree of a URDF has several ends, so the caller must name the link at the tip.
     NameTip,
-    /// A joint of a URDF can be locked by its name.
+    /// The caller can lock a joint of a URDF, by its name.
     LockJoint {
         /// The name of the joint.
         joint: String,
     },
-    /// The movable joints off the chain can be locked, each by its name or all at zero.
+    /// The caller can lock the movable joints outside the chain, each by its name or all at zero.
     LockOthers,
-    /// A body whose inertia no physical body has can be kept.
+    /// The caller can keep a body whose inertia no physical body has.
     KeepUnphysical,
-    /// The whole robot of a URDF can be imported, and not one arm.
+    /// The caller can import the whole robot of a URDF instead of one arm.
     Whole,
-    /// So it can, or a joint can be locked by its name.
+    /// The caller can import the whole robot, or lock this joint by its name.
     WholeOrLock {
         /// The name of the joint.
         joint: String,
     },
-    /// The base of a whole robot can float.
+    /// The caller can let the base of a whole robot float.
     Float,
-    /// The inertia of rotors can belong to the arm.
+    /// The caller can include the inertia of motor rotors.
     Rotors,
 }
 
-/// How grave a [`Diagnostic`] is.
+/// How serious a [`Diagnostic`] is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Severity {
-    /// The file is refused.
+    /// An error: the file is refused.
     Error,
-    /// The file is valid, yet this is probably not what was meant (a lint).
+    /// A warning: the file is valid, but its author probably meant something else.
     Warning,
-    /// The file is valid, and published data have the same, yet it is worth a look: nothing that a build should repeat
-    /// each time.
+    /// A note: the file is valid, and published data have such values, but it is worth a look. A build does not repeat
+    /// it each time.
     Note,
 }
 
@@ -61,31 +61,31 @@ pub struct Diagnostic {
     pub message: String,
     /// A few words beside the caret.
     pub label: Option<String>,
-    /// The bytes of the text the caret underlines.
+    /// The bytes of the text that the caret underlines.
     pub span: Range<usize>,
-    /// Line of the first byte of `span`, from 1.
+    /// The line of the first byte of `span`, counted from 1.
     pub line: usize,
-    /// Column of the first byte of `span`, from 1, in characters.
+    /// The column of the first byte of `span`, counted from 1 in characters.
     pub column: usize,
-    /// The remedy in words that hold for every door.
+    /// What to do, in words that fit every interface.
     pub help: Option<String>,
-    /// The choice of the caller that helps: [`Report::worded`] adds it to the help.
+    /// A choice of the caller that solves the problem; [`Report::worded`] adds it to the help.
     pub remedy: Option<Box<Remedy>>,
 }
 
 impl Diagnostic {
-    /// An error. Line and column follow from the span when the report is finished.
+    /// Makes an error. Line and column are computed from the span when the report is finished.
     pub(crate) fn error(span: Range<usize>, message: impl Into<String>) -> Self {
         let (label, help, remedy) = (None, None, None);
         Self { severity: Severity::Error, message: message.into(), label, span, line: 1, column: 1, help, remedy }
     }
 
-    /// A warning.
+    /// Makes a warning.
     pub(crate) fn lint(span: Range<usize>, message: impl Into<String>) -> Self {
         Self { severity: Severity::Warning, ..Self::error(span, message) }
     }
 
-    /// A note.
+    /// Makes a note.
     pub(crate) fn note(span: Range<usize>, message: impl Into<String>) -> Self {
         Self { severity: Severity::Note, ..Self::error(span, message) }
     }
@@ -106,7 +106,7 @@ impl Diagnostic {
         Self { help: help.or(self.help), ..self }
     }
 
-    /// Adds a sentence to the help, before a list.
+    /// Adds a sentence to the help; if the help ends with a list, before this list.
     fn add_help(&mut self, words: &str) {
         self.help = Some(match self.help.take() {
             Some(question) if question.ends_with('?') => format!("{question} {words}"),
@@ -122,9 +122,9 @@ impl Diagnostic {
 /// `Display` gives the full rendering without colour; [`Report::render`] and [`Report::short`] give the others.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Report {
-    /// The file, as the messages name it.
+    /// The name of the file in messages.
     pub name: String,
-    /// Its text, without a byte order mark; spans count in it.
+    /// The text of the file, without a byte order mark; spans count in it.
     pub text: String,
     /// The problems that were found.
     pub diagnostics: Vec<Diagnostic>,
@@ -132,7 +132,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// A report of one error in a text, at the bytes of `span`: for what other readers than that of robot files find.
+    /// Makes a report of one error in a text, at the bytes of `span`, for readers of other files than robot files.
     pub fn of_error(
         name: &str,
         text: &str,
@@ -154,7 +154,7 @@ impl Report {
         self
     }
 
-    /// Adds each remedy to its help, in the words of a door.
+    /// Moves each remedy into the help of its diagnostic, in the words of an interface that `words` returns.
     #[must_use]
     pub fn worded(mut self, words: impl Fn(&Remedy) -> Option<String>) -> Self {
         for found in &mut self.diagnostics {
@@ -173,46 +173,46 @@ impl Report {
         self
     }
 
-    /// Whether nothing was found.
+    /// Returns whether nothing was found.
     pub fn is_empty(&self) -> bool {
         self.diagnostics.is_empty()
     }
 
-    /// Whether there is an error, not only warnings.
+    /// Returns whether the report has an error, not only warnings and notes.
     pub fn has_errors(&self) -> bool {
         self.errors().next().is_some()
     }
 
-    /// The errors, in the order of the text.
+    /// Returns the errors, in the order of the text.
     pub fn errors(&self) -> impl Iterator<Item = &Diagnostic> {
         self.diagnostics.iter().filter(|found| found.severity == Severity::Error)
     }
 
-    /// The warnings, in the order of the text.
+    /// Returns the warnings, in the order of the text.
     pub fn warnings(&self) -> impl Iterator<Item = &Diagnostic> {
         self.diagnostics.iter().filter(|found| found.severity == Severity::Warning)
     }
 
-    /// The notes, in the order of the text.
+    /// Returns the notes, in the order of the text.
     pub fn notes(&self) -> impl Iterator<Item = &Diagnostic> {
         self.diagnostics.iter().filter(|found| found.severity == Severity::Note)
     }
 
-    /// How much work the reading was, the same on every machine: events of the parser, characters of expressions, parts
-    /// of formulas, comparisons of keys and letters, characters passed on the way to the lines. It grows with the
-    /// length of the text at most in proportion, and by a bounded amount beyond that.
+    /// Returns how many steps reading took, the same on every machine: events of the parser, characters of expressions,
+    /// parts of formulas, comparisons of keys and letters, characters counted for line numbers. It grows at most in
+    /// proportion to the length of the text, plus a bounded amount.
     pub fn work(&self) -> usize {
         self.work
     }
 
-    /// Every diagnostic with its source line, caret and help; `color` adds ANSI escapes for a terminal.
+    /// Renders every diagnostic with its source line, caret and help; `color` adds ANSI escapes for a terminal.
     ///
-    /// After twenty diagnostics the rest is only counted.
+    /// After twenty diagnostics the others are only counted.
     pub fn render(&self, color: bool) -> String {
         render::full(self, color)
     }
 
-    /// One line per diagnostic, as editors and log searches like it: `robots/x.yaml:3:12: error: …`.
+    /// Renders one line per diagnostic, which editors and log searches understand: `robots/x.yaml:3:12: error: …`.
     pub fn short(&self) -> String {
         render::short(self)
     }
@@ -228,7 +228,7 @@ impl std::error::Error for Report {}
 
 /// Collects the diagnostics of one file while it is read.
 ///
-/// It has to be turned into a [`Report`]: dropping it with its contents unread is a mistake of this crate and panics.
+/// It must be turned into a [`Report`]: dropping it before that is a mistake in this crate and panics.
 pub(crate) struct Problems {
     found: RefCell<Option<Vec<Diagnostic>>>,
     work: Cell<usize>,
@@ -245,28 +245,28 @@ impl Problems {
         }
     }
 
-    /// Gives what has a label another one, and another help.
+    /// Replaces the label and the help of every diagnostic that has this label.
     pub(crate) fn relabel(&self, label: &str, new: &str, help: &str) {
         for found in self.found.borrow_mut().iter_mut().flatten().filter(|one| one.label.as_deref() == Some(label)) {
             (found.label, found.help) = (Some(new.to_owned()), Some(help.to_owned()));
         }
     }
 
-    /// Enters `steps` of work, for [`Report::work`].
+    /// Adds `steps` of work to the count of [`Report::work`].
     pub(crate) fn count(&self, steps: usize) {
         self.work.set(self.work.get().saturating_add(steps));
     }
 
-    /// Whether an error is found already.
+    /// Returns whether an error has been found already.
     pub(crate) fn has_errors(&self) -> bool {
         self.found.borrow().iter().flatten().any(|found| found.severity == Severity::Error)
     }
 
-    /// Everything found, located in `text`, errors first.
+    /// Makes the report: all diagnostics with their places in `text`, errors first.
     pub(crate) fn finish(self, name: &str, text: &str) -> Report {
         let mut diagnostics = self.found.borrow_mut().take().unwrap_or_default();
         diagnostics.sort_by(|a, b| (a.span.start, a.severity, &a.message).cmp(&(b.span.start, b.severity, &b.message)));
-        // A value behind an alias is read once per alias.
+        // A value with an anchor is read again for each alias, which repeats its diagnostics.
         diagnostics.dedup();
         self.count(locate(&mut diagnostics, text));
         diagnostics.sort_by_key(|found| found.severity);
@@ -281,13 +281,13 @@ impl Drop for Problems {
     }
 }
 
-/// Fills in lines and columns in one pass over the text; `diagnostics` are sorted by position. Returns how many
-/// characters it looked at.
+/// Fills in lines and columns in one pass over the text; `diagnostics` must be sorted by position. Returns the number
+/// of characters read.
 fn locate(diagnostics: &mut [Diagnostic], text: &str) -> usize {
     let (mut line, mut column, mut at) = (1, 1, 0);
     let mut passed = 0;
     for found in diagnostics {
-        // Never beyond the text, nor inside a character.
+        // Keeps the span inside the text, and at the boundaries of characters.
         let start = char_boundary(text, found.span.start);
         let end = char_boundary(text, found.span.end).max(start);
         for character in text.get(at..start).unwrap_or_default().chars() {
@@ -300,7 +300,7 @@ fn locate(diagnostics: &mut [Diagnostic], text: &str) -> usize {
     passed
 }
 
-/// The start of the character that `index` points at or into; the end of the text for anything beyond.
+/// Returns the start of the character that `index` points at or into; the end of the text for anything beyond it.
 fn char_boundary(text: &str, index: usize) -> usize {
     let mut index = index.min(text.len());
     while !text.is_char_boundary(index) {

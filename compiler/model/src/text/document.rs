@@ -1,5 +1,5 @@
-//! A YAML document as a tree in which every key and every value knows its place in the text: what reads robot files,
-//! and plan files in the compiler.
+//! A YAML document as a tree in which every key and every value has its place in the text; readers of robot files use
+//! it, and those of plan files in the compiler.
 
 mod builder;
 
@@ -11,33 +11,34 @@ use builder::Builder;
 use crate::text::diagnostic::{Diagnostic, Problems, Report};
 use crate::text::source::{self, quoted};
 
-/// The words of messages for a kind of file.
+/// The words that messages use for a kind of file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kind {
-    /// Its kind: `a robot file`.
+    /// The kind of file in words, such as `a robot file`.
     pub name: &'static str,
-    /// The number that it begins with: `format: 1`.
+    /// The number of the first key: 1 for `format: 1`.
     pub format: u32,
 }
 
 pub(crate) const ROBOT_FILE: Kind = Kind { name: "a robot file", format: 1 };
 
-/// More joints than any serial arm has; bounds the work of everything that follows.
+/// Largest number of joints, more than any serial arm has; it bounds the work of all later steps.
 pub(crate) const MAX_JOINTS: usize = 64;
 
-/// Nodes of a document with every alias written out. The longest table, 64 joints, has a fifth of it.
+/// Largest number of nodes in a document, with every alias written out. The longest table, 64 joints, has a fifth of
+/// it.
 const MAX_NODES: usize = 50_000;
 
-/// A value and the bytes of the text it stands in.
+/// A value, and the place of its bytes in the text.
 #[derive(Debug)]
 pub struct Node {
-    /// The bytes.
+    /// The bytes of the text that the value has.
     pub span: Range<usize>,
-    /// The value.
+    /// The value itself.
     pub content: Content,
-    /// Number of nodes in this subtree, aliases written out.
+    /// The number of nodes in this subtree, with aliases written out.
     size: usize,
-    /// Number of levels of this subtree.
+    /// The number of levels in this subtree.
     height: usize,
 }
 
@@ -49,27 +50,27 @@ pub enum Content {
     // Shared, not copied: an alias costs no memory, however large its target.
     /// A list.
     Sequence(Vec<Rc<Node>>),
-    /// Keys with their values, in the order of the text.
+    /// A mapping: keys with their values, in the order of the text.
     Mapping(Vec<Entry>),
 }
 
-/// A scalar, unresolved: whether `1` is a number or a text is for the reader of the key to say.
+/// A scalar, not yet interpreted: the reader of its key decides whether `1` is a number or a text.
 #[derive(Debug)]
 pub struct Scalar {
-    /// Without quotation marks, its escapes resolved.
+    /// The text without quotation marks, with escapes resolved.
     pub text: String,
-    /// How it is written.
+    /// How the text is written.
     pub style: Style,
 }
 
 /// How a scalar is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
-    /// As it is.
+    /// Without quotation marks.
     Plain,
-    /// In quotation marks, single or double.
+    /// In single or double quotation marks.
     Quoted,
-    /// In lines of its own, behind `|` or `>`.
+    /// In lines of its own after `|` or `>`.
     Block,
 }
 
@@ -78,7 +79,7 @@ pub enum Style {
 pub struct Entry {
     /// The key.
     pub key: String,
-    /// The bytes it stands in.
+    /// The bytes of the text that the key has.
     pub key_span: Range<usize>,
     /// The value.
     pub value: Rc<Node>,
@@ -99,14 +100,14 @@ impl Node {
         Self { span, content, size, height }
     }
 
-    /// The value of a key, if this is a mapping that has it.
+    /// Returns the value of a key, if this node is a mapping that has it.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<&Node> {
         let Content::Mapping(entries) = &self.content else { return None };
         entries.iter().find(|entry| entry.key == key).map(|entry| &*entry.value)
     }
 
-    /// The items of the list under a key of this mapping; none where it has no such list.
+    /// Returns the items of the list under a key of this mapping; none where it has no such list.
     pub(crate) fn list(&self, key: &str) -> &[Rc<Self>] {
         match self.get(key).map(|node| &node.content) {
             Some(Content::Sequence(items)) => items,
@@ -114,12 +115,13 @@ impl Node {
         }
     }
 
-    /// Whether this is a mapping that has the key, with another value than an empty list.
+    /// Returns whether this node is a mapping that has the key with a value other than an empty list.
     pub(crate) fn has_entries(&self, key: &str) -> bool {
         self.get(key).is_some_and(|node| !matches!(&node.content, Content::Sequence(items) if items.is_empty()))
     }
 
-    /// Where to point when the whole value is meant: a block mapping or list is represented by its first line.
+    /// Returns where a message points if it means the whole value: the first line of a block mapping or block list,
+    /// else all of it.
     #[must_use]
     pub fn head(&self) -> Range<usize> {
         match &self.content {
@@ -131,7 +133,7 @@ impl Node {
         }
     }
 
-    /// The value in a few words, for "found …".
+    /// Describes the value in a few words, for messages such as "found …".
     #[must_use]
     pub fn described(&self) -> String {
         match &self.content {
@@ -143,13 +145,13 @@ impl Node {
     }
 }
 
-/// Reads the one document of a text in another format than that of robot files: `name` is the file's in messages,
-/// `kind` is what it is.
+/// Reads the only document of a text whose format is not that of robot files: `name` is the name of the file in
+/// messages, `kind` its kind.
 ///
 /// # Errors
 ///
-/// Reports text that is no YAML, or of a kind that no file of ours has: tags, several documents, a key that stands
-/// twice, control characters, more than 1 MiB.
+/// Reports text that is no YAML, or that has what files of rne never have: tags, several documents, a repeated key,
+/// control characters, more than 1 MiB.
 pub fn read(name: &str, text: &str, kind: Kind) -> Result<Rc<Node>, Report> {
     let problems = Problems::new();
     if !source::size_is_fine(text.len(), kind.name, &problems) {
@@ -165,15 +167,15 @@ pub fn read(name: &str, text: &str, kind: Kind) -> Result<Rc<Node>, Report> {
     }
 }
 
-/// Reads the one document of a text. Mistakes of YAML itself end the reading; a repeated key does not.
+/// Parses the only document of a text. A syntax error of YAML ends the reading; a repeated key does not.
 pub(crate) fn parse(text: &str, kind: Kind, problems: &Problems) -> Option<Rc<Node>> {
     let root = has_few_commas(text, kind).and_then(|()| Builder::new(text, kind, problems).run());
     root.map_err(|mistake| problems.push(mistake)).ok()
 }
 
-/// The parser gives nothing of `{…` before it knows whether that is the key of a mapping, and keeps it in memory until
-/// then: a hundred times the text. So the commas of what could be one value are counted first; a dash that begins a
-/// line begins a value.
+/// Refuses a value with too many commas, before parsing. For `{…` the parser reports nothing until it knows whether
+/// this is the key of a mapping, and its memory grows to a hundred times the text. A dash at the beginning of a line
+/// begins a new value.
 fn has_few_commas(text: &str, kind: Kind) -> Result<(), Diagnostic> {
     let (mut commas, mut start) = (0, 0);
     for line in text.split_inclusive('\n') {
@@ -196,7 +198,7 @@ fn has_few_commas(text: &str, kind: Kind) -> Result<(), Diagnostic> {
 mod tests {
     use super::*;
 
-    /// The text of the value behind each key of a path.
+    /// Returns the text of the value at a path of keys.
     fn value<'t>(text: &'t str, path: &[&str]) -> &'t str {
         let root = read("x.yaml", text, ROBOT_FILE).unwrap_or_else(|report| panic!("{report}"));
         let node = path.iter().fold(&*root, |node, key| node.get(key).unwrap_or_else(|| panic!("no {key}")));
@@ -214,7 +216,7 @@ mod tests {
             assert_eq!(value(&text, &["b", "c", "e"]), "[f: 1]", "{text}");
             assert_eq!(value(&text, &["g"]), "{}", "{text}");
         }
-        // a pair without brackets of its own
+        // the pair in the list has no brackets of its own
         let root = read("x.yaml", "[f: 1]  # one", ROBOT_FILE).expect("YAML");
         let Content::Sequence(items) = &root.content else { panic!("{root:?}") };
         assert!(items[0].span.start == 1 && items[0].span.end <= 5, "{items:?}");

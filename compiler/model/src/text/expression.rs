@@ -20,11 +20,11 @@ use parser::Parser;
 use crate::parts::quantity::Quantity;
 use crate::text::diagnostic::Diagnostic;
 
-/// The forms of a number, for the help of every mistake.
+/// The forms that a number may have, for the help of every error.
 pub(crate) const ALLOWED: &str = "a number is a finite decimal such as 0.4 or 2.0e-4, or an expression over numbers, \
      `pi`, parameters, `+ - * / ^`, parentheses and sqrt sin cos tan deg mm g";
 
-/// An expression; every part knows its bytes within the scalar.
+/// An expression in which every part has its byte range within the scalar.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Expression {
     kind: Kind,
@@ -61,7 +61,7 @@ impl Operator {
         })
     }
 
-    /// How tightly it binds its left and its right operand; a sign binds with [`SIGN`].
+    /// Returns how tightly the operator binds its left and its right operand; a sign binds with [`SIGN`].
     fn binding(self) -> (u8, u8) {
         match self {
             Self::Add | Self::Subtract => (1, 2),
@@ -80,13 +80,13 @@ enum Function {
     Cos,
     Tan,
     Deg,
-    /// Millimetres and grams: a thousandth.
+    /// Multiplies by 1/1000, for millimetres and grams.
     Milli,
 }
 
 impl Function {
     const NAMES: [&str; 7] = ["sqrt", "sin", "cos", "tan", "deg", "mm", "g"];
-    /// The functions whose names may also name a parameter, because robot files use `g` for gravity.
+    /// The functions whose names may also be names of parameters, because robot files use `g` for gravity.
     const NOT_RESERVED: [&str; 2] = ["mm", "g"];
 
     fn of(name: &str) -> Option<Self> {
@@ -102,12 +102,12 @@ impl Function {
     }
 }
 
-/// Whether a name means something already and cannot name a parameter.
+/// Returns whether a name has a meaning in expressions already, so that it cannot name a parameter.
 pub(crate) fn is_reserved(name: &str) -> bool {
     name == "pi" || Function::of(name).is_some() && !Function::NOT_RESERVED.contains(&name)
 }
 
-/// Whether a text is a name: a letter or underscore, then letters, digits and underscores.
+/// Returns whether a text is a name: a letter or underscore, then letters, digits and underscores.
 pub(crate) fn is_identifier(name: &str) -> bool {
     name.starts_with(is_name_start) && name.chars().all(is_name_part)
 }
@@ -141,33 +141,34 @@ impl Mistake {
 /// The meaning of a name.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Meaning {
-    /// A parameter with a value.
+    /// A parameter with its value.
     Value(Quantity),
-    /// A parameter that stands below the place of use.
+    /// A parameter that the file defines after this use.
     Later,
-    /// A parameter whose own expression is wrong, which is already reported.
+    /// A parameter whose own expression is wrong, which has been reported already.
     Faulty,
-    /// Nothing.
+    /// No parameter has this name.
     Unknown,
 }
 
-/// The names an expression may use.
+/// The names that an expression may use.
 pub(crate) trait Names {
-    /// Looks a name up, which counts as a use of it.
+    /// Looks up a name, which counts as a use of it.
     fn meaning(&self, name: &str) -> Meaning;
-    /// A known name that resembles `name`.
+    /// Returns a known name that resembles `name`.
     fn similar(&self, name: &str) -> Option<String>;
-    /// The name of a run-time parameter.
+    /// Returns the name of a run-time parameter.
     fn run_time_parameter(&self, index: usize) -> String;
-    /// Enters steps of work.
+    /// Counts steps of work.
     fn count(&self, steps: usize);
 }
 
 impl Expression {
-    /// Bytes of one expression, ten for each of its parts; bounds the work of reading it again for every alias.
+    /// Largest number of bytes of one expression, ten for each part; it bounds the work of reading it again for every
+    /// alias.
     pub(crate) const MAX_BYTES: usize = 10_000;
 
-    /// Reads a whole text as one expression.
+    /// Parses a whole text as one expression.
     pub(crate) fn parse(text: &str) -> Result<Self, Mistake> {
         if text.trim().is_empty() {
             return Err(Mistake::new(0..text.len(), "a number is missing"));
@@ -214,7 +215,7 @@ pub fn number(text: &str) -> Result<f64, Diagnostic> {
             let Mistake { range, message, help } =
                 mistake.unwrap_or_else(|| Mistake::new(0..text.len(), "this is not a number"));
             let column = text.get(..range.start).map_or(0, |before| before.chars().count()) + 1;
-            // What a file allows is more than what is allowed here.
+            // This help is dropped, because it lists the forms of a robot file, and parameters are not allowed here.
             let help = (!help.contains(ALLOWED)).then_some(help);
             Err(Diagnostic { column, ..Diagnostic::error(range, message).maybe_help(help) })
         }

@@ -1,4 +1,4 @@
-//! Identifiers of joints in generated code, made from the names of a robot file.
+//! Makes identifiers of joints in generated code from the names of a robot file.
 
 use crate::Joint;
 use crate::text::diagnostic::{Diagnostic, Problems, Report};
@@ -28,14 +28,14 @@ use crate::text::source::quoted;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct JointIdentifier {
-    /// A variant of an enum of Rust, such as `LfHaa`.
+    /// A variant name for a Rust enum, such as `LfHaa`.
     pub camel_case: String,
-    /// The end of a constant of C, such as `LF_HAA` in `HYQ_JOINT_LF_HAA`; it may begin with a digit.
+    /// The end of the name of a C constant, such as `LF_HAA` in `HYQ_JOINT_LF_HAA`; it may begin with a digit.
     pub upper_case: String,
 }
 
 impl JointIdentifier {
-    /// The identifiers of the joint with this name and this index, from 0.
+    /// Makes the identifiers of the joint with this name and this index, from 0.
     #[must_use]
     pub fn of(name: &str, index: usize) -> Self {
         let number = (index + 1).to_string();
@@ -59,7 +59,7 @@ fn camel_case(words: &[&str]) -> String {
         let is_acronym = !word.contains(|c: char| c.is_ascii_lowercase());
         text += &if is_acronym { rest.to_ascii_lowercase() } else { rest.to_owned() };
     }
-    // no variant begins with a digit, and `Self` is a keyword
+    // a variant cannot begin with a digit, and `Self` is a keyword
     if text.starts_with(is_digit) || text == "Self" { format!("Joint{text}") } else { text }
 }
 
@@ -67,10 +67,10 @@ fn is_digit(c: char) -> bool {
     c.is_ascii_digit()
 }
 
-/// The identifiers of all joints, in their order.
+/// Makes the identifiers of all joints, in their order.
 ///
 /// # Errors
-/// When two joints have one identifier, with the place of the second name.
+/// When two joints have the same identifier, with the place of the second name.
 pub(crate) fn identifiers(
     (name, text): (&str, &str),
     root: &Node,

@@ -1,4 +1,4 @@
-//! The keys of the format as data, for those who document or complete them.
+//! The keys of the format as data, for tools that document or complete them.
 
 use crate::readers::robot::{Takes, robot};
 use crate::text::decode::Context;
@@ -9,7 +9,7 @@ use crate::{text::document, text::source};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Mapping {
-    /// Its name in messages.
+    /// The name of the mapping in messages.
     pub name: &'static str,
     /// The keys that it may have, in the order in which they are read.
     pub keys: &'static [Key],
@@ -19,14 +19,14 @@ pub struct Mapping {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Key {
-    /// As it is written.
+    /// The key as a file writes it.
     pub name: &'static str,
-    /// Whether there is no default.
+    /// Whether the key is required, because it has no default.
     pub is_required: bool,
 }
 
-/// The mappings of the format that stand in a robot file, each once, with all keys that the format has for them. A file
-/// with a mapping of each kind gives the whole format; mistakes in it are not reported.
+/// Returns the kinds of mappings that a robot file contains, each once, with all keys that the format has for them. A
+/// file with a mapping of each kind gives the whole format. Mistakes in the file are not reported.
 ///
 /// ```
 /// let mappings = rne_model::mappings("joints: [{dh: {}}]");

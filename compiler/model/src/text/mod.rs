@@ -1,4 +1,4 @@
-//! From the bytes of a file to a tree of keys and numbers that know their places, and messages about them.
+//! Turns the bytes of a file into a tree of keys and numbers with their places, and makes messages about them.
 
 pub(crate) mod data_file;
 pub(crate) mod decode;

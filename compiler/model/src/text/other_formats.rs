@@ -1,11 +1,11 @@
-//! Robots in XML, told apart from mistakes in YAML.
+//! Recognises robot descriptions in XML, so that they are not reported as mistakes in YAML.
 
 use crate::text::diagnostic::{Diagnostic, Remedy};
 
-/// How much of a text is looked at for what it is, bytes.
+/// Number of bytes at the beginning of a text by which its format is recognised.
 const HEAD: usize = 4096;
 
-/// Whether a text is URDF, or xacro, by how it begins: XML whose root is a `robot`.
+/// Returns whether a text is URDF or xacro, by its beginning: XML whose root is a `robot`.
 ///
 /// ```
 /// assert!(rne_model::is_urdf("<?xml version=\"1.0\"?>\n<robot name=\"arm\">"));
@@ -17,15 +17,15 @@ pub fn is_urdf(text: &str) -> bool {
     text.starts_with('<') && head(text).contains("<robot")
 }
 
-/// The message for a text that is XML, in most cases URDF; `name` is what messages call its file. `None` for a text
-/// that may be a robot file: that never begins with such a tag.
+/// Returns the error for a text that is XML, in most cases URDF; `name` is the name of the file in messages. `None` for
+/// a text that may be a robot file, which never begins with such a tag.
 pub(crate) fn instead_of_a_robot_file(name: &str, text: &str) -> Option<Diagnostic> {
     let start = text.len() - text.trim_start().len();
     let rest = text.get(start..)?;
     let first_line = rest.lines().next().unwrap_or_default().trim_end();
     let place = start..start + first_line.len();
     if is_urdf(rest) {
-        // a URDF that xacro has written may still declare its namespace
+        // the namespace alone is no sign of a template: a URDF that xacro has written may still declare it
         let template = ["<xacro:", "${", "$("].iter().any(|mark| head(rest).contains(mark));
         let help = template.then(|| "this is a template: let `xacro` write the URDF first".to_owned());
         let is_a_path = !name.starts_with('<') && !name.contains(char::is_whitespace);
@@ -42,7 +42,7 @@ pub(crate) fn instead_of_a_robot_file(name: &str, text: &str) -> Option<Diagnost
     })
 }
 
-/// The beginning of a text.
+/// Returns the beginning of a text.
 pub(crate) fn head(text: &str) -> &str {
     let mut end = HEAD.min(text.len());
     while !text.is_char_boundary(end) {

@@ -1,4 +1,4 @@
-//! The one rendering of diagnostics, for the macro and the command line alike.
+//! Renders diagnostics in one way, for the macro and for the command line.
 
 use std::fmt::Write as _;
 use std::ops::Range;
@@ -7,10 +7,11 @@ use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 
 use crate::{Diagnostic, Report, Severity, one_line};
 
-/// Largest number of diagnostics to show.
+/// Largest number of diagnostics that are shown.
 const SHOWN: usize = 20;
 
-/// A longer line is named, not shown: nobody reads it, and laying it out takes long.
+/// Longest source line that is shown, in bytes. A longer one is only named, because nobody reads it and its layout
+/// takes long.
 const LONGEST_LINE: usize = 4096;
 
 pub(crate) fn full(report: &Report, color: bool) -> String {
@@ -52,9 +53,9 @@ fn snippet(report: &Report, found: &Diagnostic, renderer: &Renderer) -> String {
         Severity::Note => Level::NOTE,
     };
     let title = level.primary_title(&found.message);
-    // a file may have any name
+    // the name of a file may contain line breaks and control characters
     let name = one_line(&report.name);
-    // Only the line concerned is handed over: the caret of a span of several lines ends with its first.
+    // Only the first line of the span is shown, so the caret of a span of several lines ends with that line.
     let (line, span) = line_of(&report.text, &found.span);
     let group = if report.text.is_empty() || line.len() > LONGEST_LINE {
         title.element(Origin::path(&name).line(found.line).char_column(found.column))
@@ -66,7 +67,7 @@ fn snippet(report: &Report, found: &Diagnostic, renderer: &Renderer) -> String {
     renderer.render(&[group])
 }
 
-/// The line in which `span` begins, and the part of the span inside it.
+/// Returns the line in which `span` begins, and the part of the span inside this line.
 fn line_of<'t>(text: &'t str, span: &Range<usize>) -> (&'t str, Range<usize>) {
     let (before, after) = text.split_at_checked(span.start).unwrap_or((text, ""));
     let start = before.rfind('\n').map_or(0, |newline| newline + 1);

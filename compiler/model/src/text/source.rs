@@ -1,11 +1,12 @@
-//! From bytes to text: what must hold before YAML is spoken of.
+//! Turns bytes into text, and checks the text before YAML is parsed.
 
 use std::ops::Range;
 
 use crate::text::data_file::MAX_BYTES;
 use crate::text::diagnostic::{Diagnostic, Problems};
 
-/// Whether a file of `length` bytes is read at all; `what` it is.
+/// Returns whether a file of `length` bytes is short enough to be read, or reports an error; `what` is its kind in
+/// words.
 pub(crate) fn size_is_fine(length: usize, what: &str, problems: &Problems) -> bool {
     if length > MAX_BYTES {
         problems.push(
@@ -23,7 +24,7 @@ pub(crate) fn size_is_fine(length: usize, what: &str, problems: &Problems) -> bo
 pub(crate) fn not_utf8(bytes: &[u8], error: std::str::Utf8Error, what: &str, problems: &Problems) {
     let at = error.valid_up_to();
     let byte = bytes.get(at).copied().unwrap_or_default();
-    // Its replacement, U+FFFD, takes three bytes of the text that is shown.
+    // The replacement character U+FFFD has three bytes in the text that is shown.
     problems.push(
         Diagnostic::error(at..at + 3, format!("byte 0x{byte:02X} is not UTF-8; {what} is UTF-8 text"))
             .label("not UTF-8")
@@ -35,7 +36,7 @@ pub(crate) fn not_utf8(bytes: &[u8], error: std::str::Utf8Error, what: &str, pro
 }
 
 /// Reports the first control character: YAML forbids them, the parser takes U+0000 for the end of the file, and a
-/// terminal takes some for commands.
+/// terminal may execute some as commands. Returns whether there is none.
 pub(crate) fn is_printable(text: &str, problems: &Problems) -> bool {
     let forbidden = |c: &(usize, char)| c.1.is_control() && !matches!(c.1, '\t' | '\n' | '\r' | '\u{85}');
     let Some((at, character)) = text.char_indices().find(forbidden) else { return true };
@@ -49,13 +50,13 @@ pub(crate) fn is_printable(text: &str, problems: &Problems) -> bool {
     false
 }
 
-/// Whether a character breaks the line, for some program at least.
+/// Returns whether a character is a line break, at least for some programs.
 pub(crate) fn is_line_break(c: char) -> bool {
     matches!(c, '\n' | '\r' | '\u{85}' | '\u{2028}' | '\u{2029}')
 }
 
-/// Whether a character does something instead of showing something: controls terminals, or turns the direction of text,
-/// which compilers refuse in source code, or breaks the line for some program.
+/// Returns whether a character acts instead of showing something: it controls terminals, or changes the direction of
+/// text, which compilers refuse in source code, or breaks the line for some programs.
 #[must_use]
 pub fn is_control(c: char) -> bool {
     let turns_direction =
@@ -63,8 +64,8 @@ pub fn is_control(c: char) -> bool {
     c.is_control() || is_line_break(c) || turns_direction
 }
 
-/// Whether a character shows nothing and takes no place, as text from web pages and PDFs brings along; those that join
-/// letters of some scripts (U+200C, U+200D) are not meant.
+/// Returns whether a character is invisible and has no width, such as those in text from web pages and PDFs; those that
+/// join letters of some scripts (U+200C, U+200D) are not included.
 pub(crate) fn is_invisible(c: char) -> bool {
     matches!(
         c,
@@ -73,8 +74,8 @@ pub(crate) fn is_invisible(c: char) -> bool {
     )
 }
 
-/// A text as one line in which every character shows itself and does nothing: a line break or a tab is a blank, any
-/// other [control character](is_control) U+FFFD.
+/// Returns a text as one line of harmless characters: a line break or a tab becomes a blank, any other [control
+/// character](is_control) becomes U+FFFD.
 #[must_use]
 pub fn one_line(text: &str) -> String {
     let shown = |c: char| match c {
@@ -86,7 +87,7 @@ pub fn one_line(text: &str) -> String {
     text.chars().map(shown).collect()
 }
 
-/// A value for a message: shortened, control characters escaped, in backticks.
+/// Formats a value for a message: shortened, control characters escaped, in backticks.
 pub(crate) fn quoted(value: &str) -> String {
     const LONGEST: usize = 40;
     let shown = |text: &str| text.escape_debug().to_string().replace("\\\"", "\"").replace("\\'", "'");
@@ -96,7 +97,7 @@ pub(crate) fn quoted(value: &str) -> String {
     }
 }
 
-/// A number with all digits that it needs to be read back; zero has no sign.
+/// Formats a number with all digits that are needed to read it back exactly; zero gets no sign.
 #[must_use]
 pub fn exact_digits(value: f64) -> String {
     // the sum of -0.0 and 0.0 is 0.0
@@ -104,7 +105,7 @@ pub fn exact_digits(value: f64) -> String {
     shown.strip_suffix(".0").unwrap_or(&shown).to_owned()
 }
 
-/// Half of the last digit of a decimal number; zero for an expression, which has all of its digits.
+/// Returns half of the last digit of a decimal number; zero for an expression, which is exact.
 ///
 /// ```
 /// assert_eq!(["14.5", "1e3", "0.10"].map(rne_model::half_of_last_digit), [0.05, 500.0, 0.005]);
@@ -114,18 +115,18 @@ pub fn half_of_last_digit(number: &str) -> f64 {
     let (mantissa, exponent) = number.trim().split_once(['e', 'E']).unwrap_or((number.trim(), "0"));
     let plain = mantissa.chars().all(|c| c.is_ascii_digit() || "+-.".contains(c));
     let (true, Ok(exponent)) = (plain, exponent.parse::<i32>()) else { return 0.0 };
-    // a whole number may be exact, and may be rounded
+    // `behind` is the number of decimals; a whole number has none, so its last digit is at the units
     let behind = mantissa.split_once('.').map_or(0, |(_, digits)| i32::try_from(digits.len()).unwrap_or(i32::MAX));
     0.5 * 10_f64.powi(exponent.saturating_sub(behind))
 }
 
-/// A number with six significant digits, for a message.
+/// Formats a number with six significant digits, for a message.
 #[must_use]
 pub fn six_digits(value: f64) -> String {
     exact_digits(format!("{value:.5e}").parse().unwrap_or(value))
 }
 
-/// The part of `span` that lies `range` bytes into it, never beyond its end.
+/// Returns the bytes `range` of a value that has the bytes `span`, but never beyond the end of the span.
 pub(crate) fn inside(span: &Range<usize>, range: &Range<usize>) -> Range<usize> {
     let at = |offset: usize| (span.start + offset).min(span.end);
     at(range.start)..at(range.end)

@@ -1,15 +1,15 @@
-//! "Did you mean …?"
+//! Finds the word for the help "did you mean …?"
 
 use std::iter;
 
-/// Nothing longer is a slip of one of our words, and the distance costs time.
+/// Longest word that is compared, because no known word is longer and comparing takes time.
 pub(crate) const LONGEST_WORD: usize = 32;
 
-/// A word with more slips than these is another word.
+/// Largest number of slips by which two words may differ and still be taken for the same word.
 const MOST: usize = 2;
 
-/// The candidate that `word` was probably meant to be, if it is a slip or two away: a letter that is missing, too many
-/// or another one, or two neighbours that changed places.
+/// Returns the candidate that `word` was probably meant to be, if it is one or two slips away: a missing, surplus or
+/// wrong letter, or two neighbours that changed places.
 pub fn did_you_mean<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     if word.is_empty() || word.chars().count() > LONGEST_WORD {
         return None;
@@ -18,7 +18,7 @@ pub fn did_you_mean<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str
     let length = word.chars().count();
     candidates
         .into_iter()
-        // a word that is longer by three is three slips away at least
+        // words whose lengths differ by three or more are more than two slips apart
         .filter(|candidate| candidate.chars().count().abs_diff(length) <= MOST)
         .filter_map(|candidate| {
             let distance = strsim::osa_distance(&word, &candidate.to_lowercase());
@@ -26,7 +26,8 @@ pub fn did_you_mean<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str
             let close = distance == 0 || (distance <= shorter.div_ceil(3).min(MOST) && distance < shorter);
             close.then_some((distance, candidate))
         })
-        // letters in another order are likelier than another letter, and a first letter is rarely wrong
+        // among equal distances, a word with the same letters in another order is likelier, and one with the same first
+        // letter
         .min_by_key(|(distance, candidate)| {
             (*distance, letters(candidate) != letters(&word), first(candidate) != first(&word))
         })
@@ -43,8 +44,8 @@ fn letters(word: &str) -> Vec<char> {
     letters
 }
 
-/// The name that was probably meant by another: a slip away, longer, or without the name of a maker before it, as
-/// `kuka_iiwa` means `iiwa14`.
+/// Returns the known name that another name probably means: it is a slip away, is longer, or lacks the maker's name at
+/// the beginning, as `kuka_iiwa` means `iiwa14`.
 #[must_use]
 pub fn nearest_name<'n>(name: &str, names: &[&'n str]) -> Option<&'n str> {
     let parts = name.match_indices(['_', '-', ' ']).map(|(at, _)| name.get(at + 1..).unwrap_or_default());
@@ -54,7 +55,7 @@ pub fn nearest_name<'n>(name: &str, names: &[&'n str]) -> Option<&'n str> {
     })
 }
 
-/// The message for a name that no shipped robot has.
+/// Returns the message for a name that no shipped robot has.
 #[must_use]
 pub fn no_shipped_robot(name: &str, names: &[&str]) -> String {
     let meant = nearest_name(name, names).map_or_else(|| ";".to_owned(), |meant| format!("; did you mean `{meant}`?"));
@@ -74,7 +75,7 @@ mod tests {
         assert_eq!(did_you_mean("inertia-about", ["inertia_about"]), Some("inertia_about"));
         assert_eq!(did_you_mean("offset", keys), None);
         assert_eq!(did_you_mean("xzy", ["xyz", "rpy"]), Some("xyz"));
-        // an element of a symmetric tensor by its other name
+        // an element of a symmetric tensor has two names, such as `yx` for `xy`
         let elements = ["xx", "yy", "zz", "xy", "xz", "yz", "ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
         for (other, element) in
             [("yx", "xy"), ("zx", "xz"), ("zy", "yz"), ("iyx", "ixy"), ("izx", "ixz"), ("izy", "iyz")]

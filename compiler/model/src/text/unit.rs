@@ -1,4 +1,4 @@
-//! Units after numbers: numbers of a robot file have no unit, and a message gives the number to write instead.
+//! Help for units after numbers: numbers of a robot file have no unit, and a message gives the number to write instead.
 
 /// The help for a `number` with a `unit` after it; `None` where that is no unit.
 ///

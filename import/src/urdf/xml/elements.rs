@@ -1,12 +1,12 @@
-//! The elements and attributes of a URDF that matter to dynamics, those that are known beside them, and the values that
-//! each attribute may have.
+//! The relevant elements and attributes of a URDF, those that are known but ignored, and the values that each attribute
+//! may have.
 
 use rne_model::LARGEST_ANGLE;
 
 use super::LARGEST;
 use crate::urdf;
 
-/// An element that matters.
+/// An element that dynamics needs.
 pub(super) struct Element {
     pub(super) name: &'static str,
     pub(super) parent: &'static str,
@@ -22,14 +22,14 @@ pub(super) struct Attribute {
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Kind {
     Text,
-    /// A kind of joint.
+    /// The value is a kind of joint.
     Joint,
-    /// A joint that closes a loop.
+    /// The value is a kind of joint that closes a loop.
     Cut,
-    /// True or false.
+    /// The value is true or false.
     Flag,
     Number,
-    /// A number that may be infinite.
+    /// The value is a number that may be infinite.
     Limit,
     Vector,
     Angles,
@@ -94,22 +94,22 @@ pub(super) const ELEMENTS: &[Element] = &[
     element("axis", "loop", &[Attribute { name: "xyz", kind: Kind::Vector, required: true }]),
 ];
 
-/// Elements that are known and do not matter here, by the element that contains them.
+/// Elements that are known and ignored, by the element that contains them.
 pub(super) const PASSED_OVER: &[(&str, &[&str])] = &[
     ("robot", &["material", "gazebo", "transmission", "sensor", "ros2_control", "mujoco"]),
     ("link", &["visual", "collision", "contact"]),
     ("joint", &["calibration", "safety_controller"]),
 ];
 
-/// Attributes that are known and do not matter here, by their element.
+/// Attributes that are known and ignored, by their element.
 pub(super) const PASSED_OVER_ATTRIBUTES: &[(&str, &[&str])] = &[("robot", &["version", "xmlns"])];
 
-/// The entry of a list under a name.
+/// Returns the entry of a list under a name.
 pub(super) fn passed_over(list: &[(&str, &'static [&'static str])], name: &str) -> &'static [&'static str] {
     list.iter().find(|(of, _)| *of == name).map_or(&[], |(_, known)| known)
 }
 
-/// The reason why a value does not fit an attribute.
+/// Returns the reason why a value does not fit an attribute, if it does not.
 pub(super) fn fault(kind: Kind, value: &str) -> Option<&'static str> {
     let number = |word: &str| word.parse::<f64>().ok();
     let fine = |word: &str| number(word).is_some_and(|x| x.abs() <= LARGEST);

@@ -13,7 +13,8 @@ use crate::arm_log::remark::ArmLogRemark;
 /// Names in the options are kept. Otherwise, joints are matched by name if the log has all names of the robot's joints.
 /// If a log has other names but as many joints, its joints are matched by their order, with a remark.
 ///
-/// # Errors When the log cannot be opened, or its joints cannot be matched with those of the robot.
+/// # Errors
+/// When the log cannot be opened, or its joints cannot be matched with those of the robot.
 pub fn joint_options(
     paths: &[PathBuf],
     robot: &Robot,
@@ -85,7 +86,8 @@ pub fn match_joints(joints: &[String], measured: &[String]) -> Result<JointMatch
 
 /// Checks that the units in the names of columns suit the robot's joints: a revolute joint has no position in mm.
 ///
-/// # Errors When a unit belongs to the other kind of joint.
+/// # Errors
+/// When a unit belongs to the other kind of joint.
 pub fn check_units(robot: &Robot, layout: &Layout) -> Result<(), ArmLogError> {
     for ((joint, logged), units) in robot.independent_joints().zip(&layout.joints).zip(&layout.units) {
         let JointUnits { position, velocity, effort, .. } = *units;

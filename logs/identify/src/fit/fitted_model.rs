@@ -41,8 +41,8 @@ impl FittedModel {
     /// number of its run. Parameters that the motions do not excite stay as in the robot file. The second value
     /// contains the equations of the motions.
     ///
-    /// # Errors When a motion is of another robot; when all motions give too few rows, or have no efforts; or when
-    /// `pass` fails.
+    /// # Errors
+    /// When a motion is of another robot; when all motions give too few rows, or have no efforts; or when `pass` fails.
     pub fn of<E: From<MotionError>>(
         structure: &Structure,
         mut pass: impl FnMut(&mut dyn FnMut(u64, &Motion) -> Result<(), MotionError>) -> Result<(), E>,

@@ -47,11 +47,11 @@ pub struct Identification {
     pub robot: Robot,
     /// The equations of the identification: their columns and unknowns.
     pub structure: Structure,
-    /// The least-squares estimate, whether or not bodies can be so.
+    /// The least-squares estimate, which may be physically impossible.
     pub least_squares: LeastSquares,
     /// The estimate whose links are physically possible.
     pub feasible: Feasible,
-    /// Every base parameter, base to tip.
+    /// The result for every base parameter, base to tip.
     pub bases: Vec<BaseReport>,
     /// The result for every joint, base to tip.
     pub joints: Vec<JointReport>,
@@ -175,8 +175,9 @@ pub(crate) struct OverLogs {
 /// Identifies a robot. `pass` is called several times and passes every motion of the logs to its argument each time;
 /// the motions may be parts of logs. `regularization` is γ of [`Feasible`].
 ///
-/// # Errors When a motion is of another robot; when all motions give fewer rows than standard deviations need, or have
-/// no efforts; when a result is not finite; or when `pass` fails.
+/// # Errors
+/// When a motion is of another robot; when all motions give fewer rows than standard deviations need, or have no
+/// efforts; when a result is not finite; or when `pass` fails.
 pub fn identify<E: From<MotionError>>(
     robot: &Robot,
     options: Options,
@@ -257,12 +258,12 @@ pub(crate) fn over_logs<E: From<MotionError>>(
 pub struct Fit {
     /// The robot: the geometry that was given, links and motors that were identified.
     pub robot: Robot,
-    /// The least-squares estimate, whether or not bodies can be so.
+    /// The least-squares estimate, which may be physically impossible.
     pub least_squares: LeastSquares,
     /// The estimate whose links are physically possible, and whose friction is that of the file where the rows do not
     /// determine it.
     pub feasible: Feasible,
-    /// Every base parameter, base to tip.
+    /// The result for every base parameter, base to tip.
     pub bases: Vec<BaseReport>,
     /// Viscous friction, N m s/rad, and Coulomb friction forward and backward, N m, at each joint, each with its
     /// standard deviation; empty without friction. Where the rows do not determine the offset, the standard deviations

@@ -117,7 +117,8 @@ impl Information {
 
     /// Adds the rows of a motion. `weighting` weights them by their residuals in the previous fit.
     ///
-    /// # Errors When the motion is of another robot, or has numbers that are not finite; nothing has been added then.
+    /// # Errors
+    /// When the motion is of another robot, or has numbers that are not finite; nothing has been added then.
     pub fn absorb(
         &mut self,
         structure: &Structure,

@@ -97,8 +97,9 @@ impl Payload {
     /// Estimates the payload. `pass` is called several times and passes every motion of the logs to its argument each
     /// time. `cutoff` is the cut-off of the low-pass filter, Hz.
     ///
-    /// # Errors When a motion is of another robot; when all motions give fewer rows than standard deviations need, or
-    /// have no efforts; or when `pass` fails.
+    /// # Errors
+    /// When a motion is of another robot; when all motions give fewer rows than standard deviations need, or have no
+    /// efforts; or when `pass` fails.
     pub fn identify<E: From<MotionError>>(
         robot: &Robot,
         cutoff: f64,

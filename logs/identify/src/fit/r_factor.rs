@@ -78,7 +78,8 @@ impl RFactor {
 
     /// Adds a block of rows with weight 1 each.
     ///
-    /// # Errors When the rows have another length; nothing has been added then.
+    /// # Errors
+    /// When the rows have another length; nothing has been added then.
     pub fn absorb(&mut self, rows: DMatrix<f64>) -> Result<(), WrongColumns> {
         #[allow(clippy::cast_precision_loss)] // a block
         let weight = rows.nrows() as f64;
@@ -88,7 +89,8 @@ impl RFactor {
     /// Adds a block of rows that have been multiplied by the square roots of their weights; `weight` is the sum of the
     /// weights.
     ///
-    /// # Errors When the rows have another length; nothing has been added then.
+    /// # Errors
+    /// When the rows have another length; nothing has been added then.
     pub fn absorb_weighted(&mut self, rows: DMatrix<f64>, weight: f64) -> Result<(), WrongColumns> {
         self.fits(rows.ncols())?;
         self.rows += rows.nrows() as u64;
@@ -99,7 +101,8 @@ impl RFactor {
 
     /// Adds all rows of another factor.
     ///
-    /// # Errors When its rows have another length; nothing has been added then.
+    /// # Errors
+    /// When its rows have another length; nothing has been added then.
     pub fn merge(&mut self, other: &Self) -> Result<(), WrongColumns> {
         self.fits(other.columns())?;
         self.rows += other.rows;

@@ -38,7 +38,7 @@ pub(crate) struct Design {
     weights: Vec<f64>,
     has_efforts: bool,
     grid: Grid,
-    /// The base parameters of the links of the file, or of plausible ones.
+    /// The base parameters of the links of the file, or of plausible links where the file has none.
     plausible: DVector<f64>,
     scales: Scales,
 }
@@ -199,7 +199,7 @@ fn condition_of(mut products: DMatrix<f64>) -> f64 {
     if least > ROUNDING * most { (most / least).sqrt() } else { f64::INFINITY }
 }
 
-/// The base parameters of the links of the file, or of plausible ones.
+/// Returns the base parameters of the links of the file, or of plausible links where the file has none.
 fn plausible(structure: &Structure) -> DVector<f64> {
     let parameters = structure.parameters();
     let mut values = DVector::zeros(parameters.regrouping.ncols());

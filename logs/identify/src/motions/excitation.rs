@@ -59,34 +59,33 @@ impl Default for ExcitationOptions {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ExcitationProgress {
-    /// Motions that were tried.
+    /// Number of motions that were tried.
     pub evaluations: u64,
-    /// The condition number of the best of them; infinite before one is within the effort limits.
+    /// The condition number of the best motion so far; infinite before one is within the effort limits.
     pub condition: f64,
-    /// Number of base parameters that it would excite.
+    /// Number of base parameters that the best motion so far would excite.
     pub excited: usize,
 }
 
-/// A motion that excites an arm, and what is known of it.
+/// A motion that excites an arm, with a report on it.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Excitation {
-    /// The motion, a period of it.
+    /// The motion, over one period.
     pub motion: Fourier,
-    /// The condition number of the first motion that was tried and has one, that is, within the effort limits: the
-    /// first random start, or, where that was beyond them, whichever came first. The search computes it of products of
-    /// the columns, exact to half the digits.
+    /// The condition number of the first motion within the effort limits that was tried. The search computes it from
+    /// products of the columns, which are exact to half the digits.
     pub first_condition: f64,
-    /// Condition number of the motion: largest over smallest singular value of the columns, each of length one, of base
-    /// parameters and friction. Rows of a joint are divided by its effort limit where every joint has one.
+    /// Condition number of the motion: largest over smallest singular value of the columns of base parameters and
+    /// friction, each scaled to length one. Rows of a joint are divided by its effort limit where every joint has one.
     pub condition: f64,
-    /// Number of instants of a period that have rows, evenly from its start on.
+    /// Number of instants of a period for which there are rows, evenly spaced from its start on.
     pub instants: usize,
     /// The use that each joint makes of its limits.
     pub joints: Vec<JointUse>,
-    /// Every base parameter, base to tip, then rotors.
+    /// The precision of every base parameter, base to tip, then rotors.
     pub bases: Vec<BaseExcitation>,
-    /// Motions that were tried.
+    /// Number of motions that were tried.
     pub evaluations: u64,
 }
 
@@ -94,13 +93,13 @@ pub struct Excitation {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct JointUse {
-    /// The limits.
+    /// The limits of the joint's motion.
     pub limits: MotionLimits,
     /// Position in which the motion starts and ends, rad or m.
     pub start: f64,
     /// Bounds of the whole motion.
     pub bounds: MotionBounds,
-    /// N m or N: the largest torque that the file predicts, where it is limited.
+    /// The largest torque that the file predicts, N m or N; `None` if the effort of the joint is not limited.
     pub effort: Option<f64>,
 }
 
@@ -108,41 +107,41 @@ pub struct JointUse {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BaseExcitation {
-    /// `Jzz2`
+    /// Name of the parameter that represents the base parameter, such as `Jzz2`.
     pub name: String,
-    /// `Jzz2 + 0.3745 m3`
+    /// The linear combination, such as `Jzz2 + 0.3745 m3`.
     pub combination: String,
-    /// `kg m²`
+    /// The unit, such as `kg m²`.
     pub unit: &'static str,
-    /// Its deviation by one period, were each row of each joint a measurement with noise of its own: of 1 % of the
-    /// effort limits, or, where not every joint has one, of 5 % of the torque that plausible links take, root mean
+    /// The standard deviation from a log of one period if the noise of all rows were independent. The assumed noise is
+    /// 1 % of the effort limits or, if not every joint has one, 5 % of the torque for plausible links, root mean
     /// square.
     pub deviation: f64,
-    /// Its magnitude for plausible links.
+    /// The magnitude of the base parameter for plausible links.
     pub plausible: f64,
 }
 
 impl BaseExcitation {
-    /// Whether a log of the motion would tell it: the rule is that of an identification.
+    /// Whether a log of the motion would determine the base parameter, by the rule of an identification.
     #[must_use]
     pub fn is_excited(&self) -> bool {
         self.deviation < UNKNOWN * self.plausible
     }
 }
 
-/// Rank of a motion: first by how far it is beyond effort limits.
+/// Score of a motion; lower is better. The part by which it exceeds effort limits is compared first.
 ///
-/// Columns of length one tell nothing of how large they are: of a motion that hardly moves they may be as good. So the
-/// condition number is multiplied by what the motion falls short of exciting everything, the geometric mean over the
-/// base parameters of how many times too uncertain they are, one where they are excited.
+/// The condition number does not depend on the lengths of the columns, so a motion that hardly moves can have a good
+/// one. Therefore, it is multiplied by the geometric mean, over the base parameters, of the factor by which their
+/// uncertainty is too large; the factor is one for a parameter that is excited.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 struct Score {
     beyond: f64,
     merit: f64,
 }
 
-/// A point of the search: of each joint its centre, as a part of its half range from the middle, then a and b, as parts
-/// of the [unit](Problem::units).
+/// A point of the search: for each joint its centre, as a part of the half range from the middle, then a and b of its
+/// series, in multiples of the [unit](Problem::units).
 type Point = Vec<f64>;
 
 struct Problem<'a> {
@@ -151,7 +150,7 @@ struct Problem<'a> {
     design: Design,
     effort: Option<Effort>,
     grid: Grid,
-    /// rad/s or m/s, of each joint: a coefficient that is one.
+    /// For each joint, the value of a coefficient of 1, rad/s or m/s.
     units: Vec<f64>,
 }
 
@@ -161,16 +160,17 @@ struct Tried {
     point: Point,
     motion: Fourier,
     score: Score,
-    /// Absent if the motion is beyond the effort limits.
+    /// `None` if the motion exceeds the effort limits.
     quality: Option<Quality>,
 }
 
-/// Looks for a motion that excites an arm. `watch` is told after each motion that was tried, and ends the search by
-/// `false`; the best motion so far is the result then. Same arguments give the same motion, however fast the machine.
+/// Searches for a motion that excites an arm. `watch` is called after each motion that was tried; if it returns
+/// `false`, the search ends with the best motion so far. The same arguments give the same motion, however fast the
+/// machine.
 ///
 /// # Errors
-/// When the options make no motion, when there are not as many limits as joints, when no motion was found within the
-/// effort limits, or none that tells all base parameters from each other, or when the equations cannot be computed.
+/// When the options are not valid, when the number of limits is not that of the joints, when no motion was found within
+/// the effort limits, when no motion distinguishes all base parameters, or when the equations cannot be computed.
 pub fn excite(
     robot: &Robot,
     limits: &[MotionLimits],
@@ -248,14 +248,14 @@ impl<'a> Problem<'a> {
         1 + 2 * self.options.harmonics
     }
 
-    /// Large, so that every joint meets one of its limits.
+    /// Returns a random point with large coefficients, so that every joint reaches one of its limits.
     fn start(&self, random: &mut Random) -> Point {
         let own = self.coordinates();
         let coordinate = |at: usize| if at.is_multiple_of(own) { random.number() } else { random.bell() };
         (0..own * self.limits.len()).map(coordinate).collect()
     }
 
-    /// All joints or one of them moved otherwise.
+    /// Returns a point with random changes of all joints or of one joint.
     fn changed(&self, point: &Point, step: f64, random: &mut Random) -> Point {
         let own = self.coordinates();
         let joint = random.below(2 * self.limits.len());
@@ -268,7 +268,8 @@ impl<'a> Problem<'a> {
         changed
     }
 
-    /// The motion of a point, within all limits but those of effort; the point becomes that of the motion.
+    /// Returns the motion of a point, scaled and moved into all limits except those of effort; changes the point
+    /// accordingly.
     fn motion(&self, point: &mut Point) -> Fourier {
         let own = self.coordinates();
         let series = point.chunks_mut(own).zip(self.limits).zip(&self.units).map(|((point, limits), unit)| {
@@ -280,7 +281,7 @@ impl<'a> Problem<'a> {
             let (lowest, highest) = range(&states);
             let (lower, upper) = limits.position;
             let (middle, half) = (f64::midpoint(lower, upper), 0.5 * (upper - lower));
-            // no more, so that the extremes between the points of the grid are inside
+            // reduced, so that the extremes between the points of the grid are also inside
             let room = half / beyond();
             let most = |limit: f64, used: f64| if used > limit { limit / used } else { 1.0 };
             let factor = most(room, 0.5 * (highest - lowest))
@@ -288,7 +289,7 @@ impl<'a> Problem<'a> {
                 .min(most(limits.acceleration / beyond(), largest(&states, 2)));
             let mut series = series.scaled(factor);
             let (least, greatest) = (middle - room - factor * lowest, middle + room - factor * highest);
-            // the middle of both where rounding leaves less than nothing between them
+            // `least.min`: rounding may make `least` larger than `greatest`
             series.centre = (middle + half * centre[0]).min(greatest).max(least.min(greatest));
             centre[0] = (series.centre - middle) / half;
             for (list, of_series) in [(a, &series.a), (b, &series.b)] {
@@ -309,13 +310,13 @@ impl<'a> Problem<'a> {
             }
             None => 0.0,
         };
-        // nobody asks how well conditioned a motion is that cannot be
+        // a motion that exceeds effort limits needs no condition number
         let quality = if beyond > 0.0 { None } else { Some(self.design.quality(&motion)?) };
         let merit = quality.as_ref().map_or(f64::INFINITY, |quality| quality.condition * self.shortfall(quality));
         Ok(Tried { point, motion, score: Score { beyond, merit }, quality })
     }
 
-    /// The deviation of each base parameter over the one below which it counts as excited.
+    /// Returns the standard deviation of each base parameter, over the largest one with which it counts as excited.
     fn uncertainties(&self, quality: &Quality) -> impl Iterator<Item = f64> {
         quality
             .deviations

@@ -1,4 +1,4 @@
-//! Why there is no motion that excites an arm.
+//! Errors of the search for a motion that excites an arm.
 
 use std::fmt;
 
@@ -10,25 +10,25 @@ use rne_machine::EvaluationError;
 pub enum ExcitationError {
     /// The period is not a number of seconds above 0.
     Period,
-    /// One harmonic that starts at rest without acceleration does not move.
+    /// There are fewer than two harmonics: one harmonic that starts at rest without acceleration does not move.
     Harmonics,
-    /// A list of limits has another length.
+    /// A list of limits does not have the number of joints as its length.
     Length {
-        /// `velocity`
+        /// The kind of limits, such as `velocity`.
         what: &'static str,
         /// The length of the list.
         found: usize,
         /// The number of joints.
         joints: usize,
     },
-    /// A limit is not a number above 0: which.
+    /// A limit of this kind is not a number above 0.
     NotPositive(&'static str),
-    /// A sliding joint has no limits.
+    /// A prismatic joint has no position limits.
     NoPosition {
         /// Name of the joint.
         joint: String,
     },
-    /// Limits of the file leave a joint no room to move.
+    /// Limits of the file do not allow a joint to move.
     NoRoom {
         /// Name of the joint.
         joint: String,
@@ -39,19 +39,19 @@ pub enum ExcitationError {
     Effort {
         /// Name of the joint.
         joint: String,
-        /// N m or N, of the motion that came nearest.
+        /// The effort of the motion that exceeds the limit least, N m or N.
         needed: f64,
-        /// N m or N
+        /// The effort limit, N m or N.
         limit: f64,
     },
-    /// No motion was found that tells all base parameters from each other.
+    /// No motion was found that distinguishes all base parameters.
     Indistinct,
     /// The equations of motion cannot be computed.
     Evaluation(EvaluationError),
 }
 
 impl ExcitationError {
-    /// Whether the request is at fault, not the robot file.
+    /// Whether the options are at fault, not the robot file.
     #[must_use]
     pub fn is_of_request(&self) -> bool {
         matches!(self, Self::Period | Self::Harmonics | Self::Length { .. } | Self::NotPositive(_))

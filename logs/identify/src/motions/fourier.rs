@@ -7,49 +7,49 @@
 //! J. Swevers, C. Ganseman, D. Bilgin Tükel, J. De Schutter, H. Van Brussel, Optimal robot excitation and
 //! identification, IEEE Transactions on Robotics and Automation 13(5), 1997, 730-740.
 //!
-//! A period starts and ends at rest, without acceleration, where Σ a_k = 0 and Σ k b_k = 0: coefficients are projected
-//! to what fulfils both.
+//! A period starts and ends at rest, without acceleration, if Σ a_k = 0 and Σ k b_k = 0: coefficients are projected
+//! onto these conditions.
 
 use std::f64::consts::{PI, TAU};
 
 use rne_runtime::Scalar;
 
-/// Points of a period per harmonic, at which extremes are looked for.
+/// Number of points in a period, for each harmonic, at which extremes are searched.
 const DENSE: usize = 64;
 
-/// A motion of all joints that repeats.
+/// A periodic motion of all joints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fourier {
-    /// s
+    /// Period, s.
     period: f64,
     joints: Vec<Series>,
 }
 
-/// The series of a joint.
+/// The Fourier series of a joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// c, rad or m.
+    /// The centre c, rad or m.
     pub centre: f64,
-    /// a_k, rad/s or m/s; k = 1 is the first one.
+    /// The coefficients a_k from k = 1 on, rad/s or m/s.
     pub a: Vec<f64>,
-    /// b_k, rad/s or m/s.
+    /// The coefficients b_k from k = 1 on, rad/s or m/s.
     pub b: Vec<f64>,
 }
 
-/// Where a joint is at any time, not only at samples.
+/// Bounds of a joint's motion at any time, not only at samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionBounds {
-    /// rad or m: no position is below.
+    /// Lower bound of the position, rad or m.
     pub lower: f64,
-    /// rad or m: no position is above.
+    /// Upper bound of the position, rad or m.
     pub upper: f64,
-    /// rad/s or m/s: no speed is greater.
+    /// Upper bound of the speed, rad/s or m/s.
     pub velocity: f64,
-    /// rad/s² or m/s²: no acceleration is greater, of either sign.
+    /// Upper bound of the magnitude of the acceleration, rad/s² or m/s².
     pub acceleration: f64,
 }
 
-/// Sines and cosines of equal parts of a turn.
+/// Sines and cosines of the angles that divide a turn into equal parts.
 #[derive(Clone, Debug)]
 pub(crate) struct Grid(Vec<(f64, f64)>);
 
@@ -60,7 +60,8 @@ impl Grid {
         Self((0..points).map(|point| Scalar::sin_cos(angle(point))).collect())
     }
 
-    /// Grid on which a series of this number of harmonics has its extremes, but for [`beyond`].
+    /// Makes a grid whose points have the extremes of a series with this number of harmonics, up to the factor
+    /// [`beyond`].
     pub(crate) fn dense(harmonics: usize) -> Self {
         Self::new(DENSE * harmonics)
     }
@@ -69,17 +70,17 @@ impl Grid {
         self.0.len()
     }
 
-    /// Sine and cosine of a multiple of a point's angle.
+    /// Returns sine and cosine of a multiple of a point's angle.
     fn at(&self, point: usize, multiple: usize) -> (f64, f64) {
         self.0[point * multiple % self.0.len()]
     }
 }
 
-/// The factor by which the largest magnitude may exceed that at the points of the dense grid.
+/// Returns the factor by which the largest magnitude of a series may exceed that at the points of the dense grid.
 ///
-/// About a point where a trigonometric polynomial p of degree N has its largest magnitude it is at least
-/// ‖p‖ cos N(t - t*) up to a quarter of that wave (M. Riesz, Jahresber. DMV 23, 1914), and one of M points is within
-/// π / M of it: ‖p‖ is at most the largest magnitude of a point over cos(πN / M).
+/// Near the point t* where a trigonometric polynomial p of degree N has its largest magnitude, its magnitude is at
+/// least ‖p‖ cos N(t - t*) up to a quarter of that wave (M. Riesz, Jahresber. DMV 23, 1914). One of M points is within
+/// π / M of t*, so ‖p‖ is at most the largest magnitude at a point over cos(πN / M).
 pub(crate) fn beyond() -> f64 {
     #[allow(clippy::cast_precision_loss)]
     let half_step = PI / DENSE as f64;
@@ -87,8 +88,8 @@ pub(crate) fn beyond() -> f64 {
 }
 
 impl Series {
-    /// The series next to these coefficients that is at rest, without acceleration, at the start of the period. The
-    /// longer of the two lists says how many harmonics it has.
+    /// Returns the series nearest to these coefficients that is at rest, without acceleration, at the start of the
+    /// period. The longer of the two lists determines the number of harmonics.
     #[must_use]
     pub fn at_rest(centre: f64, mut a: Vec<f64>, mut b: Vec<f64>) -> Self {
         let harmonics = a.len().max(b.len());
@@ -115,7 +116,8 @@ impl Series {
         Self { centre: self.centre, a: scaled(&self.a), b: scaled(&self.b) }
     }
 
-    /// Position without the centre, velocity and acceleration, of waves (sine and cosine of kωt) of each k.
+    /// Returns position without the centre, velocity and acceleration. `wave` returns sine and cosine of kωt for each
+    /// k.
     fn state(&self, frequency: f64, wave: impl Fn(usize) -> (f64, f64)) -> [f64; 3] {
         let mut state = [0.0; 3];
         for (index, ((a, b), k)) in self.a.iter().zip(&self.b).zip(numbers()).enumerate() {
@@ -128,26 +130,26 @@ impl Series {
         state
     }
 
-    /// Positions without the centre, velocities and accelerations at the points of a grid.
+    /// Returns positions without the centre, velocities and accelerations at the points of a grid.
     pub(crate) fn on(&self, grid: &Grid, period: f64) -> Vec<[f64; 3]> {
         let frequency = TAU / period;
         (0..grid.points()).map(|point| self.state(frequency, |k| grid.at(point, k))).collect()
     }
 }
 
-/// 1, 2, 3, …
+/// Returns the numbers 1, 2, 3 and so on.
 fn numbers() -> impl Iterator<Item = f64> {
     std::iter::successors(Some(1.0), |k| Some(k + 1.0))
 }
 
 impl Fourier {
-    /// A motion of a period (s) and the series of each joint, base to tip.
+    /// Makes a motion from its period, s, and the series of each joint, base to tip.
     #[must_use]
     pub fn new(period: f64, joints: Vec<Series>) -> Self {
         Self { period, joints }
     }
 
-    /// s
+    /// The period, s.
     #[must_use]
     pub fn period(&self) -> f64 {
         self.period
@@ -159,7 +161,8 @@ impl Fourier {
         &self.joints
     }
 
-    /// Positions, velocities and accelerations of all joints after a number of periods, which need not be whole.
+    /// Returns positions, velocities and accelerations of all joints after a number of periods, which need not be
+    /// whole.
     #[must_use]
     pub fn after(&self, periods: f64) -> [Vec<f64>; 3] {
         let frequency = TAU / self.period;
@@ -172,7 +175,7 @@ impl Fourier {
         let mut state = [const { Vec::new() }; 3];
         for series in &self.joints {
             let [q, qd, qdd] = series.state(frequency, wave);
-            // by what the coefficients are projected to, but for rounding
+            // the coefficients are projected so that these are 0, except for rounding
             let (qd, qdd) = if part == 0.0 { (0.0, 0.0) } else { (qd, qdd) };
             for (list, value) in state.iter_mut().zip([series.centre + q, qd, qdd]) {
                 list.push(value);
@@ -181,8 +184,8 @@ impl Fourier {
         state
     }
 
-    /// Between which positions each joint moves, how fast, and with which acceleration: bounds of the whole motion,
-    /// above the true ones by a thousandth of them at most.
+    /// Returns bounds of the position, speed and acceleration of each joint over the whole motion. They exceed the true
+    /// extremes by a thousandth at most.
     #[must_use]
     pub fn bounds(&self) -> Vec<MotionBounds> {
         let harmonics = self.joints.iter().map(|series| series.a.len()).max().unwrap_or(0).max(1);
@@ -202,13 +205,13 @@ impl Fourier {
     }
 }
 
-/// Lowest and highest position of states.
+/// Returns the lowest and highest position of states.
 pub(crate) fn range(states: &[[f64; 3]]) -> (f64, f64) {
     let positions = states.iter().map(|state| state[0]);
     (positions.clone().fold(f64::INFINITY, f64::min), positions.fold(f64::NEG_INFINITY, f64::max))
 }
 
-/// The largest magnitude of a derivative of states.
+/// Returns the largest magnitude of a derivative of states.
 pub(crate) fn largest(states: &[[f64; 3]], derivative: usize) -> f64 {
     states.iter().fold(0.0, |most, state| state[derivative].abs().max(most))
 }
@@ -235,16 +238,16 @@ mod tests {
             let [start, end] = [0.0, 1.0].map(|periods| motion.after(periods));
             assert_eq!(start, end);
             assert_eq!([&start[1], &start[2]], [&vec![0.0], &vec![0.0]]);
-            // nothing jumps there
+            // the velocity is continuous at the end of a period
             let [_, near, _] = motion.after(1e-9);
             assert!(near[0].abs() < 1e-12, "{near:?}");
         }
-        // what one harmonic leaves is no motion
+        // one harmonic gives no motion
         let still = random(&mut numbers, 1);
         assert_eq!((still.a[0], still.b[0]), (0.0, 0.0));
     }
 
-    /// Derivatives by differences, which know nothing of the series.
+    /// Compares derivatives with finite differences of the positions.
     #[test]
     fn rates_are_rates() {
         let mut numbers = Random::new(2);

@@ -1,24 +1,24 @@
-//! Limits of position and speed of joints: by the robot file, by the request, or by a careful default.
+//! Limits of position, speed and acceleration of joints: from the robot file, from the caller, or a careful default.
 
 use rne_model::{Joint, JointKind, Robot, one_line};
 
 use crate::motions::excitation_error::ExcitationError;
 
-/// Range about zero of a revolute joint without limits, rad.
+/// Largest angle, in both directions, of a revolute joint without limits, rad.
 const TURN: f64 = std::f64::consts::PI;
 /// Speed limits of joints without one, rad/s and m/s; ISO 10218 calls 250 mm/s reduced speed.
 const SPEED: [f64; 2] = [1.0, 0.25];
-/// Time in which a joint reaches its speed by default, s: robot files have no acceleration limits.
+/// Time in which a joint reaches its speed limit if no acceleration limit is given, s: robot files have none.
 const RISE: f64 = 0.5;
 
-/// Limits that a request gives beside those of the robot file: a number for all joints, or one for each; rad or m, and
-/// per second.
+/// Limits that the caller gives in addition to those of the robot file: one number for all joints, or one for each, in
+/// rad or m, rad/s or m/s, and rad/s² or m/s².
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct AskedLimits {
     /// Largest distance of a joint from the middle of its limits in the file, or from zero if it has no limits.
     pub range: Option<Vec<f64>>,
-    /// The largest speed; the file's holds too.
+    /// The largest speed; the limit of the file applies too.
     pub velocity: Option<Vec<f64>>,
     /// The largest acceleration.
     pub acceleration: Option<Vec<f64>>,
@@ -30,23 +30,23 @@ pub struct AskedLimits {
 pub struct MotionLimits {
     /// Lower and upper end, rad or m.
     pub position: (f64, f64),
-    /// rad/s or m/s
+    /// Largest speed, rad/s or m/s.
     pub velocity: f64,
-    /// rad/s² or m/s²
+    /// Largest acceleration, rad/s² or m/s².
     pub acceleration: f64,
-    /// N m or N, where the file has one, and masses by which torques are predicted.
+    /// Largest effort, N m or N; `None` if the file has no limit, or no masses by which torques are predicted.
     pub effort: Option<f64>,
 }
 
 impl MotionLimits {
     /// Returns the limits of every joint of a robot.
     ///
-    /// A revolute joint without limits moves between -π and π. Without a speed it moves with 1 rad/s or 0.25 m/s at
-    /// most, and without an acceleration it reaches its speed in half a second.
+    /// A revolute joint without limits moves between -π and π. Without a speed limit, a joint moves with 1 rad/s or
+    /// 0.25 m/s at most; without an acceleration limit, it reaches its speed in half a second.
     ///
     /// # Errors
-    /// When a list has another length or a number that is not positive, a sliding joint has no limits, or limits leave
-    /// a joint no room to move.
+    /// When the length of a list is wrong or a number is not positive, when a prismatic joint has no limits, or when
+    /// limits do not allow a joint to move.
     pub fn of(robot: &Robot, asked: &AskedLimits) -> Result<Vec<Self>, ExcitationError> {
         let dof = robot.dof();
         let lists = [("range", &asked.range), ("velocity", &asked.velocity), ("acceleration", &asked.acceleration)];
@@ -88,7 +88,8 @@ impl MotionLimits {
     }
 }
 
-/// The limits of the file, or those about zero; no further from their middle than asked.
+/// Returns the position limits of the file, or the default ones about zero, reduced to at most `range` from their
+/// middle.
 fn position(joint: &Joint, range: Option<f64>) -> Result<(f64, f64), ExcitationError> {
     let (middle, half) = match joint.limits.position {
         Some((lower, upper)) => match range.filter(|range| 2.0 * range < upper - lower) {

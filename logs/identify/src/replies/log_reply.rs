@@ -1,10 +1,9 @@
-//! The content of a log as data for other programs, as `rne log --json` and Python give it: docs/control/logs.md lists
-//! the keys.
+//! The report on a log that `rne log --json` and Python return; docs/control/logs.md lists its keys.
 
 use rne_logs::{Cutoff, LeftOut, Log, Run, Survey};
 use serde::Serialize;
 
-/// The content of a log, for a format that serde writes.
+/// The report on a log, which serde can write in any format.
 #[derive(Debug, Serialize)]
 pub struct LogReply {
     format: String,
@@ -60,7 +59,7 @@ struct OfRun {
 }
 
 impl LogReply {
-    /// The content of a log, with notes in sentences.
+    /// Makes the report on a log, with notes in sentences.
     #[must_use]
     pub fn of(log: &Log, survey: &Survey, notes: Vec<String>) -> Self {
         let layout = log.layout();

@@ -1,4 +1,4 @@
-//! Replies to people and programs about a log and its parameters.
+//! Reports for people and programs on logs and identified parameters.
 
 pub(crate) mod log_reply;
 pub(crate) mod payload_reply;

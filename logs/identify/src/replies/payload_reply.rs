@@ -1,5 +1,5 @@
-//! A payload as data for other programs, as `rne identify --payload --json` and Python give it:
-//! docs/control/identify.md lists the keys.
+//! The report on a payload that `rne identify --payload --json` and Python return; docs/control/identify.md lists its
+//! keys.
 
 use rne_model::{Joint, Robot};
 use serde::Serialize;
@@ -8,7 +8,7 @@ use crate::fit::payload::{Payload, PayloadNumber};
 use crate::replies::prediction::JointError;
 use crate::replies::reply::{JudgedPart, finite};
 
-/// A payload, for a format that serde writes. Numbers that the log does not determine are missing.
+/// The report on a payload, which serde can write in any format. Numbers that the log does not determine are null.
 #[derive(Debug, Serialize)]
 pub struct PayloadReply {
     robot: String,
@@ -24,14 +24,14 @@ pub struct PayloadReply {
 #[derive(Debug, Serialize)]
 struct OfPayload {
     found: bool,
-    /// The frame of the numbers: the tip.
+    /// The frame in which the numbers are given: the tip.
     frame: &'static str,
     mass: Number,
     com: [Number; 3],
-    /// xx, yy, zz, xy, xz, yz
+    /// Inertia about the centre of mass: xx, yy, zz, xy, xz, yz.
     inertia: [Number; 6],
-    /// Mass, centre of mass and inertia as functions of an arm take them; zeros where there is no payload, null where
-    /// the mass is not known or below zero.
+    /// Mass, centre of mass and inertia as functions of an arm take them; zeros if there is no payload; null if the
+    /// mass is not known or negative.
     numbers: Option<[f64; 10]>,
 }
 
@@ -60,7 +60,7 @@ struct OfJoint {
 }
 
 impl PayloadReply {
-    /// The reply on a payload of a robot, with the errors of its joints without the payload and with it.
+    /// Makes the report on a payload of a robot, with the errors of its joints without the payload and with it.
     #[must_use]
     pub fn of(
         robot: &Robot,

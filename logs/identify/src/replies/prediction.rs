@@ -1,4 +1,4 @@
-//! Predicted torques of a robot file beside the measured torques of a log.
+//! Compares the torques that a robot file predicts with the measured torques of a log.
 
 use rne_logs::Motion;
 use rne_machine::{CompiledArm, Function};
@@ -11,7 +11,8 @@ use crate::motions::design::run;
 /// States that are computed at once.
 const WINDOW: usize = 4096;
 
-/// Speeds, rad/s or m/s, that part errors: standing still, creeping, slow, fast.
+/// Bounds of the four ranges of speed for which errors are given separately (at rest, very slow, slow, fast), rad/s or
+/// m/s.
 pub const SPEEDS: [f64; 3] = [0.02, 0.1, 0.5];
 
 /// Longest gap between states of one standstill, in intervals between states.
@@ -30,22 +31,24 @@ pub struct Prediction {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct JointError {
-    /// Root mean square of measured minus predicted torques, both after the same low-pass, over the standard deviation
-    /// of the measured effort: of the states about which the log has the whole kernel of the low-pass, unless it is
-    /// shorter than that.
+    /// Root mean square of measured minus predicted torques, both after the same low-pass filter, over the standard
+    /// deviation of the measured effort. Only states are used around which the log has samples for the whole kernel of
+    /// the filter, unless the log is shorter than the kernel.
     pub error: f64,
-    /// Root mean square of recorded minus predicted over the deviation of the recorded effort: at every instant, and
-    /// efforts as the log has them, before any filter.
+    /// Root mean square of recorded minus predicted torques, over the standard deviation of the recorded effort. All
+    /// states are used, and the efforts of the log are not filtered.
     pub unfiltered: f64,
-    /// The error of unfiltered predictions against efforts as the log is read, after its own filter, which is wider.
+    /// The error of predictions without the low-pass filter against efforts after the log's own filter, whose cut-off
+    /// is higher.
     pub as_read: f64,
-    /// Root mean square of measured minus predicted torques after the low-pass, N m or N.
+    /// Root mean square of measured minus predicted torques after the low-pass filter, N m or N.
     pub residual: f64,
-    /// Deviation of the measured effort, N m or N.
+    /// Standard deviation of the measured effort, N m or N.
     pub deviation: f64,
-    /// Root mean square of what is left at speeds up to each of [`SPEEDS`], and above; NaN where the joint was at none.
+    /// Root mean square of the residual, N m or N, in each range of speed that [`SPEEDS`] bound; NaN for ranges in
+    /// which the joint never was.
     pub by_speed: [f64; 4],
-    /// Part of the squared residual that arose at speeds up to the first of [`SPEEDS`], 0 to 1.
+    /// Part of the squared residual at speeds up to the first of [`SPEEDS`], 0 to 1.
     pub part_at_rest: f64,
     /// Longest standstill of the joint: no speed is above the first of [`SPEEDS`]. `None` if it never stood still.
     pub standstill: Option<Standstill>,
@@ -54,8 +57,8 @@ pub struct JointError {
 }
 
 impl JointError {
-    /// The error at speeds above the first of [`SPEEDS`], over the same standard deviation; `None` if the joint never
-    /// moved.
+    /// Returns the error at speeds above the first of [`SPEEDS`], over the standard deviation of the measured effort of
+    /// all states; `None` if the joint never moved.
     #[must_use]
     pub fn in_motion(&self) -> Option<f64> {
         let Self { error, residual, by_speed: [at_rest, ..], part_at_rest, .. } = *self;
@@ -71,14 +74,14 @@ impl JointError {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Standstill {
-    /// Time of its first state in the log, s.
+    /// Time of the first state of the standstill in the log, s.
     pub start: f64,
-    /// Time of its last state, s.
+    /// Time of the last state of the standstill in the log, s.
     pub end: f64,
 }
 
 impl Standstill {
-    /// Its duration, s.
+    /// The duration of the standstill, s.
     #[must_use]
     pub fn duration(&self) -> f64 {
         self.end - self.start
@@ -96,11 +99,11 @@ struct Sums {
     filtered: f64,
     by_speed: [(u64, f64); 4],
     longest: Option<Standstill>,
-    /// The standstill that may go on with the next state.
+    /// The standstill that lasted until the latest state and may continue.
     current: Option<Standstill>,
 }
 
-/// The running deviation of a series of numbers.
+/// The standard deviation of a series of numbers, updated number by number.
 #[derive(Clone, Copy, Debug, Default)]
 struct Deviation {
     mean: f64,
@@ -108,18 +111,19 @@ struct Deviation {
     squares: f64,
 }
 
-/// Measured and predicted torques after the low-pass, by joint, and the speed.
+/// For each joint, measured and predicted torques after the low-pass filter.
 type Pairs = Vec<Vec<(f64, f64)>>;
 
 impl Prediction {
-    /// Predicts by a robot with its rotors and friction. Both sides pass a low-pass of this cut-off, Hz.
+    /// Sets up predictions by a robot with its rotors and friction. Measured and predicted torques pass a low-pass
+    /// filter of this cut-off, Hz; none without a cut-off.
     #[must_use]
     pub fn new(robot: &Robot, cutoff: Option<f64>) -> Self {
         let arm = CompiledArm::from_robot(&robot.clone().with_rotors());
         Self { robot: robot.clone(), arm, cutoff, sums: vec![Sums::default(); robot.dof()] }
     }
 
-    /// The torques of a motion, joint by joint, N m or N: inverse dynamics with rotors, and friction.
+    /// Predicts the torques of each joint along a motion, N m or N: inverse dynamics with rotors, and friction.
     ///
     /// # Errors
     /// When the motion is of another robot.
@@ -140,7 +144,7 @@ impl Prediction {
         Ok(torques)
     }
 
-    /// Measured and predicted torques of a motion after the low-pass, joint by joint.
+    /// Returns measured and predicted torques of a motion after the low-pass filter, for each joint.
     ///
     /// # Errors
     /// When the motion is of another robot.
@@ -164,10 +168,10 @@ impl Prediction {
         pairs
     }
 
-    /// Takes in a motion.
+    /// Adds a motion to the errors.
     ///
     /// # Errors
-    /// When the motion is of another robot; nothing has been taken in then.
+    /// When the motion is of another robot; nothing has been added then.
     pub fn absorb(&mut self, motion: &Motion) -> Result<(), MotionError> {
         let predicted = self.torques(motion)?;
         let pairs = self.smoothed(motion, &predicted);
@@ -185,7 +189,8 @@ impl Prediction {
         Ok(())
     }
 
-    /// The states about which the whole kernel finds samples; all states if there are no such states.
+    /// Returns the states around which the log has samples for the whole kernel; all states if there are no such
+    /// states.
     fn inner(&self, time: &[f64]) -> std::ops::Range<usize> {
         let reach = self.cutoff.map_or(0.0, |cutoff| Kernel::of_cutoff(cutoff).reach());
         let (Some(first), Some(last)) = (time.first(), time.last()) else { return 0..0 };
@@ -194,15 +199,15 @@ impl Prediction {
         if start < end { start..end } else { 0..time.len() }
     }
 
-    /// The errors over all motions.
+    /// Returns the error of each joint over all motions.
     #[must_use]
     pub fn errors(&self) -> Vec<JointError> {
         self.sums.iter().map(Sums::error).collect()
     }
 }
 
-/// The errors of a robot file over motions: for each joint the root mean square of measured minus predicted torques,
-/// both behind a low-pass of this cut-off (Hz), over the deviation of the measured effort.
+/// Returns the errors of a robot file over motions: for each joint the root mean square of measured minus predicted
+/// torques, both after a low-pass filter of this cut-off, Hz, over the standard deviation of the measured effort.
 ///
 /// # Errors
 /// When a motion is of another robot.
@@ -219,7 +224,7 @@ pub fn prediction_errors<'a>(
 }
 
 impl Deviation {
-    /// Takes number `count` into the deviation, by B. P. Welford, Technometrics 4, 1962.
+    /// Updates the deviation by a number, the `count`-th of the series. B. P. Welford, Technometrics 4, 1962.
     #[allow(clippy::cast_precision_loss)] // fewer than 2⁵³ states
     fn take(&mut self, number: f64, count: u64) {
         let from = number - self.mean;

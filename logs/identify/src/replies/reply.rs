@@ -1,5 +1,5 @@
-//! An identification as data for other programs, as `rne identify --json` and Python give it: docs/control/identify.md
-//! lists the keys.
+//! The report on an identification that `rne identify --json` and Python return; docs/control/identify.md lists its
+//! keys.
 
 use rne_logs::Motion;
 use rne_model::{FrictionTransition, Joint, JointKind, Robot};
@@ -18,12 +18,12 @@ pub struct JudgedPart {
     pub until: Option<f64>,
     /// Number of states.
     pub states: u64,
-    /// Duration of the motions together, s.
+    /// Total duration of the motions, s.
     pub duration: f64,
 }
 
 impl JudgedPart {
-    /// Adds a motion.
+    /// Adds the states of a motion.
     pub fn add(&mut self, motion: &Motion) {
         if let (Some(first), Some(last)) = (motion.time.first(), motion.time.last()) {
             self.from.get_or_insert(*first);
@@ -34,8 +34,8 @@ impl JudgedPart {
     }
 }
 
-/// An identification with all numbers of the verdict, for a format that serde writes. Numbers that are not finite are
-/// missing.
+/// The report on an identification with all numbers of the verdict, which serde can write in any format. Numbers that
+/// are not finite are null.
 #[derive(Debug, Serialize)]
 pub struct IdentificationReply {
     robot: String,
@@ -136,7 +136,7 @@ struct OfFriction {
 }
 
 impl IdentificationReply {
-    /// The reply on an identified model.
+    /// Makes the report on an identified model.
     #[must_use]
     pub fn of(
         found: &Identification,
@@ -175,7 +175,7 @@ impl IdentificationReply {
         }
     }
 
-    /// The reply on a robot file that was judged on logs.
+    /// Makes the report on a robot file that was judged on logs.
     #[must_use]
     pub fn of_file(robot: &Robot, verdict: &Verdict, logs: Vec<String>, cutoff: f64, judged: JudgedPart) -> Self {
         Self {
@@ -246,7 +246,7 @@ fn joints(robot: &Robot, verdict: &Verdict) -> Vec<OfJoint> {
     each.map(joint).collect()
 }
 
-/// A number; none of one that is not finite.
+/// Returns the number, or `None` if it is not finite.
 pub(crate) fn finite(number: f64) -> Option<f64> {
     number.is_finite().then_some(number)
 }

@@ -24,7 +24,7 @@ const STANDSTILL: f64 = 0.5;
 /// Part of the squared residual that has to arise at rest for a standstill to explain an error.
 const AT_REST: f64 = 0.5;
 
-/// A residual that is rounding, N m or N.
+/// Largest residual that counts as rounding, N m or N.
 const NOTHING: f64 = 1e-9;
 
 /// The data on which a verdict is based.
@@ -43,7 +43,7 @@ pub enum Evidence {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Verdict {
-    /// The data on which it is based.
+    /// The data on which the verdict is based.
     pub evidence: Evidence,
     /// A verdict for each joint, base to tip.
     pub joints: Vec<JointVerdict>,
@@ -159,7 +159,7 @@ impl JointVerdict {
     fn new(fitted: Option<JointError>, other: Option<JointError>, doubts: Vec<Doubt>, is_excited: bool) -> Self {
         let mut verdict = Self { fitted, other, is_predicted: false, doubts };
         let Some(error) = verdict.error().copied() else { return verdict };
-        // an effort that does not change, and is what the model says, is predicted
+        // a constant effort has no standard deviation; it is predicted if the residual is only rounding
         let is_constant = error.deviation == 0.0 && error.residual <= NOTHING;
         verdict.is_predicted = is_excited && (is_constant || error.error <= PREDICTED);
         if let (false, Some(standstill)) = (verdict.is_predicted, error.standstill)
@@ -174,21 +174,22 @@ impl JointVerdict {
         verdict
     }
 
-    /// The error that decides: on other data if there is one, else on the data of the identification.
+    /// Returns the error that decides the verdict: the one on other data or, without one, that on the data of the
+    /// identification.
     #[must_use]
     pub fn error(&self) -> Option<&JointError> {
         self.other.as_ref().or(self.fitted.as_ref())
     }
 
-    /// The factor by which the held-out error is larger than the error on the data of the identification, if it is much
-    /// larger.
+    /// Returns the factor by which the held-out error is larger than the error on the data of the identification;
+    /// `None` if it is not much larger.
     #[must_use]
     pub fn growth(&self) -> Option<f64> {
         self.doubts.iter().find_map(|doubt| if let Doubt::Grown(factor) = doubt { Some(*factor) } else { None })
     }
 }
 
-/// The reasons that an identification knows.
+/// Returns the reasons for doubt that follow from an identification.
 fn doubts(report: &JointReport, held_out: Option<&JointError>) -> Vec<Doubt> {
     let mut doubts = Vec::new();
     if report.is_unexplained() {

@@ -1,4 +1,4 @@
-//! The robot file of an identification, with sources and deviations in its comments.
+//! Writes the robot file of an identification, with sources and standard deviations in its comments.
 
 use std::fmt::Write as _;
 
@@ -7,11 +7,11 @@ use rne_model::{JointKind, Robot, one_line};
 
 use crate::fit::identification::{Fit, Identification, JointReport};
 
-/// Begins a note on a joint.
+/// The beginning of a note on a joint that was not excited.
 const NOT_EXCITED: &str = "- joint not excited: ";
 
 impl Identification {
-    /// The text of the robot file; `logs` says in words from what it was identified.
+    /// Returns the text of the robot file; `logs` describes the logs of the identification in words.
     #[must_use]
     pub fn robot_file(&self, logs: &str) -> String {
         let mut unknown = String::new();
@@ -45,8 +45,8 @@ impl Identification {
         text
     }
 
-    /// The joints of which the notes of a robot file say that they were not excited when it was identified:
-    /// [`robot_file`](Self::robot_file) writes a line for each.
+    /// Returns for each joint whether the notes of a robot file say that it was not excited in the identification.
+    /// [`robot_file`](Self::robot_file) writes these notes.
     #[must_use]
     pub fn not_excited(robot: &Robot) -> Vec<bool> {
         let notes = robot.notes.as_deref().unwrap_or_default();
@@ -56,18 +56,19 @@ impl Identification {
 }
 
 impl Fit {
-    /// The text of the robot file, without deviations; `logs` says in words from what it was identified.
+    /// Returns the text of the robot file, without standard deviations; `logs` describes the logs of the identification
+    /// in words.
     #[must_use]
     pub fn robot_file(&self, logs: &str) -> String {
         robot_file::write(&described(&self.robot, logs, ""))
     }
 }
 
-/// A robot with its source and notes, the latter with what is added.
+/// Returns a robot with title, source and notes of the identification; `added` is appended to the notes.
 fn described(robot: &Robot, logs: &str, added: &str) -> Robot {
     let mut robot = robot.clone();
     let geometry = one_line(&robot.source);
-    // the title that the geometry came with is that of other links
+    // the title of the geometry's robot file would describe its links, not the identified ones
     robot.title = Some(format!("{} identified from {}", one_line(&robot.name), one_line(logs)));
     robot.source = format!("identified by rne from {}; geometry: {geometry}", one_line(logs));
     robot.notes = Some(format!(
@@ -77,7 +78,8 @@ fn described(robot: &Robot, logs: &str, added: &str) -> Robot {
     robot
 }
 
-/// The base parameters with their deviations: what the logs say, and what the file makes of it.
+/// Returns a comment that lists the base parameters: the least-squares values with their standard deviations, and the
+/// values from the links of the file.
 fn head(identification: &Identification) -> String {
     let excited = identification.bases.iter().filter(|base| base.is_excited()).count();
     let mut text = format!(
@@ -139,7 +141,7 @@ fn of_motor(report: &JointReport, kind: JointKind) -> Option<String> {
     ))
 }
 
-/// Four digits.
+/// Formats a number with four digits.
 fn short(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");

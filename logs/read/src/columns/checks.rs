@@ -1,4 +1,4 @@
-//! Checks of the names of columns, so that nothing is guessed.
+//! Checks the names of columns and refuses unclear ones, so that nothing is guessed.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -12,7 +12,7 @@ use crate::spelling::listed;
 use crate::{LogError, Options};
 
 impl<'a> Header<'a> {
-    /// No quantity has more columns than joints may be.
+    /// Refuses a quantity with more columns than the largest number of joints.
     pub(crate) fn check_count(&self, found: &[&Found]) -> Result<(), LogError> {
         let Some(one) = found.first().filter(|_| found.len() > MOST_JOINTS) else { return Ok(()) };
         let what = format!(
@@ -23,7 +23,7 @@ impl<'a> Header<'a> {
         Err(LogError::request(self.path, what).give(Setting::Prefix))
     }
 
-    /// No joint has two columns of one quantity.
+    /// Refuses two columns with the same quantity of one joint.
     pub(crate) fn check_once(&self, found: &[&Found]) -> Result<(), LogError> {
         work::add(found.len());
         let mut seen: HashMap<&str, &Found> = HashMap::with_capacity(found.len());
@@ -43,8 +43,8 @@ impl<'a> Header<'a> {
         Ok(())
     }
 
-    /// Joints with numbers are all there, from 0 or 1 on, and each has what others have; of joints that are asked for
-    /// by their numbers, these.
+    /// Checks that numbered joints are complete, from 0 or 1 on, and that all have the same quantities. If the options
+    /// ask for joints by their numbers, only these are checked.
     pub(crate) fn check_numbers(
         &self,
         positions: &[&Found],
@@ -96,12 +96,13 @@ impl<'a> Header<'a> {
         Ok(())
     }
 
-    /// The names of columns.
+    /// Lists the names of columns, for a message.
     fn listed(&self, found: &[&Found]) -> String {
         listed(found.iter().map(|found| self.name(found)))
     }
 
-    /// Units fit each other; where a name says one that is not of SI, those that say none are not guessed.
+    /// Checks that the units of a joint fit each other. If the name of one column has a unit other than SI, columns of
+    /// the quantity without a unit are refused, not guessed.
     pub(crate) fn check_units(
         &self,
         positions: &[&Found],

@@ -1,11 +1,11 @@
-//! Meaning of a table's column, by the pattern of its name.
+//! Finds the meaning of a table's column by the pattern of its name.
 
 use crate::TimeUnit;
 use crate::columns::quantity::Quantity;
 use crate::columns::unit::{self, Unit};
 use crate::limits::LONGEST_NAME;
 
-/// The words for a quantity, and whether they are words for a current. A word may be in capital letters.
+/// The words for a quantity, and whether they mean a current. Upper and lower case are equal.
 const WORDS: [(Quantity, bool, &[&str]); 4] = [
     (Quantity::Position, false, &["q", "position", "positions", "pos", "angle", "angles"]),
     (Quantity::Velocity, false, &["qd", "dq", "velocity", "velocities", "vel", "speed"]),
@@ -13,8 +13,8 @@ const WORDS: [(Quantity, bool, &[&str]); 4] = [
     (Quantity::Effort, true, &["current", "currents", "i"]),
 ];
 
-/// The names of columns of joints, in the order in which they are tried; an optional unit follows, as in `q1 [deg]`,
-/// `q1_deg` or `q1 deg`. The documentation of logs has this table.
+/// The patterns of the names of columns of joints, in the order in which they are tried. An optional unit follows, as
+/// in `q1 [deg]`, `q1_deg` or `q1 deg`. The documentation of logs has this table.
 const PATTERNS: [Pattern; 12] = [
     Pattern(Form::Number, "", ""),        // tables of `rne`, libfranka
     Pattern(Form::Number, "_", ""),       // ur_rtde
@@ -30,10 +30,11 @@ const PATTERNS: [Pattern; 12] = [
     Pattern(Form::JointBehind, "/", ""),  // messages written as columns
 ];
 
-/// The names of columns that are lists, a number of each joint in a row; an optional unit follows.
+/// The patterns of the names of columns of lists, which have in each row one number for each joint. An optional unit
+/// follows.
 const LISTS: [Pattern; 1] = [Pattern(Form::List, "", "")];
 
-/// Names of lists of positions in collections for learning.
+/// Names of lists of positions in data sets for robot learning.
 const STATES: [&str; 3] = ["observation.state", "observation/state", "observation_state"];
 
 const TIMES: [&str; 8] = ["time", "t", "ts", "timestamp", "stamp", "__time", "seconds", "time_from_start"];
@@ -44,28 +45,28 @@ const SEPARATORS: [char; 7] = ['/', '.', '_', '[', ']', ' ', ':'];
 /// Characters before a unit that is not in brackets.
 const BEFORE_UNITS: [char; 3] = ['_', ' ', '.'];
 
-/// Words that a name has at most: each end of a name is looked at, whether it is a unit.
+/// Largest number of words of a name. It bounds the work, because each ending of a name may be a unit.
 const MOST_WORDS: usize = 32;
 
-/// Whether a name is too long to be that of a joint or of times.
+/// Whether a name is too long to be that of a column of a joint or of times.
 fn is_too_long(name: &str) -> bool {
     name.len() > LONGEST_NAME || name.matches(BEFORE_UNITS).count() > MOST_WORDS
 }
 
-/// A column of a joint.
+/// The meaning of a column of a joint.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Named {
     pub(crate) quantity: Quantity,
-    /// Whether its word is one of currents.
+    /// Whether the word for the quantity means a current.
     pub(crate) is_current: bool,
-    /// Empty for a list, which has all joints.
+    /// The name of the joint; empty for a column of lists, which has all joints.
     pub(crate) joint: String,
-    /// The joint's number, where its name is one.
+    /// The number of the joint, if its name is a number.
     pub(crate) number: Option<u32>,
     pub(crate) unit: Option<Unit>,
 }
 
-/// Meaning of a name.
+/// Meaning of the name of a column.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Meaning {
     Joint(Named),
@@ -74,17 +75,17 @@ pub(crate) enum Meaning {
         quantity: Quantity,
         unit: String,
     },
-    /// It begins as a joint's and ends as nothing that is known, as in `q1_filtered`.
+    /// The name begins like that of a column of a joint, but its ending is unknown, as in `q1_filtered`.
     Like,
     Nothing,
 }
 
-/// How a name says its joint.
+/// The form in which a name gives its joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Form {
-    /// `q1`, and after the name of a group, `actual_q_1`
+    /// `q1`, or with the name of a group before it, `actual_q_1`.
     Number,
-    /// `elbow.position`, and after a path, `/joint_states/elbow/position`
+    /// `elbow.position`, or with a path before it, `/joint_states/elbow/position`.
     JointBefore,
     /// `position.elbow`
     JointBehind,
@@ -92,11 +93,11 @@ enum Form {
     List,
 }
 
-/// How a name says its joint, and the texts between and after the word and the joint.
+/// A pattern of names: its form, the text between the joint and the word for the quantity, and the text at the end.
 struct Pattern(Form, &'static str, &'static str);
 
 impl Pattern {
-    /// The column of a name without a unit at its end.
+    /// Returns the meaning of a name without a unit, if it fits this pattern.
     fn read(&self, name: &str) -> Option<(Named, Form)> {
         let &Self(form, between, after) = self;
         let name = name.trim_start_matches(SEPARATORS).strip_suffix(after)?;
@@ -125,7 +126,7 @@ pub(crate) fn meaning(name: &str, is_list: bool) -> Meaning {
     if is_list {
         return by(&LISTS, name);
     }
-    // the tool centre point is no joint
+    // columns of the tool centre point do not belong to a joint
     let is_tip = |name: &str| name.split(SEPARATORS).any(|word| word.eq_ignore_ascii_case("tcp"));
     if !is_too_long(name) && is_tip(name) { Meaning::Nothing } else { by(&PATTERNS, name) }
 }
@@ -147,12 +148,12 @@ fn by(patterns: &[Pattern], name: &str) -> Meaning {
     }
     let name = name.trim_end_matches("[]").trim_end_matches("()").trim_end();
     let mut is_like = false;
-    // the longest end first
+    // tries the longest ending as a unit first
     for (place, separator) in name.match_indices(BEFORE_UNITS) {
         let (rest, behind) = (&name[..place], &name[place + separator.len()..]);
         let Some((mut named, form)) = plain(rest) else { continue };
         is_like |= form == Form::Number;
-        // a joint may be called A or m
+        // `A` or `m` at the end may be the name of a joint
         let is_short = behind.chars().count() == 1;
         if let Some(unit) = Unit::parse(named.quantity, behind)
             && !(is_short && form == Form::JointBehind)
@@ -168,7 +169,7 @@ fn by(patterns: &[Pattern], name: &str) -> Meaning {
     }
 }
 
-/// The number of a joint whose name is one.
+/// Returns the number of a joint whose name is a number.
 pub(crate) fn joint_number(joint: &str) -> Option<u32> {
     joint.parse().ok().filter(|_| joint.bytes().all(|byte| byte.is_ascii_digit()))
 }
@@ -177,13 +178,14 @@ fn last(name: &str) -> &str {
     name.rsplit(SEPARATORS).next().unwrap_or_default()
 }
 
-/// `01` is joint 1; no digits are no joint.
+/// Removes leading zeros, so that `01` is joint 1; `None` without digits.
 fn without_zeros(digits: &str) -> Option<&str> {
     let significant = digits.trim_start_matches('0');
     if significant.is_empty() { digits.get(..1) } else { Some(significant) }
 }
 
-/// A name and the unit in brackets after it, as in `q1 [rad]`, `time (s)`; the number of a joint is not a unit.
+/// Splits a name from the unit in brackets after it, as in `q1 [rad]` or `time (s)`. The number of a joint in brackets
+/// is not a unit.
 pub(crate) fn bracketed(name: &str) -> (&str, Option<&str>) {
     let name = name.trim();
     let Some(begin) = name.rfind(['[', '(']) else { return (name, None) };
@@ -195,7 +197,7 @@ pub(crate) fn bracketed(name: &str) -> (&str, Option<&str>) {
     (name[..begin].trim_end(), Some(inner))
 }
 
-/// Whether a name is that of times, and the unit that it says; a text that is no unit of time is an error.
+/// Whether a name is that of a column of times, and the unit in the name. `Err` has a text that is no unit of time.
 pub(crate) fn time(name: &str) -> Option<Result<Option<TimeUnit>, String>> {
     if is_too_long(name) {
         return None;
@@ -273,7 +275,7 @@ mod tests {
             ("q1_filtered", Meaning::Like),
             ("tau1_lbft", Meaning::Like),
             ("qdd1", Meaning::Nothing),
-            // no pattern has a unit in the middle, or a joint after an underscore
+            // no pattern has a unit in the middle of a name, or a joint's name after an underscore
             ("q_deg_1", Meaning::Nothing),
             ("position_deg.elbow", Meaning::Nothing),
             ("position_elbow", Meaning::Nothing),
@@ -285,7 +287,7 @@ mod tests {
         }
     }
 
-    /// The tables of the documentation are those of this module.
+    /// The tables of patterns and words in the documentation are equal to those of this module.
     #[test]
     fn the_documentation_has_these_patterns_and_words() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/control/logs.md");

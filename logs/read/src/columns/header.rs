@@ -14,7 +14,7 @@ use crate::remedy::Setting;
 use crate::spelling::{instead, listed};
 use crate::{LogError, Options, TimeUnit};
 
-/// A column of a joint, and where it stands.
+/// The meaning of a column of a joint, and its index.
 #[derive(Clone, Debug)]
 pub(crate) struct Found {
     pub(crate) named: Named,
@@ -26,21 +26,21 @@ impl Found {
         Column { place: self.place, factor: self.named.unit.map_or(1.0, |unit| unit.factor) }
     }
 
-    /// Dimension of its numbers, from its name.
+    /// Returns the dimension of the numbers if the name of the column gives it.
     pub(crate) fn dimension(&self) -> Option<Dimension> {
         let of_word = self.named.is_current.then_some(Dimension::Current);
         self.named.unit.map(|unit| unit.dimension).or(of_word)
     }
 }
 
-/// A header, each name understood.
+/// The header of a table with the meaning of each name.
 pub(crate) struct Header<'a> {
     pub(crate) path: &'a Path,
     names: &'a [String],
     prefix: Option<&'a str>,
     pub(crate) found: Vec<Found>,
     pub(crate) times: Vec<TimeColumn>,
-    /// Columns like those of joints.
+    /// Indices of columns whose names resemble those of joints but have no known meaning.
     unread: Vec<usize>,
 }
 
@@ -72,7 +72,7 @@ impl<'a> Header<'a> {
         Ok(header)
     }
 
-    /// Takes the columns of the options' map: their places, and their meanings.
+    /// Finds the columns of the options' map; returns their indices and meanings.
     fn map(&mut self, options: &Options) -> Result<(HashSet<usize>, HashSet<Target>), LogError> {
         let wrong = |what: String| LogError::request(self.path, what);
         let mut places = HashSet::new();
@@ -95,7 +95,7 @@ impl<'a> Header<'a> {
         Ok((places, targets))
     }
 
-    /// Refuses a map for a joint without a column of positions, which would not be read.
+    /// Refuses a map for a joint that has no column of positions, because such a joint would not be read.
     pub(crate) fn check_map(&self, positions: &[&Found], options: &Options) -> Result<(), LogError> {
         let joints = || positions.iter().map(|found| found.named.joint.as_str());
         for mapping in &options.map {
@@ -132,7 +132,7 @@ impl<'a> Header<'a> {
         LogError::file(self.path, what).give(Setting::Map(self.names.to_vec()))
     }
 
-    /// The columns whose names say units that are not of SI.
+    /// Returns the names of the columns with units other than SI.
     pub(crate) fn converted(&self, time: Option<TimeColumn>, read: &[&Found]) -> Vec<String> {
         let is_other = |found: &&&Found| found.named.unit.is_some_and(|unit| !unit.is_si());
         let time = time.filter(|time| time.unit.is_some_and(|unit| unit != TimeUnit::Seconds));
@@ -141,7 +141,7 @@ impl<'a> Header<'a> {
         places.map(|place| self.names[place].clone()).collect()
     }
 
-    /// The columns that are not read.
+    /// Returns the names of the columns that are not read.
     pub(crate) fn unread(&self, joints: &[&Found], velocities: &[&Found], efforts: &[&Found]) -> Vec<String> {
         let of_joints = by_joint(joints);
         let has_position = |found: &&&Found| of_joints.contains_key(found.named.joint.as_str());
@@ -161,7 +161,7 @@ impl<'a> Header<'a> {
     }
 }
 
-/// Columns by the names of their joints.
+/// Makes a map from the names of joints to their columns.
 pub(crate) fn by_joint<'f>(found: &[&'f Found]) -> HashMap<&'f str, &'f Found> {
     work::add(found.len());
     found.iter().map(|found| (found.named.joint.as_str(), *found)).collect()

@@ -1,9 +1,9 @@
-//! Names for the columns of a table that is written, such that a log reads the joints back.
+//! Makes the names of the columns when a table is written, such that a log reads the joints back.
 
 use crate::Quantity;
 use crate::columns::guess::{Meaning, joint_number, meaning};
 
-/// Names of the columns of joints in a table that is written. A [`Log`](crate::Log) reads the joints back by them.
+/// Names of the columns of joints for writing a table. A [`Log`](crate::Log) reads the joints back by them.
 ///
 /// ```
 /// use rne_logs::{Heading, Quantity};
@@ -39,7 +39,8 @@ impl Form {
         }
     }
 
-    /// Whether a log reads this joint back from the columns. No column of accelerations is read by its name.
+    /// Whether a log reads this joint back from the names of its columns. Columns of accelerations are never read by
+    /// their names.
     fn says(self, joint: &str) -> bool {
         Quantity::ALL.into_iter().all(|quantity| match meaning(&self.column(0, joint, quantity), false) {
             Meaning::Joint(named) => named.quantity == quantity && named.joint == joint && named.unit.is_none(),
@@ -50,11 +51,11 @@ impl Form {
 }
 
 impl<'a> Heading<'a> {
-    /// Columns with the names of these joints. Joints that have numbers for names have columns by their order, as with
-    /// [`Heading::numbered`], and so do joints whose names a log does not read back from the name of a column.
+    /// Makes names of columns from the names of the joints. If joints have numbers as names, or names that a log could
+    /// not read back, the columns are numbered as with [`Heading::numbered`].
     #[must_use]
     pub fn of(joints: &'a [String]) -> Self {
-        // a cell of CSV ends at these
+        // these characters end a cell of CSV
         let is_cell = |joint: &String| !joint.contains([',', ';', '\t', '\n', '\r', '"']) && joint.trim() == joint;
         let is_name = |joint: &String| joint_number(joint).is_none() && is_cell(joint) && !joint.starts_with('#');
         let forms = [Form::JointFirst, Form::QuantityFirst];
@@ -62,19 +63,20 @@ impl<'a> Heading<'a> {
         Self { joints, form: form.unwrap_or(Form::Number) }
     }
 
-    /// Columns by the order of the joints: `q1`, `q2`, …, `qd1`, …, `qdd1`, …, `tau1`, ….
+    /// Makes numbered names of columns in the order of the joints: `q1`, `q2` and so on, likewise `qd1`, `qdd1` and
+    /// `tau1`.
     #[must_use]
     pub fn numbered(joints: &'a [String]) -> Self {
         Self { joints, form: Form::Number }
     }
 
-    /// The quantity of letters before the number of a joint: `q`, `qd`, `qdd` or `tau`.
+    /// Returns the quantity that the letters before the number of a joint mean: `q`, `qd`, `qdd` or `tau`.
     #[must_use]
     pub fn quantity(letters: &str) -> Option<Quantity> {
         Quantity::ALL.into_iter().find(|quantity| Self::letters(*quantity) == letters)
     }
 
-    /// The letters of a quantity before the number of a joint, such as `qd`.
+    /// Returns the letters for a quantity before the number of a joint, such as `qd`.
     #[must_use]
     pub const fn letters(quantity: Quantity) -> &'static str {
         match quantity {
@@ -85,13 +87,13 @@ impl<'a> Heading<'a> {
         }
     }
 
-    /// Whether the columns have no names of joints.
+    /// Whether the columns have numbers instead of names of joints.
     #[must_use]
     pub fn is_numbered(&self) -> bool {
         self.form == Form::Number
     }
 
-    /// The columns of a quantity, one for each joint.
+    /// Returns the names of the columns of a quantity, one for each joint.
     #[must_use]
     pub fn columns(&self, quantity: Quantity) -> Vec<String> {
         let joints = self.joints.iter().enumerate();
@@ -117,7 +119,7 @@ mod tests {
             (&["fer_joint1", "fer_joint2"], "fer_joint1.position"),
             (&["left/elbow", "right/elbow"], "position.left/elbow"),
             (&["Achse ä"], "Achse ä.position"),
-            // the unit of an angle and of a length
+            // names that end like a unit of an angle and of a length
             (&["finger_deg", "finger_m"], "finger_deg.position"),
             (&["1", "2"], "q1"),
             (&["elbow", "2"], "q1"),

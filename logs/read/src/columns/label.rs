@@ -1,23 +1,23 @@
-//! Columns of a table that say of which arm, or of which part of a log, a row is.
+//! Columns of texts in a table that give the arm, or the part of a log, to which a row belongs.
 
 use std::path::Path;
 
 use crate::LogError;
 use crate::spelling::{instead, listed};
 
-/// Values of a label that are counted: more are no names of arms or of parts.
+/// Largest number of different texts that are counted; a column with more does not name arms or parts.
 pub(crate) const MOST_VALUES: usize = 1000;
 
-/// Words for an arm, as names of columns have them.
+/// Words for an arm in names of columns.
 const ARMS: [&str; 6] = ["robot", "arm", "manipulator", "machine", "device", "asset"];
 
-/// Words that may follow them.
+/// Words that may follow a word for an arm.
 const ENDS: [&str; 7] = ["", "id", "name", "number", "nr", "no", "serial"];
 
-/// A column whose text is held, row by row.
+/// A column of texts, with the text of the latest row.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Label {
-    /// Where the reader has the column.
+    /// Index of the column in the reader.
     pub(crate) place: usize,
     pub(crate) name: String,
     /// The text that a row must have to be read.
@@ -31,7 +31,7 @@ impl Label {
         Self { place, name: name.to_owned(), wanted: wanted.map(str::to_owned), value: String::new() }
     }
 
-    /// Takes the text of a row; whether the row is one that is wanted.
+    /// Stores the text of a row; returns whether the row is selected.
     pub(crate) fn take(&mut self, text: &str) -> bool {
         if self.value != text {
             text.clone_into(&mut self.value);
@@ -39,22 +39,22 @@ impl Label {
         self.wanted.as_deref().is_none_or(|wanted| wanted == text)
     }
 
-    /// Whether rows are selected by the column.
+    /// Whether rows are selected by the texts of the column.
     pub(crate) fn is_selecting(&self) -> bool {
         self.wanted.is_some()
     }
 }
 
-/// Whether a column has the name of one that names arms, such as `robot_id`.
+/// Whether the name of a column shows that it names arms, such as `robot_id`.
 pub(crate) fn names_arms(column: &str) -> bool {
     let last = column.rsplit(['/', '.']).next().unwrap_or_default();
     let word: String = last.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
-    // a column `serial` may count rows
+    // `serial` alone is not accepted, because it may be a row counter
     matches!(word.as_str(), "serialnumber" | "serialno" | "serialnr")
         || ARMS.iter().any(|arm| word.strip_prefix(arm).is_some_and(|end| ENDS.contains(&end)))
 }
 
-/// The place of a column among the names of a table.
+/// Returns the index of a column among the names of a table.
 pub(crate) fn find(path: &Path, names: &[String], column: &str) -> Result<usize, LogError> {
     names.iter().position(|name| name.trim() == column.trim()).ok_or_else(|| {
         let near = instead(column, names);

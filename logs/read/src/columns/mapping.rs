@@ -1,4 +1,4 @@
-//! Columns of a table whose meaning is given, because their names do not say it.
+//! Gives meanings to columns of a table whose names do not show them.
 
 use std::fmt;
 use std::str::FromStr;
@@ -24,11 +24,11 @@ pub struct Mapping {
     /// The meaning of the column.
     pub target: Target,
     /// The name of the column, with its unit in brackets: either the brackets belong to the name, or they are added to
-    /// it. Without a unit, positions are in the unit that [`Options::angles`](crate::Options::angles) says.
+    /// it. Without a unit, positions are in the unit of [`Options::angles`](crate::Options::angles).
     pub column: String,
 }
 
-/// A quantity of a log.
+/// The meaning of a column: time, or a quantity of a joint.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Target {
     /// The time of a sample.
@@ -37,13 +37,13 @@ pub enum Target {
     Joint {
         /// The name of the joint in the log.
         joint: String,
-        /// Its quantity.
+        /// The quantity.
         quantity: Quantity,
     },
 }
 
 impl Target {
-    /// The target that a map would give a column with such a name.
+    /// Returns the target that a column with this name has without a map.
     pub(crate) fn of(named: &Named) -> Self {
         Self::Joint { joint: named.joint.clone(), quantity: named.quantity }
     }
@@ -77,17 +77,17 @@ impl fmt::Display for Target {
     }
 }
 
-/// A mapped column of a header.
+/// The meaning of a mapped column, with its unit.
 pub(crate) enum Mapped {
     Time(Option<TimeUnit>),
     Joint(Named),
 }
 
 impl Mapping {
-    /// The place of the column among the names of a header, with its meaning.
+    /// Returns the index of the column among the names of a header, with its meaning.
     ///
     /// # Errors
-    /// When no column has this name, or its unit is not known.
+    /// When no column has this name, or its unit is unknown.
     pub(crate) fn find(&self, header: &[String]) -> Result<(usize, Mapped), String> {
         let place = |name: &str| header.iter().position(|other| other.trim() == name.trim());
         let (base, unit) = bracketed(&self.column);
@@ -127,7 +127,7 @@ impl Mapping {
     }
 }
 
-/// Words in names of columns that hint at a quantity, in some languages. Nothing is read by them: they only make a
+/// Parts of words in several languages that hint at a quantity. They are not used to read a table, only to make a
 /// [suggestion](suggested).
 const HINTS: [(Quantity, &[&str]); 3] = [
     (Quantity::Position, &["pos", "angle", "winkel", "lage", "theta"]),
@@ -138,8 +138,8 @@ const HINTS: [(Quantity, &[&str]); 3] = [
 /// Words in names of columns that hint at times.
 const HINTS_OF_TIME: [&str; 6] = ["time", "stamp", "zeit", "temps", "clock", "date"];
 
-/// Mappings of a table for these joints, to be corrected by its owner: columns by hints in their names where there are
-/// any, else `COLUMN`.
+/// Suggests mappings of a table for these joints, which the user corrects. A column is chosen by hints in its name;
+/// without any, its name in the suggestion is `COLUMN`.
 #[must_use]
 pub fn suggested(columns: &[String], joints: &[String]) -> Vec<Mapping> {
     let is_time = |name: &&String| bracketed(name).1.is_some_and(|unit| time(unit).is_some());

@@ -1,4 +1,4 @@
-//! Columns of tables: which joint, quantity and unit a column has, by its name.
+//! Columns of tables: finds the joint, quantity and unit of a column by its name.
 
 pub(crate) mod checks;
 pub(crate) mod guess;

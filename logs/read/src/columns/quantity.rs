@@ -1,23 +1,24 @@
-//! Position, velocity, effort or acceleration.
+//! The quantities of a joint: position, velocity, effort or acceleration.
 
 /// A quantity of a joint in a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Quantity {
-    /// rad or m
+    /// Position, rad or m.
     Position,
-    /// rad/s or m/s
+    /// Velocity, rad/s or m/s.
     Velocity,
-    /// N m or N, or a current in A
+    /// Torque, N m, force, N, or current, A.
     Effort,
-    /// rad/s² or m/s². It is read from a column of a [`Mapping`](crate::Mapping) alone; else it is derived.
+    /// Acceleration, rad/s² or m/s². It is read only from a column of a [`Mapping`](crate::Mapping); otherwise it is
+    /// derived.
     Acceleration,
 }
 
 impl Quantity {
-    /// All of them, in the order of a state's numbers.
+    /// All quantities, in the order of the numbers of a state.
     pub const ALL: [Self; 4] = [Self::Position, Self::Velocity, Self::Effort, Self::Acceleration];
 
-    /// The word for it, as in `elbow.position`.
+    /// Returns the word for the quantity, as in `elbow.position`.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -28,7 +29,7 @@ impl Quantity {
         }
     }
 
-    /// The word for several of them, as in "positions of all joints".
+    /// Returns the plural of the word, as in "positions of all joints".
     #[must_use]
     pub const fn plural(self) -> &'static str {
         match self {

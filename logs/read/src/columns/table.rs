@@ -1,4 +1,4 @@
-//! The columns of a table that are read, by their names.
+//! Chooses the columns of a table that are read, by their names.
 
 use std::collections::HashSet;
 use std::path::Path;
@@ -14,36 +14,38 @@ use crate::{LogError, Options, TimeUnit};
 /// A column of numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Column {
-    /// Where it stands in a row.
+    /// Index of the column in a row.
     pub(crate) place: usize,
-    /// Factor of its numbers, from the unit in its name.
+    /// Factor from the unit in the column's name to the SI unit.
     pub(crate) factor: f64,
 }
 
-/// The columns of a table that are read, by their places.
+/// The columns of a table that are read, with their indices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Columns {
-    /// The place, and the unit that the name says.
+    /// The index of the column of times, and the unit in its name.
     pub(crate) time: Option<(usize, Option<TimeUnit>)>,
-    /// Joints that have a position: those with numbers by them, then the others in the order of their columns.
+    /// Names of the joints that have a position: first numbered joints by their numbers, then the others in the order
+    /// of their columns.
     pub(crate) names: Vec<String>,
     pub(crate) position: Vec<Column>,
-    /// By joint; empty where no joint has one.
+    /// For each joint its column, if it has one; empty if no joint has one.
     pub(crate) velocity: Vec<Option<Column>>,
     pub(crate) effort: Vec<Option<Column>>,
     pub(crate) acceleration: Vec<Option<Column>>,
     pub(crate) units: FileUnits,
-    /// The names of columns whose numbers are not of SI, by these.
+    /// The names of columns whose numbers are converted, because their names have units other than SI.
     pub(crate) converted: Vec<String>,
-    /// The names of columns that are not read: those like the columns of joints, and all others where no joint has a
-    /// velocity, or none an effort.
+    /// The names of columns that are not read: those that resemble columns of joints and, if no joint has a velocity or
+    /// none has an effort, all others.
     pub(crate) unread: Vec<String>,
     /// Other remarks for the reader of a survey.
     notes: Vec<String>,
 }
 
 impl Columns {
-    /// Finds out what columns are. With a prefix, the options' topic, those alone are joints' that begin with it.
+    /// Finds the meanings of the columns. If the options have a topic, it is a prefix: only columns that begin with it
+    /// belong to joints.
     pub(crate) fn of(path: &Path, header: &[String], options: &Options) -> Result<Self, LogError> {
         let named = Header::read(path, header, options)?;
         let [positions, velocities, efforts, accelerations] = Quantity::ALL.map(|quantity| named.of(quantity));
@@ -97,21 +99,21 @@ impl Columns {
         Ok(columns)
     }
 
-    /// Remarks: columns with converted units, and columns that are not read.
+    /// Returns remarks on columns with converted units, on columns that are not read, and other notes.
     pub(crate) fn remarks(&self) -> Vec<String> {
         let unread = (!self.unread.is_empty()).then(|| format!("columns that are not read: {}", listed(&self.unread)));
         converted(&self.converted).into_iter().chain(unread).chain(self.notes.iter().cloned()).collect()
     }
 }
 
-/// Remark on columns with units other than SI in their names.
+/// Returns a remark on columns with units other than SI in their names.
 pub(crate) fn converted(names: &[String]) -> Option<String> {
     let listed = listed(names);
     (!names.is_empty()).then(|| format!("rne converts numbers from the units in the names of columns: {listed}"))
 }
 
-/// Selects one effort for joints that have torques and currents: currents if the options have torque constants, else
-/// torques.
+/// Selects one column of efforts for joints that have torques and currents: currents if the options have torque
+/// constants, torques otherwise.
 fn torques_or_currents<'f>(efforts: &[&'f Found], has_constants: bool) -> Vec<&'f Found> {
     let is_current = |found: &Found| found.dimension() == Some(Dimension::Current);
     let joints = |current: bool| -> HashSet<&str> {
@@ -128,14 +130,14 @@ fn torques_or_currents<'f>(efforts: &[&'f Found], has_constants: bool) -> Vec<&'
     efforts.iter().filter(is_meant).copied().collect()
 }
 
-/// A remark on these names, if there are any.
+/// Adds a remark on these names, if there are any.
 pub(crate) fn note(what: &str, names: &[&str], notes: &mut Vec<String>) {
     if !names.is_empty() {
         notes.push(format!("{what}: {}", listed(names)));
     }
 }
 
-/// Joints that lack what others have.
+/// Returns remarks on joints without a velocity or an effort that other joints have.
 fn lacking(joints: &[&Found], velocities: &[&Found], efforts: &[&Found]) -> Vec<String> {
     let mut notes = Vec::new();
     for found in [velocities, efforts] {
@@ -228,7 +230,7 @@ mod tests {
     fn numbers_are_joints_in_any_order() {
         let mut header = vec!["time".to_owned()];
         for quantity in ["q", "position_", "qd", "tau"] {
-            // as texts are sorted: 1, 10, 11, 2, …
+            // in the order of sorted texts: 1, 10, 11, 2 and so on
             let mut names: Vec<String> = (1..=11).map(|joint| format!("{quantity}{joint}")).collect();
             names.sort();
             header.extend(names.into_iter().filter(|_| quantity != "position_"));
@@ -243,7 +245,7 @@ mod tests {
         }
     }
 
-    /// Refused headers, each with a part of the message.
+    /// Unclear headers are refused; each entry has a part of the message.
     #[test]
     fn what_is_not_clear_is_refused() {
         let degrees = Options { angles: Angles::Degrees, ..Options::default() };
@@ -307,7 +309,8 @@ mod tests {
         }
     }
 
-    /// Columns of as many joints, with a torque and a current, with names and others.
+    /// Names of columns with this number of joints, each with a position, a torque and a current, and with as many
+    /// other columns.
     fn wide(joints: usize) -> Vec<String> {
         let names_of = |joint| [format!("a{joint}_position"), format!("a{joint}_torque"), format!("a{joint}_current")];
         let others = (0..joints).map(|other| format!("temperature {other}"));
@@ -341,12 +344,12 @@ mod tests {
             let error = read(&header(quantity, joints)).unwrap_err().to_string();
             assert!(error.contains(&format!("1025 columns of {plural}; rne reads at most 1024 joints")), "{error}");
         }
-        // what is no name of a joint takes no time
+        // a long name that is not that of a joint takes no time
         let long = "q_1_".repeat(250_000);
         assert!(read(&["t".into(), "q1".into(), long]).is_ok());
     }
 
-    /// With two arms in one table, the times belong to the arm that is read.
+    /// With two arms in one table, the column of times of the arm that is read is used.
     #[test]
     fn times_are_those_of_the_group() {
         let right = Options { topic: Some("right".into()), ..Options::default() };
@@ -392,7 +395,7 @@ mod tests {
                 "other times that are not read: stamp",
             ]
         );
-        // where something is missing, it may be in a column of a name that says nothing
+        // a missing quantity may be in a column whose name has no known meaning
         assert_eq!(
             remarks(&["t", "q1", "Drehmoment 1", "", "Geschwindigkeit 1"]),
             ["columns that are not read: Drehmoment 1, Geschwindigkeit 1"]

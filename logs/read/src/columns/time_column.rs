@@ -1,4 +1,4 @@
-//! The column of a table that has the times.
+//! Finds the column of times of a table.
 
 use std::path::Path;
 
@@ -6,19 +6,19 @@ use crate::columns::guess::time;
 use crate::remedy::Setting;
 use crate::{LogError, Options, TimeUnit};
 
-/// A column whose name is that of times.
+/// A column whose name shows that it has times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TimeColumn {
     pub(crate) place: usize,
-    /// The unit that its name says.
+    /// The unit in the name.
     pub(crate) unit: Option<TimeUnit>,
-    /// Whether its name begins as those of the joints do that are asked for.
+    /// Whether the name begins with the prefix of the joints that the options ask for.
     is_of_group: bool,
-    /// Whether the options map it.
+    /// Whether the options map the column to times.
     pub(crate) is_mapped: bool,
 }
 
-/// A name behind the prefix that the options ask for; none if it begins otherwise.
+/// Returns a name without the prefix that the options ask for; `None` if it begins with something else.
 pub(crate) fn within<'a>(name: &'a str, options: &Options) -> Option<&'a str> {
     match &options.topic {
         Some(prefix) => name.trim_start_matches('/').strip_prefix(prefix.trim_matches('/')),
@@ -27,12 +27,12 @@ pub(crate) fn within<'a>(name: &'a str, options: &Options) -> Option<&'a str> {
 }
 
 impl TimeColumn {
-    /// A column that the options map to times.
+    /// Makes the column that the options map to times.
     pub(crate) fn mapped(place: usize, unit: Option<TimeUnit>) -> Self {
         Self { place, unit, is_of_group: true, is_mapped: true }
     }
 
-    /// The column of a name; none if it is not that of times.
+    /// Makes the column of times from its name; `None` if the name is not that of times.
     pub(crate) fn of(path: &Path, place: usize, name: &str, options: &Options) -> Result<Option<Self>, LogError> {
         let inner = within(name, options);
         let Some(unit) = time(name).or_else(|| inner.and_then(time)) else { return Ok(None) };
@@ -43,7 +43,8 @@ impl TimeColumn {
         Ok(Some(Self { place, unit, is_of_group: inner.is_some(), is_mapped: false }))
     }
 
-    /// The column that is read of several: the first whose name begins as those of the joints do, or the only one.
+    /// Chooses the column of times that is read: the first whose name begins with the prefix of the joints, or the only
+    /// one.
     pub(crate) fn choose<'a>(
         path: &Path,
         times: &[Self],
@@ -72,7 +73,7 @@ impl TimeColumn {
             let what = format!("the column {said} has times in {}, but you gave {}", unit.name(), asked.name());
             return Err(LogError::request(path, what).leave_out(Setting::TimeUnit));
         }
-        // stamp_sec and stamp_nanosec are one time in two columns
+        // refuses one time in two columns, such as stamp_sec and stamp_nanosec
         let stem = |name: &'a str| name.rsplit_once('_').map(|(stem, _)| stem);
         let other = others.iter().find(|other| {
             chosen.unit.is_some()
@@ -92,7 +93,7 @@ impl TimeColumn {
     }
 }
 
-/// Names of the columns of times that are not read.
+/// Returns the names of the columns of times that are not read.
 pub(crate) fn unread<'a>(
     times: &[TimeColumn],
     chosen: Option<TimeColumn>,

@@ -1,22 +1,22 @@
-//! Units of stamps in tables. Inside, stamps are whole nanoseconds: seconds since 1970 as a number of 53 bits are good
-//! to a quarter of a microsecond only, which is seen in velocities.
+//! Units of time stamps in tables. Internally, stamps are whole nanoseconds: floating-point seconds since 1970 have a
+//! resolution of only a quarter of a microsecond, which would add errors to velocities.
 
 /// The unit of a column of times.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TimeUnit {
-    /// s
+    /// Seconds, s.
     #[default]
     Seconds,
-    /// ms
+    /// Milliseconds, ms.
     Milliseconds,
-    /// µs
+    /// Microseconds, µs.
     Microseconds,
-    /// ns
+    /// Nanoseconds, ns.
     Nanoseconds,
 }
 
 impl TimeUnit {
-    /// Nanoseconds of one.
+    /// Returns the number of nanoseconds in one of this unit.
     pub(crate) fn nanoseconds(self) -> i64 {
         match self {
             Self::Seconds => 1_000_000_000,
@@ -26,14 +26,14 @@ impl TimeUnit {
         }
     }
 
-    /// A number of this unit, ns; none where it is no time between the years 1678 and 2262.
+    /// Converts a number of this unit to ns; `None` if it is not a time between the years 1678 and 2262.
     #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "the range is looked at")]
     pub(crate) fn number(self, number: f64) -> Option<i64> {
         let time = (number * self.nanoseconds() as f64).round();
         (time.abs() < 9e18).then_some(time as i64)
     }
 
-    /// A text of this unit, ns: exact where it is decimal.
+    /// Converts a text in this unit to ns. Decimal numbers are converted exactly.
     pub(crate) fn parse(self, text: &str) -> Option<i64> {
         let (negative, digits) = text.strip_prefix('-').map_or((false, text), |digits| (true, digits));
         let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
@@ -45,7 +45,7 @@ impl TimeUnit {
         let mut of_digit = self.nanoseconds();
         for digit in fraction.bytes().take(10) {
             let value = i64::from(digit - b'0');
-            // the last digit that counts is rounded
+            // rounds at the last digit of a nanosecond
             time = time.checked_add(if of_digit >= 10 { value * (of_digit / 10) } else { i64::from(value >= 5) })?;
             of_digit /= 10;
             if of_digit == 0 {
@@ -55,7 +55,7 @@ impl TimeUnit {
         Some(if negative { -time } else { time })
     }
 
-    /// Why a text is no time.
+    /// Returns the reason why a text is no time.
     pub(crate) fn refusal(self, text: &str) -> String {
         match text.parse::<f64>() {
             Ok(number) if number.is_finite() => {
@@ -66,7 +66,7 @@ impl TimeUnit {
         }
     }
 
-    /// The unit's symbol.
+    /// Returns the symbol of the unit.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -77,7 +77,7 @@ impl TimeUnit {
         }
     }
 
-    /// When a row is, of a table whose rows follow each other by a number of seconds.
+    /// Returns the time of a row, ns, of a table without times whose rows are `step` seconds apart.
     #[expect(clippy::cast_precision_loss, reason = "rows are fewer than 2^53")]
     pub(crate) fn step(row: u64, step: f64) -> i64 {
         Self::Seconds.number(row as f64 * step).unwrap_or(i64::MAX)

@@ -1,4 +1,4 @@
-//! Units that the names of columns say.
+//! Units in the names of columns.
 
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -10,20 +10,20 @@ use crate::{LogError, TimeUnit};
 /// Dimension of a joint's quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
-    /// rad, rad/s
+    /// An angle or angular velocity: rad, rad/s.
     Angle,
-    /// m, m/s
+    /// A length or linear velocity: m, m/s.
     Length,
-    /// N m
+    /// A torque: N m.
     Torque,
-    /// N
+    /// A force: N.
     Force,
-    /// A
+    /// A current: A.
     Current,
 }
 
-/// Dimensions of a joint's quantities, as far as the names of a table's columns give them: those numbers are in SI
-/// units then, whatever the options are.
+/// Dimensions of a joint's quantities, as far as the names of a table's columns give them. Such numbers are converted
+/// to SI units by their names, whatever the options are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct JointUnits {
@@ -37,7 +37,7 @@ pub struct JointUnits {
     pub acceleration: Option<Dimension>,
 }
 
-/// The units of a file: of joints by their names, and of all others.
+/// The units of a file, for each joint by its name, and for all other joints.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct FileUnits {
     pub(crate) joints: HashMap<String, JointUnits>,
@@ -50,7 +50,7 @@ impl FileUnits {
     }
 }
 
-/// A unit: what it measures, and how much of the SI unit one is.
+/// A unit: its dimension, and its factor to the SI unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Unit {
     pub(crate) dimension: Dimension,
@@ -59,10 +59,10 @@ pub(crate) struct Unit {
 
 const DEGREE: f64 = PI / 180.0;
 
-/// Bytes of the longest text that is looked at for a unit.
+/// Largest number of bytes of a text that may be a unit.
 const LONGEST: usize = 40;
 
-/// Units of positions, which per second are units of velocities.
+/// Units of positions; divided by s, they are units of velocities.
 const POSITIONS: [(&str, Dimension, f64); 15] = [
     ("rad", Dimension::Angle, 1.0),
     ("radian", Dimension::Angle, 1.0),
@@ -102,13 +102,13 @@ const TIMES: [(&[&str], TimeUnit); 4] = [
 ];
 
 impl Unit {
-    /// The unit of a quantity, as in `deg`, `N·m`, `rad s^-1`; none where it is not one that is known.
+    /// Reads the unit of a quantity, such as `deg`, `N·m` or `rad s^-1`; `None` if it is unknown.
     pub(crate) fn parse(quantity: Quantity, text: &str) -> Option<Self> {
         if text.len() > LONGEST {
             return None;
         }
         let text = text.replace("s^-1", "/s").replace("s⁻¹", "/s").replace("s-1", "/s").replace("per", "/");
-        // deg_s, where a name may have no stroke
+        // `deg_s` means deg/s, for names that cannot have a slash
         let text = match text.rsplit_once('_') {
             Some((before, behind)) if quantity == Quantity::Velocity && !text.contains('/') => {
                 format!("{before}/{behind}")
@@ -129,17 +129,17 @@ impl Unit {
                 let per = ["/s²", "/s^2", "/s2"].iter().find_map(|per| text.strip_suffix(per))?;
                 of_position(per)
             }
-            // the case of a letter is a prefix, of which one is a billion times the other
+            // case matters, because `m` is milli and `M` is mega
             Quantity::Effort => find(&EFFORTS, |name| name == text),
         }
     }
 
-    /// Whether numbers are as they are in SI units.
+    /// Whether numbers in this unit are in SI units already.
     pub(crate) fn is_si(self) -> bool {
         self.factor == 1.0
     }
 
-    /// The error for a column whose name says a unit that is not known.
+    /// Returns the error for a column whose name has an unknown unit.
     pub(crate) fn unknown(path: &Path, name: &str, quantity: Quantity, unit: &str) -> LogError {
         let (quantities, known) = (quantity.plural(), Self::known(quantity));
         let what = format!(
@@ -148,7 +148,7 @@ impl Unit {
         LogError::file(path, what)
     }
 
-    /// The units of a quantity that are known, for people.
+    /// Lists the known units of a quantity for messages.
     pub(crate) fn known(quantity: Quantity) -> &'static str {
         match quantity {
             Quantity::Position => "rad, mrad, deg, m, cm, mm",
@@ -161,7 +161,7 @@ impl Unit {
 
 fn of_position(text: &str) -> Option<Unit> {
     find(&POSITIONS, |name| name == text).or_else(|| {
-        // DEG and Rad are written, MM is no millimetre for sure
+        // case is ignored for words such as DEG and Rad, but not for MM, which may not mean millimetre
         let is_word = |name: &str| name.len() > 2 && name != "mrad" && name.eq_ignore_ascii_case(text);
         find(&POSITIONS, is_word)
     })
@@ -172,7 +172,7 @@ fn find(units: &[(&str, Dimension, f64)], is: impl Fn(&str) -> bool) -> Option<U
     unit.map(|(_, dimension, factor)| Unit { dimension: *dimension, factor: *factor })
 }
 
-/// A unit of time.
+/// Reads a unit of time.
 pub(crate) fn time(text: &str) -> Option<TimeUnit> {
     let text = text.trim();
     TIMES.iter().find(|(names, _)| names.contains(&text)).map(|(_, unit)| *unit)
@@ -216,7 +216,7 @@ mod tests {
         ] {
             assert_eq!(Unit::parse(quantity, text), None, "{text}");
         }
-        // what a message names is known
+        // every unit that a message lists is known
         for quantity in Quantity::ALL {
             for text in Unit::known(quantity).split(", ") {
                 assert!(Unit::parse(quantity, text).is_some(), "{text}");

@@ -1,11 +1,11 @@
-//! Rows of a table of text, of any length: a line without an end and a quote that is not closed are errors.
+//! Reads the rows of a text table of any length. Endless lines and unclosed quotes are errors.
 
 use std::io::{self, BufRead, ErrorKind, Read};
 
-/// The longest line, bytes; with its line ends where a quote holds them.
+/// Largest number of bytes of a row, including line ends within quotes.
 const LONGEST_LINE: u64 = 1 << 20;
 
-/// The rows of a table of text; `#` begins a comment.
+/// The rows of a text table; `#` begins a comment.
 pub struct CsvRows {
     /// The names of the columns, without blanks and quotes around them.
     pub header: Vec<String>,
@@ -13,14 +13,15 @@ pub struct CsvRows {
     record: csv::ByteRecord,
 }
 
-/// A reader that gives no more than what a line may have: a quote that is not closed would hold the whole file.
+/// A reader that returns at most the bytes of the longest row, because an unclosed quote would put the whole file into
+/// memory.
 struct Bounded {
     file: Box<dyn BufRead>,
     given: u64,
-    /// Largest number of bytes that may be given.
+    /// Position up to which bytes may be returned.
     end: u64,
     quoting: bool,
-    /// Whether what was given ends with a line: the last one may have no end, and is given one.
+    /// Whether the returned bytes end with a line end. If the last line has none, one is added.
     is_line: bool,
 }
 
@@ -49,10 +50,11 @@ impl Read for Bounded {
 }
 
 impl CsvRows {
-    /// Reads the header. With `quoting`, a cell in quotes may hold delimiters; without, a line is always a row.
+    /// Reads the header. With `quoting`, a cell in quotes may contain delimiters and line ends; without it, a line is
+    /// always a row.
     ///
     /// # Errors
-    /// The reason, in words, if the header cannot be read.
+    /// If the header cannot be read: the reason in words.
     pub fn open(file: Box<dyn BufRead>, delimiter: u8, quoting: bool) -> Result<Self, String> {
         let file = Bounded { file, given: 0, end: LONGEST_LINE, quoting, is_line: true };
         let mut builder = csv::ReaderBuilder::new();
@@ -62,14 +64,14 @@ impl CsvRows {
         Ok(Self { header: header.map(name).collect(), reader, record: csv::ByteRecord::new() })
     }
 
-    /// Reads the next row; whether there is one.
+    /// Reads the next row; returns whether there is one.
     ///
     /// # Errors
     /// The number of the line, and what is wrong with it.
     pub fn read(&mut self) -> Result<bool, (u64, String)> {
         let first = self.reader.position().line();
         if self.reader.get_ref().quoting {
-            // what is read ahead was given before
+            // the limit counts from the start of this row, not from the bytes that were read ahead
             self.reader.get_mut().end = self.reader.position().byte().saturating_add(LONGEST_LINE);
         }
         self.reader.read_byte_record(&mut self.record).map_err(|error| {
@@ -84,27 +86,28 @@ impl CsvRows {
         })
     }
 
-    /// The line on which the row that was just read begins, from 1. Its own position is that of empty lines before it.
+    /// Returns the line on which the current row begins, from 1. The position in the record would be that of empty
+    /// lines before it.
     #[must_use]
     pub fn line(&self) -> u64 {
         let inner: usize = self.record.iter().map(|cell| cell.split(|byte| *byte == b'\n').count() - 1).sum();
         self.reader.position().line().saturating_sub(1 + inner as u64).max(1)
     }
 
-    /// A cell of the row that was just read, without blanks and quotes around it. A missing cell is empty.
+    /// Returns a cell of the current row, without spaces and quotes around it. A missing cell is empty.
     #[must_use]
     pub fn cell(&self, place: usize) -> &[u8] {
         inner(self.record.get(place).unwrap_or_default())
     }
 
-    /// The bytes of the file that are read.
+    /// Returns the number of bytes of the file up to the end of the current row.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.reader.position().byte()
     }
 }
 
-/// A cell without blanks and quotes.
+/// Removes spaces and quotes around a cell.
 fn inner(cell: &[u8]) -> &[u8] {
     let cell = cell.trim_ascii();
     cell.strip_prefix(b"\"").and_then(|cell| cell.strip_suffix(b"\"")).unwrap_or(cell).trim_ascii()

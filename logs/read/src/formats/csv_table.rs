@@ -1,4 +1,4 @@
-//! Tables of text: CSV.
+//! Reads logs from text tables (CSV).
 
 use std::fs::File;
 use std::io::{self, BufRead as _, BufReader};
@@ -14,13 +14,13 @@ use crate::remedy::Setting;
 use crate::spelling::listed;
 use crate::{LogError, TimeUnit};
 
-/// A table of text, a sample a line.
+/// A text table with one sample per line.
 pub(crate) struct CsvTable {
     path: PathBuf,
     rows: CsvRows,
     columns: Columns,
     labels: Vec<Label>,
-    /// The columns that have no number in the first row.
+    /// The names of the columns that have words instead of numbers in the first row.
     words: Vec<String>,
     clock: Clock,
     is_time_unit_known: bool,
@@ -28,10 +28,10 @@ pub(crate) struct CsvTable {
     row: u64,
 }
 
-/// When a row was measured.
+/// Source of the time of a row.
 enum Clock {
     Column(usize, TimeUnit),
-    /// Seconds from row to row, of a table without times.
+    /// The interval between rows, s, for a table without times.
     Step(f64),
 }
 
@@ -53,7 +53,7 @@ impl CsvTable {
             ));
         }
         let delimiter = delimiter(first);
-        // lines are records: a quote that is not closed would hold the file
+        // without quoting: an unclosed quote would make one row of the whole file
         let rows = CsvRows::open(Box::new(file), delimiter, false).map_err(|what| LogError::file(path, what))?;
         let header = &rows.header;
         check_header(path, header)?;
@@ -102,7 +102,7 @@ impl CsvTable {
         })
     }
 
-    /// Whether the record is one of those that are selected.
+    /// Whether the texts of the row's labels are the selected ones.
     fn is_selected(&mut self) -> bool {
         let mut is_selected = true;
         for label in &mut self.labels {
@@ -200,7 +200,7 @@ impl Source for CsvTable {
     }
 }
 
-/// The sign between the cells of the first line that is neither blank nor a comment.
+/// Returns the delimiter of the cells in the first line that is neither blank nor a comment.
 fn delimiter(text: &[u8]) -> u8 {
     let header = text.split(|byte| *byte == b'\n').find(|line| !matches!(line.trim_ascii(), [] | [b'#', ..]));
     let header = header.unwrap_or_default();
@@ -228,7 +228,7 @@ fn check_header(path: &Path, header: &[String]) -> Result<(), LogError> {
     Ok(())
 }
 
-/// Error for a table without times.
+/// Returns the error for a table without times.
 pub(crate) fn no_time(path: &Path, names: impl IntoIterator<Item: AsRef<str>>) -> LogError {
     let what = format!(
         "no column has times: name the column of times time, t, stamp or timestamp; the columns of this file are {}",
@@ -237,19 +237,19 @@ pub(crate) fn no_time(path: &Path, names: impl IntoIterator<Item: AsRef<str>>) -
     LogError::request(path, what)
 }
 
-/// Error for a table with times, if a sampling rate is given.
+/// Returns the error for a sampling rate in the options although the table has times.
 pub(crate) fn two_times(path: &Path, name: &str) -> LogError {
     let what = format!("the column {name} has times, but a sampling rate can be given only for tables without times");
     LogError::request(path, what).leave_out(Setting::Rate)
 }
 
-/// Hint for a number with a decimal comma.
+/// Returns a hint if a cell looks like a number with a decimal comma.
 fn of_comma(cell: &[u8]) -> &'static str {
     let is_like = cell.contains(&b',') && cell.iter().all(|byte| byte.is_ascii_digit() || b"+-,eE".contains(byte));
     if is_like { ": write a decimal point, not a decimal comma" } else { "" }
 }
 
-/// Whether a cell has a text that is no number.
+/// Whether a cell is not empty and not a number.
 fn is_word(cell: &[u8]) -> bool {
     let cell = std::str::from_utf8(cell).unwrap_or_default();
     !cell.is_empty() && cell.parse::<f64>().is_err()

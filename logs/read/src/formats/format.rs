@@ -1,4 +1,4 @@
-//! The format of a file, by its first bytes.
+//! Recognizes the format of a file by its first bytes.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -46,7 +46,7 @@ impl fmt::Display for Format {
     }
 }
 
-/// How files of a format begin.
+/// The first bytes of files of each format.
 const BEGINNINGS: [(&[u8], Format); 4] = [
     (b"SQLite format 3\0", Format::Sqlite),
     (b"\x89MCAP0\r\n", Format::Mcap),
@@ -65,7 +65,7 @@ const OTHERS: [(&[u8], &str); 6] = [
 ];
 
 impl Format {
-    /// Whether the log is a table or an array, whose states are rows; those of a bag are messages.
+    /// Whether states are rows, as in a table or an array, and not messages, as in a bag.
     #[must_use]
     pub fn has_rows(self) -> bool {
         match self {
@@ -74,7 +74,7 @@ impl Format {
         }
     }
 
-    /// The format of a file.
+    /// Returns the format of a file.
     pub(crate) fn of(path: &Path) -> Result<Self, LogError> {
         let wrong = |error: std::io::Error| match error.kind() {
             ErrorKind::NotFound => LogError::file(path, "there is no such file"),
@@ -131,7 +131,7 @@ impl Format {
         }
     }
 
-    /// Opens a file of this format. Rows are selected as the options say, and columns that name arms are held.
+    /// Opens a file of this format. It selects rows by the options, and watches columns that name arms.
     pub(crate) fn open(self, path: &Path, options: &Options) -> Result<Box<dyn Source>, LogError> {
         let mut source = self.source(path, options)?;
         let columns = source.label_columns();
@@ -192,7 +192,7 @@ impl Format {
     }
 }
 
-/// The files that are meant by names: of a folder, as rosbag2 writes it, the bags inside.
+/// Returns the files of the given paths. A folder, as rosbag2 writes it, is replaced by the bags inside.
 pub(crate) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, LogError> {
     let mut files = Vec::new();
     for path in paths {
@@ -225,11 +225,11 @@ pub(crate) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, LogError> {
     Ok(files)
 }
 
-/// No file is named twice, by whatever path: its states would count twice.
+/// Refuses a file that is given twice, also by different paths, because its states would count twice.
 pub(crate) fn check_once(files: &[PathBuf]) -> Result<(), LogError> {
     let mut seen = BTreeSet::new();
     for file in files {
-        // what is not there is said where it is read
+        // a missing file is reported when it is read
         if let Ok(place) = fs::canonicalize(file)
             && !seen.insert(place)
         {
@@ -239,7 +239,7 @@ pub(crate) fn check_once(files: &[PathBuf]) -> Result<(), LogError> {
     Ok(())
 }
 
-/// The number of a part, so that `bag_10` comes behind `bag_9`; then its name.
+/// Returns the sort key of a part of a bag: its number, so that `bag_10` comes after `bag_9`, then its name.
 fn part(file: &Path) -> (u64, PathBuf) {
     let stem = file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let digits = stem.len() - stem.trim_end_matches(|c: char| c.is_ascii_digit()).len();

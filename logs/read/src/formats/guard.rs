@@ -6,15 +6,14 @@ thread_local! {
     static GUARDED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether this thread is reading a file by a library whose panic is about to become a
-/// [`LogError`](crate::LogError). A program may ask in its panic hook, and print nothing then; this crate leaves the
-/// hook of its process alone.
+/// Whether this thread is reading a file by a library whose panic is about to become a [`LogError`](crate::LogError). A
+/// program may call this in its panic hook and print nothing if it is true. This crate does not change the panic hook.
 #[must_use]
 pub fn is_guarded() -> bool {
     GUARDED.get()
 }
 
-/// Result of a call; `None` if it panicked. Values that it borrowed must not be used then.
+/// Returns the result of a call; `None` if it panicked. After a panic, values that the call borrowed must not be used.
 #[cfg(any(feature = "bags", feature = "parquet"))]
 pub(crate) fn guarded<T>(call: impl FnOnce() -> T) -> Option<T> {
     let before = GUARDED.replace(true);
@@ -31,7 +30,7 @@ mod tests {
         static HEARD: Cell<u32> = const { Cell::new(0) };
     }
 
-    /// The hook of the process hears of it, and may ask whether it is one of these.
+    /// The panic hook is called, and `is_guarded` is true in it.
     #[test]
     fn a_panic_is_nothing_and_leaves_the_hook_alone() {
         let usual = std::panic::take_hook();

@@ -1,4 +1,4 @@
-//! A reader for each format of files.
+//! Readers for the file formats of logs.
 
 #[cfg(feature = "bags")]
 pub(crate) mod bags;

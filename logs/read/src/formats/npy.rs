@@ -1,4 +1,4 @@
-//! The format of numpy's arrays.
+//! Reads and writes the format of NumPy arrays.
 
 mod header;
 
@@ -6,24 +6,24 @@ use std::io::{self, BufReader, Read};
 
 use self::header::{Header, Kind, header};
 
-/// An array of numbers, `*.npy`, that is read from its beginning to its end.
+/// An array of numbers in a file `*.npy`, which is read from its beginning to its end.
 pub struct Npy {
-    /// Elements along each axis.
+    /// Number of elements along each axis.
     pub shape: Vec<u64>,
-    /// The numbers as they stand in the file, the last axis first: float64, or float32 made wider.
+    /// The numbers in the order of the file, in which the last index changes fastest; float32 is converted to float64.
     pub numbers: Box<dyn Iterator<Item = io::Result<f64>>>,
-    /// Bytes of the header and of the numbers.
+    /// Number of bytes of the header and the numbers.
     pub(crate) length: u64,
 }
 
 impl Npy {
-    /// First bytes of a file of numpy.
+    /// The first bytes of a NumPy file.
     pub const MAGIC: &[u8] = b"\x93NUMPY";
 
     /// Reads the header of an array of numbers; no number is read yet.
     ///
     /// # Errors
-    /// One line: when there is no array of float64 or float32, or it is in Fortran's order.
+    /// A message of one line if the file is no array of float64 or float32, or has Fortran order.
     pub fn open(mut file: impl Read + 'static) -> Result<Self, String> {
         let (text, before) = header(&mut file).map_err(|reason| format!("not an array of numpy: {reason}"))?;
         let Header { kind, is_fortran, shape } =
@@ -38,13 +38,13 @@ impl Npy {
         Ok(Self { shape, numbers: Box::new(numbers), length })
     }
 
-    /// The header of a table of float64 in version 1 of the format. It has 128 bytes whatever the number of rows is, so
-    /// it can be written anew in its place when all rows are there.
+    /// Returns the header of a table of float64 in version 1 of the format. It always has 128 bytes, so it can be
+    /// overwritten when the number of rows is known.
     #[must_use]
     pub fn header(rows: u64, columns: u64) -> Vec<u8> {
         let text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({rows}, {columns}), }}");
         let mut bytes = Self::MAGIC.to_vec();
-        // the version, and what follows in two bytes: 118
+        // version 1.0, and the length of the rest of the header in two bytes: 118
         bytes.extend([1, 0, 118, 0]);
         bytes.extend(format!("{text:<117}\n").bytes());
         bytes
@@ -57,7 +57,7 @@ impl std::fmt::Debug for Npy {
     }
 }
 
-/// The numbers of an array, in order.
+/// Iterates over the numbers of an array.
 struct Numbers<R> {
     file: BufReader<R>,
     kind: Kind,
@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn a_header_that_is_written_is_that_of_numpy() {
-        // numpy.lib.format.write_array_header_1_0 of numpy 2, cut behind the text
+        // output of numpy.lib.format.write_array_header_1_0 of NumPy 2, without the spaces after the text
         let text = "\u{1}\0v\0{'descr': '<f8', 'fortran_order': False, 'shape': (1500, 7), }";
         for (rows, columns) in [(0, 1), (1500, 7), (u64::MAX, u64::MAX)] {
             let bytes = Npy::header(rows, columns);

@@ -1,4 +1,4 @@
-//! Arrays of numpy: `*.npy`.
+//! Reads logs from NumPy arrays, `*.npy`.
 
 use std::fs::File;
 use std::io::{self, ErrorKind};
@@ -13,7 +13,7 @@ use crate::{LogError, Npy, Options, TimeUnit};
 /// Quantities of an array, in their default order.
 const QUANTITIES: [&str; 4] = ["time", "q", "qd", "tau"];
 
-/// An array of states by columns, a sample a row.
+/// An array with one sample per row; its columns are the quantities of the joints.
 pub(crate) struct NpyArray {
     path: PathBuf,
     numbers: Box<dyn Iterator<Item = io::Result<f64>>>,
@@ -23,7 +23,7 @@ pub(crate) struct NpyArray {
     unit: TimeUnit,
     is_time_unit_known: bool,
     step: Option<f64>,
-    /// Where the first column of a quantity is: of times, positions, velocities, efforts.
+    /// Indices of the first columns of times, positions, velocities and efforts.
     places: [Option<usize>; 4],
     names: Vec<String>,
 }
@@ -140,7 +140,7 @@ impl Source for NpyArray {
     }
 }
 
-/// Where quantities stand in a row, and how many joints there are.
+/// Returns the index of the first column of each quantity, and the number of joints.
 fn places(path: &Path, columns: &[&str], width: u64) -> Result<([Option<usize>; 4], usize), LogError> {
     let mut order = Vec::new();
     for column in columns {

@@ -1,4 +1,4 @@
-//! The patterns that are refused, and the words to write instead.
+//! The patterns that the task `prose` refuses, with advice.
 
 use anyhow::{Context, Result};
 use regex_lite::Regex;
@@ -7,11 +7,11 @@ use regex_lite::Regex;
 pub(super) struct Rule {
     /// The pattern, as a regular expression.
     pub(super) pattern: &'static str,
-    /// Whether a sentence has to begin with it.
+    /// Whether the pattern only counts at the beginning of a sentence.
     pub(super) begins: bool,
-    /// Words to write instead.
+    /// Advice on what to write instead.
     pub(super) instead: &'static str,
-    /// A text that the rule finds, for the test.
+    /// A text that the rule must find, for the test.
     #[cfg_attr(not(test), expect(dead_code, reason = "the test of the rules reads it"))]
     pub(super) example: &'static str,
 }
@@ -59,7 +59,8 @@ pub(super) const RULES: &[Rule] = &[
     anywhere(r"\bunless given\b", "[default: …]", "the low-pass; by the spectrum, unless given"),
 ];
 
-/// The rules, to be searched for. A sentence begins with the text, or after a full stop, a mark of emphasis between.
+/// Compiles the rules. A sentence begins at the beginning of a text, or after the mark that ends another; emphasis may
+/// come between.
 pub(super) fn rules() -> Result<Vec<(Regex, &'static Rule)>> {
     let of = |rule: &'static Rule| {
         let pattern =

@@ -1,4 +1,4 @@
-//! The state that every reader of a file needs.
+//! The state that all readers of a file share.
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -12,28 +12,28 @@ use crate::text::keys::Mapping;
 use crate::text::source::{quoted, six_digits};
 use crate::text::spelling::{LONGEST_WORD, did_you_mean};
 
-/// The state that every reader needs: the text, the names of the numbers, and where mistakes go.
+/// The state that all readers of a file share: its text, its parameters, and the mistakes found so far.
 pub(crate) struct Context<'t> {
     pub(crate) text: &'t str,
     pub(crate) problems: &'t Problems,
-    /// The named constants; in the order of their names, so that suggestions do not depend on chance.
+    /// The parameters of the file, sorted by name, so that suggestions are the same in every run.
     pub(crate) parameters: RefCell<BTreeMap<String, Parameter>>,
-    /// The parameters that stay free until run time, and what is found to depend on them.
+    /// The parameters that stay free until run time, and the numbers found to depend on them.
     pub(crate) run_time: RefCell<RunTime>,
-    /// Parameters that have another value than that of the file.
+    /// Parameters that the caller gives another value than the file has.
     pub(crate) settings: &'t [(&'t str, f64)],
-    /// The mappings that the format has, of those the file opens; once each.
+    /// The kinds of mappings that were read in this file, each once.
     pub(crate) mappings: RefCell<Vec<Mapping>>,
     /// The name of the floating base, if the file has one: it means the same as `base`.
     pub(crate) base_name: RefCell<Option<String>>,
-    /// How many unknown words were compared with known ones.
+    /// How many unknown words have been compared with known ones.
     suggestions: Cell<usize>,
 }
 
-/// A named constant of the file.
+/// A parameter of the file.
 pub(crate) struct Parameter {
     pub(crate) span: Range<usize>,
-    /// The place of its expression.
+    /// The place of the expression of the parameter.
     pub(crate) value: Range<usize>,
     pub(crate) meaning: Meaning,
     pub(crate) used: Cell<bool>,
@@ -66,7 +66,7 @@ impl Names for Context<'_> {
 }
 
 impl<'t> Context<'t> {
-    /// `run_time` are the names of the parameters that stay free until run time.
+    /// Makes the context of a text; `run_time` are the names of the parameters that stay free until run time.
     pub(crate) fn new(text: &'t str, problems: &'t Problems, run_time: &[&str]) -> Self {
         let names = run_time.iter().map(|&name| name.to_owned()).collect();
         let run_time = RefCell::new(RunTime { names, ..RunTime::default() });
@@ -82,13 +82,13 @@ impl<'t> Context<'t> {
         }
     }
 
-    /// With other values of these parameters.
+    /// Sets other values for these parameters.
     pub(crate) fn with_settings(self, settings: &'t [(&'t str, f64)]) -> Self {
         Self { settings, ..self }
     }
 
-    /// The candidate that `word` was probably meant to be. The numbers of candidates and words bound the work that a
-    /// file of nothing but unknown words can cause; a report shows fewer mistakes.
+    /// Returns the candidate that `word` was probably meant to be. The numbers of words and candidates are limited,
+    /// because a file of nothing but unknown words could cause too much work; a report shows fewer mistakes than that.
     pub(crate) fn did_you_mean<'c>(
         &self,
         word: &str,
@@ -99,23 +99,23 @@ impl<'t> Context<'t> {
         if self.suggestions.get() > MOST {
             return None;
         }
-        // What is so much longer is not meant; a character has at most four bytes.
+        // A candidate this much longer cannot be meant; a character has at most four bytes.
         let candidates = candidates.into_iter().take(MOST).filter(|candidate| candidate.len() <= 8 * LONGEST_WORD);
         let compared = |candidate: &&str| self.problems.count(candidate.len() * word.len().min(LONGEST_WORD));
         did_you_mean(word, candidates.inspect(compared))
     }
 
-    /// Whether a mistake is found already.
+    /// Returns whether an error has been found already.
     pub(crate) fn has_errors(&self) -> bool {
         self.problems.has_errors()
     }
 
-    /// Index of the run-time parameter with this name, if there is one.
+    /// Returns the index of the run-time parameter with this name, if there is one.
     pub(crate) fn run_time_index(&self, name: &str) -> Option<usize> {
         self.run_time.borrow().names.iter().position(|known| known == name)
     }
 
-    /// The name of a run-time parameter.
+    /// Returns the name of a run-time parameter.
     pub(crate) fn parameter_name(&self, index: Option<usize>) -> String {
         let run_time = self.run_time.borrow();
         index.and_then(|index| run_time.names.get(index)).cloned().unwrap_or_default()
@@ -132,7 +132,7 @@ impl<'t> Context<'t> {
         self.problems.push(diagnostic);
     }
 
-    /// Reports a mistake in place of a value.
+    /// Reports a mistake and returns `None` in place of a value.
     pub(crate) fn refuse<T>(&self, diagnostic: Diagnostic) -> Option<T> {
         self.report(diagnostic);
         None
@@ -147,12 +147,12 @@ impl<'t> Context<'t> {
         self.refuse(Diagnostic::error(node.head(), message).label(format!("{expected} is needed")).maybe_help(help))
     }
 
-    /// The text as it stands in the file, for messages and suggestions.
+    /// Returns the text of a node as the file writes it, for messages and suggestions.
     pub(crate) fn raw(&self, node: &Node) -> &'t str {
         self.text.get(node.span.clone()).unwrap_or_default()
     }
 
-    /// A number as its author wrote it, with the value where that is an expression.
+    /// Shows a number as the file writes it; an expression is followed by its value.
     pub(crate) fn shown(&self, node: &Node, value: f64) -> String {
         let raw = self.raw(node);
         match raw.parse::<f64>() {

@@ -1,4 +1,4 @@
-//! Mappings with known keys, and the help against keys that are not known.
+//! Reads mappings with known keys, and gives help for unknown keys.
 
 use super::Context;
 use crate::text::diagnostic::Diagnostic;
@@ -24,22 +24,22 @@ macro_rules! read_mapping {
 }
 pub(crate) use read_mapping;
 
-/// Whether a rule of [`read_mapping`] is `required`, which alone begins so.
+/// Returns whether a rule of [`read_mapping`] begins with the word `required`.
 pub(crate) const fn is_required(rule: &str) -> bool {
     matches!(rule.as_bytes(), [b'r', ..])
 }
 
-/// The keys of one mapping, while they are read.
+/// The keys of a mapping while they are read.
 pub(crate) struct Fields<'d> {
     cx: &'d Context<'d>,
     node: &'d Node,
     what: &'static str,
-    /// Keys for which a misspelling is already reported.
+    /// Keys for which a misspelling has been reported already.
     misspelt: Vec<&'static str>,
 }
 
 impl<'d> Fields<'d> {
-    /// Opens a mapping; every key that it may not have is reported here.
+    /// Opens a mapping and reports every key that it may not have.
     pub(crate) fn open(cx: &'d Context<'d>, node: &'d Node, mapping: Mapping) -> Option<Self> {
         let what = mapping.name;
         let allowed: Vec<&'static str> = mapping.keys.iter().map(|key| key.name).collect();
@@ -53,7 +53,7 @@ impl<'d> Fields<'d> {
             let help = "a robot file begins with `format: 1`, or with `format: 2`";
             return cx.refuse(Diagnostic::error(node.head(), message).label("no robot file").help(help));
         };
-        // Each key is compared with those allowed, and looked for by each of them.
+        // Each key is compared with the allowed ones, and each allowed key is searched among them.
         cx.problems.count(2 * entries.len() * allowed.len());
         let missing: Vec<_> = allowed.iter().copied().filter(|allowed| node.get(allowed).is_none()).collect();
         let mut misspelt = Vec::new();
@@ -86,7 +86,7 @@ impl<'d> Fields<'d> {
         Some(Self { cx, node, what, misspelt })
     }
 
-    /// The value of a key that must be there.
+    /// Reads the value of a key that must be there.
     pub(crate) fn required<T>(
         &self,
         key: &'static str,
@@ -103,7 +103,7 @@ impl<'d> Fields<'d> {
         self.cx.refuse(missing.maybe_help(how_to_write(key).map(str::to_owned)))
     }
 
-    /// The value of a key, or `default` when it is not there.
+    /// Reads the value of a key, or returns `default` when the key is not there.
     pub(crate) fn or<T>(
         &self,
         key: &'static str,
@@ -112,12 +112,12 @@ impl<'d> Fields<'d> {
     ) -> Option<T> {
         match self.node.get(key) {
             Some(node) => reader(self.cx, node),
-            // What a misspelt key holds is unknown: the default would only cause further complaints.
+            // The value of a misspelt key is unknown, and the default instead of it could only cause further messages.
             None => (!self.misspelt.contains(&key)).then_some(default),
         }
     }
 
-    /// The value of a key; `Some(None)` when it is not there.
+    /// Reads the value of a key; returns `Some(None)` when the key is not there.
     #[allow(clippy::option_option)] // the outer `None`, as everywhere here, is a reported mistake
     pub(crate) fn optional<T>(
         &self,
@@ -128,7 +128,7 @@ impl<'d> Fields<'d> {
     }
 }
 
-/// An example of a required key.
+/// Returns an example of a required key.
 fn how_to_write(key: &str) -> Option<&'static str> {
     Some(match key {
         "format" => "begin the file with `format: 1`",
@@ -147,7 +147,8 @@ fn how_to_write(key: &str) -> Option<&'static str> {
     })
 }
 
-/// `theta:0` or `theta 0`, which YAML takes for a key without a value: the key that is meant, and what is wrong.
+/// Recognises `theta:0` or `theta 0`, which YAML reads as a key without a value. Returns the key that is meant, and the
+/// error.
 fn without_blank(entry: &Entry, missing: &[&'static str]) -> Option<(&'static str, Diagnostic)> {
     let at = entry.key.find([':', ' '])?;
     let (key, value) = (entry.key.get(..at)?, entry.key.get(at + 1..)?);
@@ -160,11 +161,11 @@ fn without_blank(entry: &Entry, missing: &[&'static str]) -> Option<(&'static st
     Some((meant, Diagnostic::error(entry.key_span.clone(), message).label(label).help(help)))
 }
 
-/// Words that other formats and books have for keys.
+/// Words of other formats and books, with the keys of robot files that mean the same.
 const SYNONYMS: [(&str, &str); 4] =
     [("weight", "mass"), ("ratio", "gear_ratio"), ("cog", "com"), ("tensor", "inertia")];
 
-/// `{mass: 1,98}`, which YAML takes for the value 1 and a key `98`.
+/// Recognises `{mass: 1,98}`, which YAML reads as the value 1 and a key `98`.
 fn decimals(cx: &Context, before: &Entry, entry: &Entry) -> Option<Diagnostic> {
     let digits = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
     let (Content::Scalar(whole), Content::Scalar(nothing)) = (&before.value.content, &entry.value.content) else {
@@ -172,7 +173,7 @@ fn decimals(cx: &Context, before: &Entry, entry: &Entry) -> Option<Diagnostic> {
     };
     let joined = format!("{},{}", whole.text, entry.key);
     let is_comma = nothing.text.is_empty() && digits(whole.text.trim_start_matches('-')) && digits(&entry.key);
-    // A blank after the comma separates on purpose.
+    // With a blank after the comma, two values are meant.
     let is_tight = cx.text.get(before.value.span.start..entry.key_span.end) == Some(joined.as_str());
     (is_comma && is_tight).then(|| {
         let message = format!("`{joined}` is read as two values, because the decimal sign is a point");
@@ -181,7 +182,7 @@ fn decimals(cx: &Context, before: &Entry, entry: &Entry) -> Option<Diagnostic> {
     })
 }
 
-/// `{lower: -pi, upper: pi}`, as in URDF.
+/// Makes the error for position limits as two keys, `{lower: -pi, upper: pi}`, which is the form of URDF.
 fn one_position(cx: &Context, limits: &Node, entry: &Entry) -> Diagnostic {
     let limit = |key| limits.get(key).map_or_else(|| "…".to_owned(), |node| one_line(cx.raw(node)));
     let help = format!("write `position: [{}, {}]`", limit("lower"), limit("upper"));
@@ -189,8 +190,8 @@ fn one_position(cx: &Context, limits: &Node, entry: &Entry) -> Diagnostic {
     Diagnostic::error(entry.key_span.clone(), message).label("unknown key").help(help)
 }
 
-/// Where a key belongs that stands in the wrong mapping, or what stands for it here; `allowed` are the keys that it
-/// might have.
+/// Returns help for a known key in the wrong mapping: where it belongs, or what to write instead; `allowed` are the
+/// keys of this mapping.
 fn place_of(key: &str, allowed: &[&str]) -> Option<String> {
     if allowed.contains(&"dh") && !key.is_empty() && key.chars().all(|c| c.is_ascii_digit()) {
         return Some(format!(

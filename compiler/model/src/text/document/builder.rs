@@ -1,4 +1,4 @@
-//! The tree of a document, built from the events of the YAML parser.
+//! Builds the tree of a document from the events of the YAML parser.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -11,10 +11,10 @@ use crate::text::diagnostic::{Diagnostic, Problems};
 use crate::text::expression::is_identifier;
 use crate::text::source::quoted;
 
-/// A robot file is six levels deep, a plan file seven.
+/// Largest depth of a document. A robot file is six levels deep, a plan file seven.
 const MAX_DEPTH: usize = 16;
 
-/// A mapping or sequence that is not closed yet.
+/// A mapping or a list that is not closed yet.
 struct Open {
     start: usize,
     anchor: usize,
@@ -25,9 +25,9 @@ enum Children {
     Sequence(Vec<Rc<Node>>),
     Mapping {
         entries: Vec<Entry>,
-        /// The places of the keys already met.
+        /// The places of the keys that were read so far.
         known: HashMap<String, usize>,
-        /// A key that still waits for its value.
+        /// A key whose value has not been read yet.
         pending: Option<(String, Range<usize>)>,
     },
 }
@@ -35,14 +35,14 @@ enum Children {
 pub(super) struct Builder<'t> {
     text: &'t str,
     kind: Kind,
-    /// Byte offset of every character: the parser counts characters.
+    /// The byte offset of every character, because the parser counts characters.
     offsets: Vec<usize>,
-    /// Byte offset of every line break.
+    /// The byte offset of every line break.
     breaks: Vec<usize>,
     problems: &'t Problems,
     stack: Vec<Open>,
     anchors: HashMap<usize, Rc<Node>>,
-    /// Nodes so far, aliases written out.
+    /// The number of nodes so far, with aliases written out.
     nodes: usize,
     root: Option<Rc<Node>>,
 }
@@ -62,7 +62,8 @@ impl<'t> Builder<'t> {
             self.problems.count(1);
             let (event, span) = event.map_err(|error| {
                 let at = self.offset(error.marker().index());
-                // The parser reads ahead and may meet its own limit, 255, before ours: no bracket is missing then.
+                // The parser reads ahead and may reach its own limit of 255 levels before this crate's limit; then no
+                // bracket is missing.
                 if error.info().contains("recursion limit") {
                     return self.too_deep(at..at + 1);
                 }
@@ -110,7 +111,8 @@ impl<'t> Builder<'t> {
         })
     }
 
-    /// The help that solves most syntax errors: a comma before a key, or the innermost bracket that is still open.
+    /// Returns the help that solves most syntax errors: write a comma before a key, or close the innermost open
+    /// bracket.
     fn open_bracket(&self, at: usize) -> Option<String> {
         let start = self.stack.last()?.start;
         let bracket = self.text.get(start..)?.chars().next().filter(|c| matches!(c, '[' | '{'))?;
@@ -124,7 +126,8 @@ impl<'t> Builder<'t> {
         Some(format!("check that the `{bracket}` in line {} is closed", line(&self.breaks, start)))
     }
 
-    /// Recognises the lines at a syntax error: a list that begins as a mapping, or a key without its blank.
+    /// Returns help from the lines at a syntax error: a list item after lines that are none, or a key without a blank
+    /// after its colon.
     fn around(&self, at: usize) -> Option<String> {
         let before = self.text.get(..at)?;
         let start = before.rfind('\n').map_or(0, |newline| newline + 1);
@@ -150,7 +153,8 @@ impl<'t> Builder<'t> {
         })
     }
 
-    /// The first tab in the indentation of a line from that of `at` on: the parser names the line before it.
+    /// Returns the first tab in the indentation of a line, beginning with the line of `at`, because the parser names
+    /// the line before the tab.
     fn tab(&self, at: usize) -> Option<usize> {
         let mut start = self.text.get(..at)?.rfind('\n').map_or(0, |newline| newline + 1);
         for line in self.text.get(start..)?.split_inclusive('\n') {
@@ -167,7 +171,7 @@ impl<'t> Builder<'t> {
         self.offsets.get(index).copied().unwrap_or(self.text.len())
     }
 
-    /// The span of a value without the anchor before it and the blanks after it. Tags are refused.
+    /// Returns the span of a value without the anchor before it and the blanks after it. Refuses tags.
     fn without_properties(&self, span: Range<usize>, tagged: bool) -> Result<Range<usize>, Diagnostic> {
         let raw = self.text.get(span.clone()).unwrap_or_default();
         if tagged {
@@ -209,7 +213,7 @@ impl<'t> Builder<'t> {
                 *pending = Some((text, place));
                 return Ok(());
             }
-            // A value that is not there: its key is the place to point at.
+            // An empty value has no place of its own, so messages point at its key.
             Some(Children::Mapping { pending: Some((_, key)), .. }) if text.is_empty() && style == Style::Plain => {
                 place = key.clone();
             }
@@ -231,7 +235,7 @@ impl<'t> Builder<'t> {
 
     fn close(&mut self, end: &Range<usize>) -> Result<(), Diagnostic> {
         let Some(open) = self.stack.pop() else { return Ok(()) };
-        // the parser ends what is in brackets where the next value begins, behind comments
+        // for a value in brackets, the parser's end is where the next value begins, so the closing bracket is used
         let is_at = |at: usize, brackets: [char; 2]| self.text.get(at..).is_some_and(|rest| rest.starts_with(brackets));
         let is_in_brackets = is_at(open.start, ['[', '{']) && is_at(end.start, [']', '}']);
         let end = if is_in_brackets { end.start + 1 } else { end.end };
@@ -276,7 +280,7 @@ impl<'t> Builder<'t> {
         if self.nodes <= MAX_NODES {
             return Ok(());
         }
-        // the list of joints is told by its own limit
+        // too many joints have a message of their own
         if let [Open { children: Children::Mapping { pending: Some((key, place)), .. }, .. }, joints, ..] =
             self.stack.as_slice()
             && key == "joints"
@@ -327,7 +331,7 @@ fn syntax_error(at: usize, info: &str) -> Diagnostic {
     Diagnostic::error(at..at + 1, format!("this is not YAML: {info}")).maybe_help(help.map(str::to_owned))
 }
 
-/// The line of a byte, given the places of the line breaks.
+/// Returns the line of a byte, given the places of the line breaks.
 fn line(breaks: &[usize], offset: usize) -> usize {
     1 + breaks.partition_point(|at| *at < offset)
 }

@@ -1,4 +1,4 @@
-//! The value of an expression.
+//! Evaluates expressions.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -10,12 +10,12 @@ use crate::readers::varying::leave_out;
 use crate::text::source::quoted;
 use crate::text::spelling::did_you_mean;
 
-/// Numbers, run-time parameters and operators of one formula; parameters defined by one another could double it
-/// forever.
+/// Largest number of numbers, run-time parameters and operators in one formula. Without it, parameters that are defined
+/// by one another could double the length each time.
 const MAX_RUN_TIME_PARTS: usize = 250;
 
 impl Operator {
-    /// Returns the result; `None` for a power of a run-time parameter that products cannot express.
+    /// Applies the operator; returns `None` for a power of a run-time parameter that products cannot express.
     fn apply(self, a: Quantity, b: Quantity) -> Option<Quantity> {
         Some(match self {
             Self::Add => a + b,
@@ -38,19 +38,20 @@ impl Function {
             Self::Sin => libm::sin(x),
             Self::Cos => libm::cos(x),
             Self::Tan => libm::tan(x),
-            // In this order deg(90) is pi/2 to the last bit.
+            // In this order deg(90) equals pi/2 to the last bit.
             Self::Deg => x / 180.0 * PI,
-            // The decimal is moved, because 130.2 / 1000 is not the number nearest to 0.1302.
+            // Moves the decimal point in the text, because 130.2 / 1000 is not the number nearest to 0.1302.
             Self::Milli => format!("{x}e-3").parse().unwrap_or(f64::NAN),
         }
     }
 }
 
 impl Expression {
-    /// The value, and how it depends on run-time parameters. `Err(None)` when it depends on a faulty parameter: that
-    /// mistake is reported where it was made.
+    /// Evaluates the expression, with its formula over run-time parameters. Returns `Err(None)` when it depends on a
+    /// faulty parameter, whose mistake has been reported already.
     ///
-    /// Everything but the recursion is in functions of its own: the frames of this one are what bounds its depth.
+    /// Everything but the recursion is in other functions, because the size of this function's stack frame limits the
+    /// possible depth.
     pub(crate) fn evaluate(&self, text: &str, names: &impl Names) -> Result<Quantity, Option<Mistake>> {
         match &self.kind {
             Kind::Number(value) => Ok(Quantity::constant(*value)),
@@ -127,7 +128,7 @@ impl Expression {
         self.finite(Quantity::constant(value), false, text)
     }
 
-    /// A result that is zero in floating point and not on paper.
+    /// Makes the error for a result that is zero by underflow, although exactly it is not.
     fn too_small(&self, text: &str) -> Mistake {
         let part = quoted(text.get(self.range.clone()).unwrap_or_default());
         Mistake::new(
@@ -137,7 +138,7 @@ impl Expression {
         .help("check the exponents and the factors, or write 0")
     }
 
-    /// Returns the result, unless it is not finite or too long.
+    /// Returns the quantity, or an error if it is not finite or its formula is too long.
     fn finite(&self, quantity: Quantity, divides_by_zero: bool, text: &str) -> Result<Quantity, Mistake> {
         if quantity.varying().is_some_and(|formula| formula.parts() > MAX_RUN_TIME_PARTS) {
             let message = format!(
@@ -168,7 +169,7 @@ impl Expression {
         Err(Mistake::new(self.range.clone(), message).help(help))
     }
 
-    /// A function or power of a run-time parameter.
+    /// Makes the error for a function or power of a run-time parameter.
     fn only_in_the_file(&self, text: &str, parameter: Option<usize>, names: &impl Names) -> Mistake {
         let name = parameter.map(|index| names.run_time_parameter(index)).unwrap_or_default();
         let message = format!(
@@ -181,7 +182,7 @@ impl Expression {
     }
 }
 
-/// Whether a name is one that textbooks give a joint variable: q, q2, q_2, theta2.
+/// Returns whether a name is one that textbooks use for a joint variable: q, q2, q_2, theta2.
 fn is_joint_variable(name: &str) -> bool {
     let index = name.strip_prefix("theta").or_else(|| name.strip_prefix('q'));
     index.is_some_and(|index| index.trim_start_matches('_').chars().all(|c| c.is_ascii_digit() || c == 'i'))

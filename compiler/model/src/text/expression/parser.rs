@@ -1,4 +1,4 @@
-//! The parser of expressions, and the help for what it cannot read.
+//! Parses expressions, and gives help for text that it cannot read.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -7,13 +7,13 @@ use super::{ALLOWED, Expression, Function, Kind, Mistake, Operator, SIGN, is_nam
 use crate::text::source::quoted;
 use crate::text::unit;
 
-/// Parentheses, signs and powers inside one another; bounds the recursion of the parser.
+/// Largest depth of parentheses, signs and powers inside one another; it bounds the recursion of the parser.
 const MAX_DEPTH: usize = 64;
 
-/// Numbers, names and operators of one expression; bounds the recursion over its tree.
+/// Largest number of numbers, names and operators in one expression; it bounds the recursion over its tree.
 const MAX_PARTS: usize = 1000;
 
-/// A text that is being read.
+/// A text and the position up to which it has been read.
 pub(super) struct Parser<'t> {
     text: &'t str,
     at: usize,
@@ -26,7 +26,7 @@ impl<'t> Parser<'t> {
         Self { text, at: 0, depth: 0, parts: 0 }
     }
 
-    /// The whole text as one expression.
+    /// Parses the whole text as one expression.
     pub(super) fn whole(mut self) -> Result<Expression, Mistake> {
         let expression = self.operand_and_operators(0)?;
         self.end()?;
@@ -46,7 +46,7 @@ impl<'t> Parser<'t> {
         self.rest().chars().next()
     }
 
-    /// Takes the characters that satisfy `part`.
+    /// Reads the characters that satisfy `part`.
     fn take(&mut self, part: impl Fn(char) -> bool) -> &'t str {
         let rest = self.rest();
         let taken = rest.find(|c| !part(c)).and_then(|end| rest.get(..end)).unwrap_or(rest);
@@ -62,7 +62,7 @@ impl<'t> Parser<'t> {
         found
     }
 
-    /// The place of the next character, or the end of the text.
+    /// Returns the place of the next character, or the end of the text.
     fn here(&self) -> Range<usize> {
         self.at..self.at + self.rest().chars().next().map_or(0, char::len_utf8)
     }
@@ -76,7 +76,7 @@ impl<'t> Parser<'t> {
         Ok(())
     }
 
-    /// An operand and all operators after it that bind at least as tightly as `least`.
+    /// Parses an operand and all operators after it that bind at least as tightly as `least`.
     fn operand_and_operators(&mut self, least: u8) -> Result<Expression, Mistake> {
         self.depth += 1;
         if self.depth > MAX_DEPTH {
@@ -257,7 +257,7 @@ impl<'t> Parser<'t> {
         })
     }
 
-    /// A number with a unit, where all that follows the byte `at` is one.
+    /// Returns an error for a number with a unit, if all text from the byte `at` on is a unit.
     fn with_unit(&self, at: usize) -> Option<Mistake> {
         let (before, after) = self.text.split_at_checked(at)?;
         let (before, written) = (before.trim(), after.trim());
@@ -268,7 +268,7 @@ impl<'t> Parser<'t> {
         Some(Mistake::new(start..start + written.len(), message).help(help))
     }
 
-    /// `1,98`: a number with the decimal sign of other languages.
+    /// Returns an error for a number such as `1,98`, with a comma as its decimal sign.
     fn decimal_comma(&self) -> Option<Mistake> {
         let (whole, fraction) = self.text.trim().split_once(',')?;
         let digits = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
@@ -281,13 +281,13 @@ impl<'t> Parser<'t> {
     }
 }
 
-/// `.nan`, `NaN`, `.inf`: what other readers take for a number.
+/// Makes the error for `.nan`, `NaN` or `.inf`, which other readers accept as numbers.
 pub(super) fn no_digits(found: &str, range: Range<usize>) -> Mistake {
     Mistake::new(range, format!("{} is not a number here: numbers are finite and written in digits", quoted(found)))
         .help(format!("if this is a limit that is unknown, delete its key; {ALLOWED}"))
 }
 
-/// Characters that come with numbers copied from papers and other formats.
+/// Returns an error with help for characters that text copied from papers and other formats contains.
 fn foreign(c: char, range: Range<usize>) -> Option<Mistake> {
     let help = match c {
         '−' | '–' => "write the minus sign of the keyboard, `-`",

@@ -4,7 +4,8 @@ use super::*;
 use crate::Formula;
 use crate::text::spelling::did_you_mean;
 
-/// `a` is 3, `m` is 0.5, `p` is 0.7 and a run-time parameter, `later` and `faulty` are what they say.
+/// Test names: `a` is 3, `m` is 0.5, `p` is 0.7 and a run-time parameter, `later` is defined later, `faulty` has a
+/// wrong expression.
 struct Known;
 
 impl Names for Known {
@@ -38,7 +39,7 @@ fn value(text: &str) -> Result<f64, Option<Mistake>> {
     quantity(text).map(|quantity| quantity.value)
 }
 
-/// The mistake and the columns it points at, from 1, both ends included.
+/// Returns the first and the last column of a mistake, both counted from 1, its message and its help.
 fn mistake(text: &str) -> (usize, usize, String, String) {
     let mistake = value(text).expect_err(text).expect("a mistake of its own");
     (mistake.range.start + 1, mistake.range.end, mistake.message, mistake.help)

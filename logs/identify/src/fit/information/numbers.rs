@@ -50,7 +50,8 @@ impl Information {
 
     /// Restores the information from [`to_numbers`](Self::to_numbers), bit for bit.
     ///
-    /// # Errors When the numbers do not fit this structure.
+    /// # Errors
+    /// When the numbers do not fit this structure.
     pub fn from_numbers(structure: &Structure, numbers: &[f64]) -> Result<Self, WrongNumbers> {
         Self::read(structure, numbers).ok_or(WrongNumbers { found: numbers.len() })
     }

@@ -1,4 +1,4 @@
-//! `sensor_msgs/msg/JointState` in the encoding of ROS 2.
+//! Decodes `sensor_msgs/msg/JointState` in the encoding of ROS 2.
 
 use byteorder::{BigEndian, LittleEndian};
 use serde::Deserialize;
@@ -6,7 +6,7 @@ use serde::Deserialize;
 use crate::formats::sample::Sample;
 use crate::limits::{MOST_JOINTS, check_names};
 
-/// The type of the messages that are read, as bags name it.
+/// The name of the message type that is read, as bags write it.
 pub(crate) const TYPE: &str = "sensor_msgs/msg/JointState";
 
 #[derive(Deserialize)]
@@ -31,7 +31,7 @@ struct Time {
     nanosec: u32,
 }
 
-/// Reads a message, with the four bytes before it that name its encoding; the reason if it cannot be read.
+/// Decodes a message, which begins with four bytes that give its encoding. `Err` is the reason if it cannot be read.
 pub(crate) fn decode(bytes: &[u8], recorded: i64, sample: &mut Sample) -> Result<(), String> {
     let [_, kind, _, _, message @ ..] = bytes else {
         return Err(format!("it has {} bytes, less than the four bytes that give its encoding", bytes.len()));

@@ -17,36 +17,36 @@ use crate::formats::guard::guarded;
 use crate::formats::sample::{Sample, Source};
 use crate::limits::LONGEST_NAME;
 
-/// Bytes that are asked for at once.
+/// Number of bytes that are read from the file at once.
 const PART: usize = 1 << 16;
 
-/// The longest record of any topic, and the longest chunk: an image of some megabytes has to pass.
+/// Largest number of bytes of a record of any topic, and of a chunk. Images of some megabytes are below it.
 const LONGEST_RECORD: usize = 32 << 20;
 
-/// Bytes that a chunk unpacks to at most for each of its own: states that never change take a hundred. And the size of
-/// chunks that nobody waits for, however small they are packed.
+/// Largest ratio of the unpacked size of a chunk to its packed size; constant states have a ratio of about a hundred.
+/// Chunks that unpack to at most `SMALL_CHUNK` bytes are accepted with any ratio.
 const MOST_UNPACKED: u64 = 256;
 const SMALL_CHUNK: u64 = 1 << 20;
 
-/// A record begins with its kind, a byte, and its length, eight.
+/// Number of bytes before the content of a record: one for its kind, and eight for its length.
 const HEAD: usize = 9;
 
-/// The longest message that is taken for joint states, bytes.
+/// Largest number of bytes of a message with joint states.
 const LONGEST_MESSAGE: usize = 1 << 20;
 
-/// A bag, read as it was written. Nothing is asked of its end: the index there may be missing, the file may not.
+/// A bag, read in the order of the file. The index at its end is not used and may be missing.
 pub(crate) struct McapBag {
     path: PathBuf,
     file: File,
     size: u64,
     given: u64,
-    /// Bytes of the records that were read, those of chunks with what is in them.
+    /// Number of bytes of the records that were read; a chunk counts with all its content.
     read: u64,
     reader: LinearReader,
-    /// The chunk whose records are read.
+    /// The chunk whose records are being read.
     chunk: Option<Box<Chunk>>,
     wanted: Option<String>,
-    /// By number: the names of schemas.
+    /// The names of schemas by their numbers.
     schemas: BTreeMap<u16, String>,
     channels: BTreeMap<u16, Channel>,
     /// The topic that is read.
@@ -55,10 +55,10 @@ pub(crate) struct McapBag {
     ended: bool,
 }
 
-/// A chunk of the file, that a reader of its own takes apart.
+/// A chunk of the file, whose records a separate reader splits.
 ///
-/// The library's reader of whole files would do that too; of a chunk that is not compressed it believes the lengths of
-/// records, and counts below zero.
+/// The reader of the library for whole files could split chunks too. But it does not check the lengths of records in
+/// uncompressed chunks, so that its counter may underflow.
 struct Chunk {
     reader: LinearReader,
     bytes: Vec<u8>,
@@ -66,7 +66,7 @@ struct Chunk {
 }
 
 impl Chunk {
-    /// Reads the head of a chunk from the body of its record.
+    /// Opens a chunk from the body of its record.
     fn of(body: &[u8]) -> Result<Self, McapError> {
         if let Record::Chunk { header, data } = mcap::parse_record(op::CHUNK, body)? {
             let unpacked = header.uncompressed_size;
@@ -93,7 +93,7 @@ impl Chunk {
     }
 }
 
-/// Whether records fill what they stand in.
+/// Checks that records fill the data of their chunk exactly.
 fn check_records(mut data: &[u8]) -> Result<(), McapError> {
     while !data.is_empty() {
         let length = data.get(1..HEAD).and_then(|length| length.try_into().ok()).map(u64::from_le_bytes);
@@ -142,7 +142,7 @@ impl McapBag {
         })
     }
 
-    /// A channel that begins: whether it is the topic's is known then.
+    /// Registers a new channel, and chooses it as the topic if it is the one to read.
     fn begin(&mut self, number: u16, channel: Channel) -> Result<(), LogError> {
         let wrong = |what: String| Err(LogError::file(&self.path, what));
         if let Some(known) = self.channels.get(&number) {
@@ -179,7 +179,7 @@ impl McapBag {
         Ok(())
     }
 
-    /// Names of topics, types and encodings are kept.
+    /// Refuses long names of topics, types and encodings, because they are kept in memory.
     fn check_length(&self, name: &str) -> Result<(), LogError> {
         if name.len() <= LONGEST_NAME {
             return Ok(());
@@ -192,7 +192,7 @@ impl McapBag {
         Err(LogError::file(&self.path, what))
     }
 
-    /// Nothing is behind the end: of two files in one the second is not read.
+    /// Refuses bytes after the end of the bag, as from two bags in one file, because they would not be read.
     fn check_end(&self) -> Result<(), LogError> {
         let end = self.read + 2 * mcap::MAGIC.len() as u64;
         if self.size <= end {

@@ -14,35 +14,37 @@ use crate::formats::bags::topic;
 use crate::formats::sample::{Sample, Source};
 use crate::limits::MOST_BYTES;
 
-/// Messages that are read at once. Their place is kept between: a statement cannot be kept beside its connection.
+/// Number of messages that are read by one query. The next query continues after the last message, because a struct
+/// cannot own a statement together with its connection.
 const BATCH: u32 = 1024;
 
-/// The length is asked for first, and what is too long is not loaded.
+/// Query for messages in the order of time. It returns no data for messages that are too long, only their length.
 const BY_TIME: &str = "SELECT timestamp, id, length(data), CASE WHEN length(data) <= ?5 THEN data END FROM messages \
                        WHERE topic_id = ?1 AND (timestamp, id) > (?2, ?3) ORDER BY timestamp, id LIMIT ?4";
 
-/// Query for a bag without an index of times: sorting all of it for each batch would take too long.
+/// Query for a bag without an index of times, in the order of numbers: sorting the bag for each query would take too
+/// long.
 const BY_NUMBER: &str = "SELECT timestamp, id, length(data), CASE WHEN length(data) <= ?5 THEN data END FROM messages \
                          WHERE topic_id = ?1 AND id > ?3 AND ?2 IS NOT NULL ORDER BY id LIMIT ?4";
 
-/// The longest message that is taken for joint states, bytes.
+/// Largest number of bytes of a message with joint states.
 const LONGEST_MESSAGE: i32 = 1 << 20;
 
-/// First bytes of a file.
+/// The first bytes of a file of SQLite.
 const MAGIC: &[u8] = b"SQLite format 3\0";
 
-/// A bag, read by the time of recording, or as it was written where nothing tells their order.
+/// A bag, read in the order of the recording times or, without an index of them, in the order of writing.
 pub(crate) struct SqliteBag {
     path: PathBuf,
     connection: Connection,
-    /// Files that reading leaves beside the bag.
+    /// The file that SQLite makes next to the bag, which is removed at the end.
     _rest: Rest,
     topic: String,
     topic_id: i64,
     query: &'static str,
     /// Time and number of the last message that was read.
     last: (i64, i64),
-    /// The first and the last time of all topics.
+    /// The first and the last time in all topics, ns.
     span: (i64, i64),
     batch: Vec<Sample>,
     next: usize,
@@ -158,7 +160,8 @@ impl Source for SqliteBag {
     }
 }
 
-/// The head of a file that is as long as it says. SQLite takes what is missing of the last page for zeros.
+/// Returns the head of a file. Refuses a file that is shorter than its head states, because SQLite would read the
+/// missing part of the last page as zeros.
 fn head(path: &Path) -> Result<[u8; 100], LogError> {
     let wrong = |error| LogError::file(path, format_args!("the file cannot be read: {error}"));
     let mut file = File::open(path).map_err(wrong)?;
@@ -175,7 +178,7 @@ fn head(path: &Path) -> Result<[u8; 100], LogError> {
         1 => 65_536,
         page => page,
     };
-    // the number of pages is valid where the counter beside it is that of the last change
+    // the number of pages is valid only if these two counters of changes are equal
     let wanted = if number(24) == number(92) { page * number(28) } else { 0 };
     if length < wanted {
         return Err(LogError::file(path, format_args!("the bag is cut off: it has {length} bytes of {wanted}")));
@@ -195,7 +198,8 @@ fn head(path: &Path) -> Result<[u8; 100], LogError> {
     Ok(head)
 }
 
-/// A file that SQLite makes beside a bag to read it, removed when the bag is closed; none where it was there before.
+/// A file that SQLite makes next to a bag to read it. It is removed when the bag is closed; `None` if it existed
+/// before.
 struct Rest(Option<PathBuf>);
 
 impl Drop for Rest {
@@ -206,36 +210,36 @@ impl Drop for Rest {
     }
 }
 
-/// The name of a file beside a bag.
+/// Returns the name of a file next to a bag: the bag's name with this ending.
 fn beside(path: &Path, end: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(end);
     name.into()
 }
 
-/// The bag, opened such that nothing new is left beside it.
+/// Opens the bag such that no new file remains next to it.
 fn connect(path: &Path, head: &[u8; 100]) -> rusqlite::Result<(Connection, Rest)> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let shared = beside(path, "-shm");
-    // a bag whose changes are written beside it first, in its WAL
+    // a bag whose changes are first written to another file, the write-ahead log (WAL)
     let has_wal = head[18] == 2;
     let is_wal_empty = || std::fs::metadata(beside(path, "-wal")).map_or(true, |wal| wal.len() == 0);
     let (connection, rest) = if has_wal && is_wal_empty() && !shared.exists() {
-        // nobody writes, nothing is in the WAL, and none has to be made
+        // nobody writes and the WAL is empty: SQLite needs no further file
         let connection = Connection::open_with_flags(unchanging(path), flags | OpenFlags::SQLITE_OPEN_URI)?;
         (connection, Rest(None))
     } else {
-        // what reads a WAL makes an index of it, unless one who writes has made it
+        // SQLite makes an index file to read a WAL, unless a writer has made it already
         let rest = Rest((has_wal && !shared.exists()).then_some(shared));
         (Connection::open_with_flags(path, flags)?, rest)
     };
     connection.set_limit(Limit::SQLITE_LIMIT_LENGTH, LONGEST_MESSAGE + 4096)?;
-    // nothing that a file defines is run, and every page is looked at before it is believed
+    // code in the file's schema is not run, and pages are checked
     connection.execute_batch("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON; PRAGMA query_only = ON;")?;
     Ok((connection, rest))
 }
 
-/// The name of a file by which SQLite takes it for one that nobody changes.
+/// Returns the URI of a file that tells SQLite that nobody changes the file.
 fn unchanging(path: &Path) -> String {
     let text = path.as_os_str().as_encoded_bytes();
     let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || b"/-_.~".contains(&byte);
@@ -256,7 +260,7 @@ fn unchanging(path: &Path) -> String {
     name + "?immutable=1"
 }
 
-/// The topics of a bag: number, name, type and encoding.
+/// Reads the topics of a bag: number, name, type and encoding.
 fn topics(path: &Path, connection: &Connection) -> Result<Vec<(i64, String, String, String)>, LogError> {
     let wrong = |error: rusqlite::Error| unreadable(path, &error);
     let tables = "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name IN ('topics', 'messages')";
@@ -276,7 +280,7 @@ fn unreadable(path: &Path, error: &rusqlite::Error) -> LogError {
     LogError::file(path, reason(error))
 }
 
-/// Message of SQLite as a sentence.
+/// Returns a message for an error of SQLite.
 fn reason(error: &rusqlite::Error) -> String {
     use rusqlite::ErrorCode::{DatabaseCorrupt, NotADatabase, TooBig};
     match error.sqlite_error_code() {

@@ -1,4 +1,4 @@
-//! The topic of a bag that is read.
+//! Chooses the topic of a bag that is read.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use crate::formats::bags::joint_state::TYPE;
 use crate::remedy::Setting;
 use crate::spelling::{instead, listed};
 
-/// The place of the topic that is read: the one asked for, or the only one with joint states. `topics` are names and
+/// Returns the index of the topic to read: the wanted one, or the only one with joint states. `topics` has names and
 /// types.
 pub(crate) fn choose(path: &Path, topics: &[(String, String)], wanted: Option<&str>) -> Result<usize, LogError> {
     let is_state = |place: &usize| is_joint_state(&topics[*place].1);
@@ -48,7 +48,7 @@ pub(crate) fn choose(path: &Path, topics: &[(String, String)], wanted: Option<&s
     }
 }
 
-/// Whether a type is that of joint states; ROS 1 and some writers leave out `msg`.
+/// Whether a type is that of joint states. Other spellings than that of ROS 2 occur, too.
 pub(crate) fn is_joint_state(kind: &str) -> bool {
     kind == TYPE || kind == "sensor_msgs/JointState" || kind == "sensor_msgs::msg::dds_::JointState_"
 }

@@ -1,19 +1,19 @@
-//! The header of an array of numpy.
+//! Reads the header of a NumPy array.
 
 use std::io::{ErrorKind, Read};
 
 use super::Npy;
 
-/// The longest header of an array, far more than one of numbers has.
+/// Largest number of bytes of a header, far more than an array of numbers needs.
 const LONGEST_HEADER: usize = 1 << 16;
 
-/// Most numbers that an array may claim: the bytes of no file overflow.
+/// Largest number of elements in a header, so that the number of bytes does not overflow.
 const MOST_NUMBERS: u64 = 1 << 60;
 
-/// How many letters of a type are shown in a message.
+/// Number of characters of a type that a message shows.
 const SHOWN: usize = 40;
 
-/// The text of a header, and the number of bytes before the numbers.
+/// Reads the text of a header, and the number of bytes before the numbers.
 pub(super) fn header(file: &mut impl Read) -> Result<(Vec<u8>, u64), String> {
     let mut take = |bytes: &mut [u8]| {
         file.read_exact(bytes).map_err(|error| match error.kind() {
@@ -28,7 +28,7 @@ pub(super) fn header(file: &mut impl Read) -> Result<(Vec<u8>, u64), String> {
     }
     let mut version = [0; 2];
     take(&mut version)?;
-    // version 1 tells the length by two bytes, later ones by four
+    // version 1 stores the length in two bytes, later versions in four
     let of_length = match version {
         [1, 0] => 2,
         [2 | 3, 0] => 4,
@@ -48,15 +48,15 @@ pub(super) fn header(file: &mut impl Read) -> Result<(Vec<u8>, u64), String> {
 /// Content of a header.
 #[derive(Debug, PartialEq)]
 pub(super) struct Header {
-    /// Kind of its numbers, or the message for numbers that cannot be read.
+    /// Type of the numbers, or the message for numbers that cannot be read.
     pub(super) kind: Result<Kind, String>,
     pub(super) is_fortran: bool,
     pub(super) shape: Vec<u64>,
 }
 
 impl Header {
-    /// Reads the dictionary of a header, which has `descr`, `fortran_order` and `shape` in any order. Each byte is
-    /// looked at once: nothing in it is nested, but the type of records, which are not read.
+    /// Reads the dictionary of a header, which has `descr`, `fortran_order` and `shape` in any order. Each byte is read
+    /// only once: nothing is nested, except the types of records, which are not read.
     pub(super) fn parse(text: &[u8]) -> Result<Self, String> {
         let mut text = Text { left: text };
         let (mut kind, mut is_fortran, mut shape) = (None, None, None);
@@ -66,7 +66,7 @@ impl Header {
             text.expect(b':')?;
             let is_first = match key {
                 b"descr" if matches!(text.next(), Some(b'[' | b'(' | b'{')) => {
-                    // the rest of the header is not read: a type may be nested however deep
+                    // the rest of the header is not read, because a type may be nested very deeply
                     let kind = Err(unread(text.left));
                     return Ok(Self { kind, is_fortran: false, shape: Vec::new() });
                 }
@@ -107,7 +107,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// The kind of a type's name, as `<f8`.
+    /// Returns the type of numbers with this name, such as `<f8`.
     fn of(name: &str) -> Option<Self> {
         let (is_big, size) = match name.split_at_checked(1)? {
             ("<", size) => (false, size),
@@ -129,13 +129,13 @@ impl Kind {
     }
 }
 
-/// The rest of a header.
+/// The part of a header that was not read yet.
 struct Text<'a> {
     left: &'a [u8],
 }
 
 impl<'a> Text<'a> {
-    /// The next byte that is no blank.
+    /// Skips spaces and returns the next byte without reading it.
     fn next(&mut self) -> Option<u8> {
         self.left = self.left.trim_ascii_start();
         self.left.first().copied()
@@ -157,7 +157,7 @@ impl<'a> Text<'a> {
         Err(format!("its header must have {:?} here, but {there}", char::from(byte)))
     }
 
-    /// A text in quotes of one kind.
+    /// Reads a text in single or double quotes.
     fn quoted(&mut self) -> Result<&'a [u8], String> {
         let quote = if self.next() == Some(b'"') { b'"' } else { b'\'' };
         self.expect(quote)?;
@@ -172,7 +172,7 @@ impl<'a> Text<'a> {
         Ok(text)
     }
 
-    /// The letters and digits that come next.
+    /// Reads the letters and digits that come next.
     fn word(&mut self) -> &'a [u8] {
         self.next();
         let end = self.left.iter().position(|byte| !byte.is_ascii_alphanumeric()).unwrap_or(self.left.len());
@@ -189,7 +189,8 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// A tuple of decimal numbers. Their product, in which a zero counts as 1, is a number of numbers.
+    /// Reads a tuple of whole numbers. Refuses a product, in which zeros count as 1, above the largest number of
+    /// elements.
     fn shape(&mut self) -> Result<Vec<u64>, String> {
         let wrong = || "its shape is too large, or is not a tuple of whole numbers".to_owned();
         self.expect(b'(')?;
@@ -200,7 +201,7 @@ impl<'a> Text<'a> {
             product = product.checked_mul(length.max(1)).filter(|product| *product < MOST_NUMBERS).ok_or_else(wrong)?;
             shape.push(length);
             if !self.skip(b',') {
-                // (5) is a number, (5,) a tuple
+                // in Python, (5) is a number and (5,) a tuple
                 if shape.len() == 1 {
                     return Err(wrong());
                 }
@@ -212,12 +213,12 @@ impl<'a> Text<'a> {
     }
 }
 
-/// Message for numbers that cannot be read.
+/// Returns the message for numbers that cannot be read.
 fn unread(kind: &[u8]) -> String {
     format!("the numbers are {}; save them as float64 or float32", shown(kind))
 }
 
-/// The beginning of a text, for people.
+/// Returns the beginning of a text for a message.
 fn shown(text: &[u8]) -> String {
     let cut = if text.len() > SHOWN { "…" } else { "" };
     let text: String = String::from_utf8_lossy(&text[..text.len().min(SHOWN)])
@@ -288,7 +289,8 @@ mod tests {
         }
     }
 
-    /// A nested header, for which a reader of literals took four times as long with each level.
+    /// Deeply nested types are refused without reading them: an earlier reader needed four times as long for each
+    /// level.
     #[test]
     fn types_of_types_are_refused_at_once() {
         for depth in [1, 3, 8, 12, 5000] {
