@@ -248,7 +248,7 @@ fn passive(function: Function, list: Option<&List>, q: Option<&[f64]>, robot: &R
         None => None,
     };
     match given {
-        Some(given) if function == Function::ClosureStep => Ok(given),
+        Some(given) if function.closes_loops() => Ok(given),
         given => closure::closed(robot, q, given.as_deref()),
     }
 }

@@ -140,6 +140,12 @@ impl Function {
         self.axes().loops
     }
 
+    /// Whether it closes the loops: its argument `passive` is a guess, where that of other functions closes them.
+    #[must_use]
+    pub fn closes_loops(self) -> bool {
+        self == Self::ClosureStep
+    }
+
     /// Whether rotors that belong to the arm change what it returns.
     #[must_use]
     pub fn feels_rotors(self) -> bool {

@@ -105,7 +105,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
 
     pub(super) fn new(builder: &'s Builder, robot: &'r Robot) -> Self {
         let (arm, function) = (Arm::new(builder, robot), builder.function);
-        if function.is_of_closed_loops() && function != Function::ClosureStep {
+        if function.is_of_closed_loops() && !function.closes_loops() {
             Closure::keep(builder, robot, function.takes(Argument::Rates));
         }
         let (states, tip, base) = (arguments::states(&arm), arguments::tip(&arm), arguments::base(&arm, robot));
