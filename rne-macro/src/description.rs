@@ -18,8 +18,8 @@ pub(crate) fn operations(programs: &[Program]) -> String {
     format!("Straight-line code. Operations of one call, of the unfolded recursion -> of this code:\n\n{table}")
 }
 
-/// Says why a form other than the seven steps can be trusted, which programs could not be checked, and how much
-/// accuracy single precision loses.
+/// Says why a form other than the seven steps can be trusted, which reduced forms were refused, and how much accuracy
+/// single precision loses.
 pub(crate) fn evidence(programs: &[Program]) -> Vec<String> {
     let proved = programs.iter().find_map(|program| Some(rne_emit::evidence(program, program.proof.as_ref()?)));
     let others = programs.iter().map(rne_emit::refusals).chain([rne_emit::losses(programs)]);

@@ -84,9 +84,9 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         Self { model, branches, tip_on, links, tip, motors: [None; DOF], rotors: false, at: None, floating_base }
     }
 
-    /// Returns this robot as a tree. Row `i` begins at `branches[i]` on an earlier link or on the base; `None` for a
-    /// row that begins at the link frame of the row before. The tip is on the link of the joint `tip_on`; `None` for
-    /// the last one. `None` when a row does not stand behind its parent, or when there is no joint `tip_on`.
+    /// Returns this robot as a tree. Row `i` begins at the frame `branches[i]` on an earlier link or on the base;
+    /// `None` for a row that begins at the link frame of the row before. The tip is on the link of the joint `tip_on`;
+    /// `None` for the last one. Returns `None` if a row comes before its parent, or if there is no joint `tip_on`.
     #[must_use]
     pub fn on_tree(self, branches: [Option<FixedFrame<S>>; DOF], tip_on: Option<usize>) -> Option<Self> {
         let is_earlier = |(joint, branch): (usize, &Option<FixedFrame<S>>)| {
@@ -97,8 +97,8 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         is_tree.then(|| Self { motors, rotors, at, ..Self::prepared(model, branches, tip_on, floating_base) })
     }
 
-    /// Returns this robot on a floating base: `link` is the base, with its centre of mass and inertia in
-    /// frame 0. Functions of a fixed base are those of the robot while something holds that link still.
+    /// Returns this robot on a floating base: `link` is the base, with its centre of mass and inertia in frame 0.
+    /// Functions of a fixed base compute the robot with this link fixed.
     #[must_use]
     pub fn with_floating_base(self, link: Link<S>) -> Self {
         let Self { model, branches, tip_on, motors, rotors, at, .. } = self;
@@ -121,8 +121,8 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         self
     }
 
-    /// The motors, base to tip. [`Actuation`](crate::Actuation) alone asks for them, unless the arm is taken
-    /// [with its rotors](Self::with_rotors).
+    /// The motors, base to tip. Only [`Actuation`](crate::Actuation) uses them, unless the arm is used [with its
+    /// rotors](Self::with_rotors).
     #[must_use]
     pub const fn motors(&self) -> &[Option<Motor<S>>; DOF] {
         &self.motors
@@ -207,13 +207,13 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
     }
 }
 
-/// An arm with its named tips, and with those that something outside the robot holds.
+/// An arm with its named tips, and with contacts at those tips that something outside the robot holds.
 #[derive(Clone, Debug)]
 pub struct ArmWithTips<'a, const DOF: usize, const NV: usize, const TIPS: usize, S = f64> {
     arm: &'a Arm<DOF, S>,
     frames: [FixedFrame<S>; TIPS],
     tips: [Tip<S>; TIPS],
-    /// The held tips come first; a contact of a tip that there is not holds nothing.
+    /// The contacts at held tips, first in the list. Entries for a tip that does not exist hold nothing.
     contacts: [Contact; TIPS],
 }
 

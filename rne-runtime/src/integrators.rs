@@ -1,5 +1,6 @@
-//! Steps of integrators and their derivatives, written once: over arrays where the number of joints is known, and over
-//! lists where it is not. They allocate nothing over arrays, and no branch depends on a number.
+//! Steps of integrators and their derivatives, written once for both kinds of robots: over arrays if the number of
+//! joints is known at compile time, otherwise over lists. Over arrays they allocate nothing, and no branch depends on a
+//! number.
 
 pub(crate) mod floating_integrator;
 pub(crate) mod floating_runge_kutta;
@@ -7,15 +8,16 @@ pub(crate) mod runge_kutta;
 
 use crate::Scalar;
 
-/// Numbers beside each other: an array or a list.
+/// A row of numbers: an array or a list.
 pub trait Row<T>: AsRef<[T]> + AsMut<[T]> + Clone {}
 impl<T, R: AsRef<[T]> + AsMut<[T]> + Clone> Row<T> for R {}
 
-/// The places of the derivatives by q and by q̇ among those by q, by q̇ and by τ.
+/// The indices of the derivatives with respect to q and q̇ in lists of derivatives with respect to q, q̇ and τ.
 pub(crate) const POSITION: usize = 0;
 pub(crate) const RATE: usize = 1;
 
-/// x + h times what changes it, with an h of each place: lists may have the states of many robots.
+/// Returns x + h · change, where each element has a step h of its own, because lists may contain the states of many
+/// robots.
 fn moved_by_each<T: Scalar, R: Row<T>>(x: &R, change: &R, step: impl Fn(usize) -> T) -> R {
     let mut next = x.clone();
     for (at, (x, &change)) in next.as_mut().iter_mut().zip(change.as_ref()).enumerate() {
@@ -24,12 +26,13 @@ fn moved_by_each<T: Scalar, R: Row<T>>(x: &R, change: &R, step: impl Fn(usize) -
     next
 }
 
-/// x + h times what changes it.
+/// Returns x + h · change.
 pub fn moved<T: Scalar, R: Row<T>>(x: &R, change: &R, step: T) -> R {
     moved_by_each(x, change, |_| step)
 }
 
-/// The derivatives of x + h times what changes it, where x is the argument of this place.
+/// Returns the derivatives of x + h · change with respect to q, q̇ and τ, from those of the change. x itself is q or
+/// q̇, as `place` says.
 pub(crate) fn moved_by<T: Scalar, R: Row<T>, M: Row<R>>(place: usize, change: &[M; 3], step: T) -> [M; 3] {
     let mut found = change.clone();
     for (kind, block) in found.iter_mut().enumerate() {
@@ -46,7 +49,8 @@ pub(crate) fn moved_by<T: Scalar, R: Row<T>, M: Row<R>>(place: usize, change: &[
 /// Positions and velocities.
 type State<R> = [R; 2];
 
-/// The four states at which the classical Runge-Kutta method has the accelerations, and those of the first three.
+/// Returns the four states at which the classical Runge-Kutta method evaluates the accelerations, and the accelerations
+/// at the first three.
 fn stages<T: Scalar, R: Row<T>, E>(
     accelerations: impl Fn(&R, &R) -> Result<R, E>,
     [q, qd]: [&R; 2],
@@ -64,7 +68,8 @@ fn stages<T: Scalar, R: Row<T>, E>(
     Ok(([first, second, third, fourth], [of_first, of_second, of_third]))
 }
 
-/// The changes of the mean velocity of a step, and of the velocity, by four accelerations.
+/// Returns the changes of the mean velocity and of the velocity during a step, from the accelerations at the four
+/// states.
 fn weighted<T: Scalar, R: Row<T>>([first, second, third, fourth]: [&R; 4], step: impl Fn(usize) -> T) -> [R; 2] {
     let (mut mean, mut rates) = (first.clone(), first.clone());
     for (at, (mean, rates)) in mean.as_mut().iter_mut().zip(rates.as_mut()).enumerate() {
@@ -75,11 +80,12 @@ fn weighted<T: Scalar, R: Row<T>>([first, second, third, fourth]: [&R; 4], step:
     [mean, rates]
 }
 
-/// As [`RungeKuttaStep::runge_kutta_step`](crate::RungeKuttaStep::runge_kutta_step), by the accelerations of positions
-/// and velocities: the next positions and the next velocities. `step` is the duration for each place of the rows.
+/// Computes the step of [`RungeKuttaStep::runge_kutta_step`](crate::RungeKuttaStep::runge_kutta_step), with a function
+/// that returns the accelerations at positions and velocities. Returns the next positions and the next velocities.
+/// `step` is the duration for each element of the rows.
 ///
 /// # Errors
-/// The first of the accelerations.
+/// The first error of the accelerations.
 pub fn runge_kutta_step<T: Scalar, R: Row<T>, E>(
     accelerations: impl Fn(&R, &R) -> Result<R, E>,
     [q, qd]: [&R; 2],
@@ -91,12 +97,13 @@ pub fn runge_kutta_step<T: Scalar, R: Row<T>, E>(
     Ok([moved_by_each(q, &moved(qd, &mean, T::one()), step), moved(qd, &rates, T::one())])
 }
 
-/// As [`RungeKuttaStepDerivatives::runge_kutta_step_derivatives`](
-/// crate::RungeKuttaStepDerivatives::runge_kutta_step_derivatives), by the accelerations of positions and velocities
-/// and by their derivatives by q, by q̇ and by τ: those of the next positions and those of the next velocities.
+/// Computes the derivatives of [`RungeKuttaStepDerivatives::runge_kutta_step_derivatives`](
+/// crate::RungeKuttaStepDerivatives::runge_kutta_step_derivatives), with functions that return the accelerations and
+/// their derivatives with respect to q, q̇ and τ. Returns the derivatives of the next positions and of the next
+/// velocities.
 ///
 /// # Errors
-/// The first of the accelerations or of their derivatives.
+/// The first error of the accelerations or of their derivatives.
 pub fn runge_kutta_step_derivatives<T: Scalar, R: Row<T>, M: Row<R>, E>(
     accelerations: impl Fn(&R, &R) -> Result<R, E>,
     derivatives: impl Fn(&R, &R) -> Result<[M; 3], E>,
@@ -121,8 +128,9 @@ pub fn runge_kutta_step_derivatives<T: Scalar, R: Row<T>, M: Row<R>, E>(
     Ok([moved_by(POSITION, &mean, step), rates])
 }
 
-/// The derivatives of the accelerations at a state by those of the step's arguments: of the state before, by which the
-/// velocity has moved, and of that before it, by which the position has moved twice.
+/// Returns the derivatives of the accelerations at a state of the method with respect to the arguments of the step. The
+/// chain rule needs the derivatives at the state before, whose accelerations moved the velocities, and at the one
+/// before that, whose accelerations moved the positions.
 fn chained<T: Scalar, R: Row<T>, M: Row<R>>(
     own: &[M; 3],
     duration: T,

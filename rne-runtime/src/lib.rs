@@ -23,8 +23,8 @@ mod capability;
 mod definition;
 #[cfg(all(feature = "arm", feature = "std"))]
 mod dyn_arm;
-/// Steps and their derivatives of a robot with a floating base, with lists of joints: the Python package has robots
-/// of any number of joints.
+/// Steps and derivatives for robots with a floating base, with lists of joints. The Python package needs them, because
+/// its robots have any number of joints.
 #[doc(hidden)]
 pub mod floating_integrator_of_lists {
     pub use crate::integrators::floating_integrator::{Stage, runge_kutta};

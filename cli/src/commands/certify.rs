@@ -1,4 +1,4 @@
-//! `rne certify`: what the code of an arm costs on a microcontroller, and how exact it is.
+//! `rne certify`: measures what the code of an arm costs on a microcontroller, and how accurate it is.
 
 mod certificate_file;
 mod code;
@@ -162,7 +162,7 @@ impl Language {
         }
     }
 
-    /// The compiler that is used if no other is named.
+    /// Returns the compiler that is used if the command line names none.
     const fn compiler(self) -> &'static str {
         match self {
             Self::C => "arm-none-eabi-gcc",
@@ -172,14 +172,14 @@ impl Language {
 }
 
 impl Arguments {
-    /// The functions whose programs are compiled, each once, in the order of `rne emit`.
+    /// Returns the functions whose programs are compiled, each once, in the order of `rne emit`.
     fn programs(&self) -> Vec<Function> {
         let of_observer = self.observer.then_some(Function::MomentumAndRate);
         let is_asked = |function: &Function| self.functions.contains(function) || of_observer == Some(*function);
         Function::ALL.into_iter().filter(is_asked).collect()
     }
 
-    /// Options that `rne emit` takes, too, and whether they are given.
+    /// Returns the options that `rne emit` has, too, each with whether the command line gives it.
     fn flags(&self) -> [(&'static str, bool); 6] {
         [
             ("--rotors", self.rotors.rotors),
@@ -191,7 +191,7 @@ impl Arguments {
         ]
     }
 
-    /// The functions to certify: programs and the observer; then friction and limits.
+    /// Returns the functions to certify: programs and the observer, then friction and limits.
     fn subjects<'a>(&self, robot: &Robot, programs: &'a [Program]) -> Result<Vec<Subject<'a>>, Failure> {
         let low_pass = LowPass { gain: self.gain, period: self.period };
         let subject = |program: &'a Program| match program.function {
@@ -210,7 +210,7 @@ impl Arguments {
         Ok(subjects)
     }
 
-    /// The code in C as `rne emit` writes it.
+    /// Returns the C code, the same that `rne emit` writes.
     pub(super) fn c_code(
         &self,
         robot: &Robot,
@@ -249,7 +249,7 @@ fn states(text: &str) -> Result<usize, String> {
     }
 }
 
-/// Fewer states than these say little about the error.
+/// Number of states below which a note says that the measured error is of little value.
 const FEW_STATES: usize = 100;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
@@ -260,7 +260,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-/// The certificate, and remarks on missing tools, on the checker and on warnings of the robot file.
+/// Makes the certificate, and remarks on missing tools, on the checker and on warnings of the robot file.
 fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> {
     let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &[], Frames::Dropped, Shape::Closed)?;
     let robot = arguments.rotors.of(checked.robot);
@@ -315,7 +315,7 @@ fn certificate(arguments: &Arguments) -> Result<(Certificate, String), Failure> 
     Ok((certificate, remarks))
 }
 
-/// The programs of the functions, in the order of statements that is asked for.
+/// Compiles the programs of the functions, with their statements in the order that the command line asks for.
 fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failure> {
     let compiler = Compiler::new(&arguments.file, robot);
     let functions = arguments.programs();
@@ -324,7 +324,7 @@ fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failur
     functions::in_order(arguments.order, arguments.form, programs.collect::<Result<_, _>>()?)
 }
 
-/// The SHA-256 of the robot file, of its plan and of the compiler, by their names.
+/// Returns the SHA-256 of the robot file, of its plan and of the compiler, by their names.
 fn hashes(
     arguments: &Arguments,
     robot: &Robot,
@@ -340,7 +340,7 @@ fn hashes(
     Ok(hashes)
 }
 
-/// The lines of the code with what they compute.
+/// Returns the lines of the code, each with what it computes.
 fn lines(
     arguments: &Arguments,
     robot: &Robot,
@@ -353,7 +353,7 @@ fn lines(
         let own = format!("{}(", call.function);
         match (arguments.lang, subject) {
             (Language::Rust, _) => vec![format!("fn {}<", subject.name())],
-            // the lines of its program come first
+            // the observer calls its program, so the lines of the program come first
             (Language::C, Subject::Observer(program, _)) => vec![format!("{prefix}_{}(", program.function), own],
             (Language::C, _) => vec![own],
         }
@@ -362,7 +362,7 @@ fn lines(
     heads.flat_map(|head| trace(code, &head, &joints)).collect()
 }
 
-/// Notes on options that have no effect, or a small one.
+/// Returns notes on options that have no effect, or too little.
 fn notes(arguments: &Arguments, robot: &Robot) -> String {
     let mut notes = arguments.rotors.note(robot);
     let states = arguments.states;
@@ -375,7 +375,7 @@ fn notes(arguments: &Arguments, robot: &Robot) -> String {
     notes
 }
 
-/// How often the code violates each rule of MISRA C:2012, where a deviation is recorded for all of them.
+/// Counts how often the code violates each rule of MISRA C:2012. A rule for which no deviation is recorded is an error.
 fn violations(folder: &Path, code: &Code) -> Result<BTreeMap<String, usize>, Failure> {
     let source = rne_emit::without_c_tests(&code.text);
     let found = misra::violations(&toolchain::misra(folder, &code.source, source)?);

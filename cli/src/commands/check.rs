@@ -1,4 +1,4 @@
-//! `rne check`: is a robot file in order?
+//! `rne check`: checks robot files and plan files.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -91,26 +91,26 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { text: text.trim_start_matches('\n').to_owned(), at_fault: bad > 0, ..Outcome::default() })
 }
 
-/// The words before the name of a file whose warnings count as errors.
+/// Returns the words before the name of a file if its warnings count as errors.
 fn denied(warnings: usize) -> String {
     let s = if warnings == 1 { "" } else { "s" };
     format!("{WARNING}{warnings} warning{s} denied{WARNING:#}")
 }
 
-/// A file in order.
+/// The result for a file without errors.
 struct Good {
-    /// It in a few words.
+    /// The robot or the plan in a few words.
     about: String,
     lints: Option<String>,
-    /// Number of warnings.
+    /// The number of warnings.
     warnings: usize,
-    /// The laws of physics, and whether all hold; where they are asked for.
+    /// The laws of physics as lines of text, and whether all hold; `None` without `--physics`.
     laws: Option<(String, bool)>,
 }
 
-/// A robot file, and its plan with it, unless that is among the files to be checked itself.
+/// Checks a robot file together with its plan; the plan is skipped if it is among the files to check itself.
 fn robot(path: &Path, arguments: &Arguments) -> Result<Good, Failure> {
-    // the laws are those of open trees
+    // the laws are those of trees whose loops are cut
     let shape = if arguments.physics { Shape::Coupled } else { Shape::Closed };
     let Checked { robot, lints, .. } = robot_file::read_with(path, &[], Frames::DroppedOfAll, shape)?;
     if !arguments.files.contains(&plan_of(path))
@@ -127,11 +127,12 @@ fn robot(path: &Path, arguments: &Arguments) -> Result<Good, Failure> {
     Ok(Good { about: about(&robot), lints: (!lints.is_empty()).then(|| lints.join("\n\n")), warnings, laws })
 }
 
-/// The reduced forms that a build would refuse, with the reasons: a note for each function that has such a form.
+/// Returns notes on functions whose reduced form a build would refuse, with the reasons.
 fn refusals(path: &Path, robot: &Robot) -> Result<Vec<String>, Failure> {
-    /// An arm of more joints would keep people waiting; `rne show` tells of one function.
+    /// Number of joints above which this check is skipped, because it would take long; `rne show` can check one
+    /// function.
     const MOST_JOINTS: usize = 8;
-    // of geometry alone a warning tells, and why accelerations cannot be computed
+    // a file with geometry only already has a warning, which also says why accelerations cannot be computed
     let has_links = robot.joints.iter().any(|joint| !joint.row.link.is_empty());
     if robot.joints.len() > MOST_JOINTS || !has_links {
         return Ok(Vec::new());
@@ -139,7 +140,7 @@ fn refusals(path: &Path, robot: &Robot) -> Result<Vec<String>, Failure> {
     let compiler = Compiler::new(path, robot);
     let mut programs = Vec::new();
     for function in choice::functions_of(robot) {
-        // what does not compile is an error of the commands that write code
+        // only commands that write code report code that does not compile
         let Ok(program) = compiler.compiled(function, Form::Reduced)? else { continue };
         let is_reduced = program.form == Form::Reduced;
         programs.push(program);
@@ -152,7 +153,7 @@ fn refusals(path: &Path, robot: &Robot) -> Result<Vec<String>, Failure> {
     Ok(notes.map(|lines| format!("{QUIET}note{QUIET:#}: {}", lines.join("\n"))).collect())
 }
 
-/// A golden file that the tests of a derive would not find.
+/// Finds a golden file whose name is wrong, so that the tests of a derive would not find it.
 fn misnamed_golden(path: &Path) -> Option<String> {
     let found = if path.is_file() { misnamed_golden_of(path) } else { None }?;
     Some(format!(
@@ -163,7 +164,8 @@ fn misnamed_golden(path: &Path) -> Option<String> {
     ))
 }
 
-/// Whether a plan belongs to its robot and gives what the seven steps give; what it costs.
+/// Checks that a plan belongs to its robot and that its code computes the same as the seven steps; returns its cost in
+/// operations.
 fn plan(robot_file: &Path) -> Result<Good, Failure> {
     let robot = robot_file::robot(robot_file, Shape::Coupled)?;
     let Some(read) = plan_file::read(robot_file, &robot)? else {

@@ -1,4 +1,4 @@
-//! `rne completions`: the script by which a shell completes commands and options.
+//! `rne completions`: prints the script with which a shell completes commands and options.
 
 use clap::{Args, CommandFactory as _};
 use clap_complete::Shell;

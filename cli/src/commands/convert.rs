@@ -1,4 +1,4 @@
-//! `rne convert`: the same arm in the other convention.
+//! `rne convert`: writes the same arm in the other convention.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;

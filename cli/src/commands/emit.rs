@@ -1,4 +1,4 @@
-//! `rne emit`: code that compiles by itself.
+//! `rne emit`: writes code that needs no other files to compile.
 
 pub(super) mod c;
 mod files;
@@ -115,7 +115,8 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    /// The form that is asked for. Firmware wants few operations, and a reader of Rust code every vector.
+    /// Returns the form that the command line asks for. The default is the reduced form, because firmware needs few
+    /// operations; for Rust it is the seven steps, because its reader wants to see every vector.
     fn form(&self) -> Form {
         self.form.unwrap_or(match self.lang {
             Language::Rust => Form::SevenSteps,
@@ -123,8 +124,8 @@ impl Arguments {
         })
     }
 
-    /// Whether the code has the indices of the joints under their names. In code of a chain, they stand on request, so
-    /// that its bytes stay what they were.
+    /// Returns whether the code has the indices of the joints under their names. Code of a chain has them only with
+    /// `--names`, so that existing code of chains stays the same.
     fn names_joints(&self, robot: &Robot) -> bool {
         self.names || !robot.is_serial()
     }
@@ -139,7 +140,8 @@ enum Language {
 }
 
 impl Language {
-    /// The name on the command line, the name in a sentence, and the ending of a file.
+    /// Returns three words for a language: its name on the command line, its name in a sentence, and the extension of a
+    /// file.
     const fn words(self) -> [&'static str; 3] {
         match self {
             Self::Rust => ["rust", "Rust", "rs"],
@@ -220,7 +222,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-/// The digits that code loses in single precision, unless it computes in double precision alone.
+/// Returns a note on digits that the code loses in single precision; empty if the code uses only double precision.
 fn losses(arguments: &Arguments, programs: &[Program]) -> String {
     let lines = rne_emit::losses(programs);
     if lines.is_empty() || arguments.casadi || arguments.real == Some(Real::Double) {
@@ -229,7 +231,7 @@ fn losses(arguments: &Arguments, programs: &[Program]) -> String {
     format!("{WARNING}warning{WARNING:#}: {}\n", lines.join("\n"))
 }
 
-/// The code in files or on standard output, or the check of files.
+/// Writes the code to files or to standard output, or checks files.
 fn emitted(
     arguments: &Arguments,
     robot: &Robot,
@@ -280,7 +282,7 @@ fn emitted(
     }
 }
 
-/// Refuses options for CasADi and for rollouts that have no function among these.
+/// Refuses options for CasADi and for rollouts if the code has no function that they apply to.
 fn are_for_options(arguments: &Arguments, robot: &Robot, programs: &[Program]) -> Result<(), Failure> {
     if arguments.casadi && !programs.iter().any(rne_emit::is_for_casadi) {
         return Err(usage_error!(
@@ -306,7 +308,7 @@ fn are_for_options(arguments: &Arguments, robot: &Robot, programs: &[Program]) -
     Ok(())
 }
 
-/// The functions asked for, by their names or by other options, that CasADi cannot call.
+/// Lists functions that the command line asks for and that CasADi cannot call.
 fn not_for_casadi(arguments: &Arguments, programs: &[Program]) -> String {
     let is_asked = |program: &&Program| {
         program.frame.is_some() || arguments.functions.contains(&FunctionOrAll::One(program.function))
@@ -324,7 +326,7 @@ fn not_for_casadi(arguments: &Arguments, programs: &[Program]) -> String {
     )
 }
 
-/// The tests of code in Rust, where they are asked for.
+/// Returns the tests of Rust code, if the command line asks for them.
 fn rust_tests(arguments: &Arguments, robot: &Robot, programs: &[Program]) -> Result<String, Failure> {
     if !arguments.tests {
         return Ok(String::new());

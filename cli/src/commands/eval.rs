@@ -1,4 +1,4 @@
-//! `rne eval`: numbers from the runtime, which loops over the links and knows nothing of generated code.
+//! `rne eval`: computes numbers with the runtime, which loops over the links and is independent of generated code.
 
 pub(super) mod compare;
 pub(super) mod golden;
@@ -104,7 +104,7 @@ pub(crate) struct Arguments {
     letters: Letters,
 }
 
-/// Significant digits to which a hand computes.
+/// Significant digits to which a person computes by hand.
 pub(crate) const DIGITS_BY_HAND: u8 = 4;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
@@ -117,14 +117,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let letters = arguments.letters;
     let text = match &outcome.text {
         json if arguments.json => letters.json(json),
-        // its lines do not break
+        // a line of CSV must not be wrapped
         csv if arguments.csv || arguments.golden.is_some() => letters.of(csv),
         text => letters.page(text, PAGE),
     };
     Ok(Outcome { text, remark: letters.page(&outcome.remark, PAGE), ..outcome })
 }
 
-/// A remark on an angle of the base that is probably in degrees.
+/// Remarks on an angle of the base that is probably in degrees.
 fn turned_base(arguments: &Arguments) -> String {
     let pose = arguments.given.base_pose.as_ref().map(|List(pose)| pose).filter(|pose| pose.len() == 6);
     let mut remark = String::new();
@@ -137,10 +137,11 @@ fn turned_base(arguments: &Arguments) -> String {
     remark
 }
 
-/// The centre of mass of a payload that is farther away, m, is probably in millimetres, as in a robot file.
+/// Distance of a payload's centre of mass, m, above which it is probably in millimetres; the same limit as in robot
+/// files.
 const FARTHEST: f64 = 5.0;
 
-/// A remark on a payload that is probably in millimetres.
+/// Remarks on a payload whose centre of mass is probably in millimetres.
 fn far_payload(arguments: &Arguments) -> String {
     let payload = arguments.arm.carried.payload.as_ref().and_then(|list| payload(list).ok());
     let com = payload.map(|payload| payload.com);
@@ -155,7 +156,7 @@ fn far_payload(arguments: &Arguments) -> String {
     })
 }
 
-/// A remark on a payload whose inertia no distribution of mass has. In a robot file, such a link is a warning.
+/// Remarks on a payload whose inertia no distribution of mass has. For a link in a robot file this is a warning.
 fn impossible_payload(arguments: &Arguments) -> String {
     let payload = arguments.arm.carried.payload.as_ref().and_then(|list| payload(list).ok());
     payload.and_then(|payload| payload.inertia.impossible_moments()).map_or_else(String::new, |[a, b, c]| {
@@ -167,7 +168,7 @@ fn impossible_payload(arguments: &Arguments) -> String {
     })
 }
 
-/// The results at the states of a table, at random states, or at one state.
+/// Computes the results at the states of a table, at random states, or at one state.
 fn computed(arguments: &Arguments, robot: Robot) -> Result<Outcome, Failure> {
     let function = arguments.asked(&robot);
     arguments.at.check(function)?;
@@ -177,7 +178,7 @@ fn computed(arguments: &Arguments, robot: Robot) -> Result<Outcome, Failure> {
         let file = arguments.arm.file();
         return states::Job {
             robot_file: file,
-            // the plan of a file is for its own numbers
+            // the plan of a file is only for the robot with the numbers of this file
             arm: &if arguments.arm.set.is_empty() && arguments.arm.without.is_empty() {
                 plan_file::compiled_arm(file, &robot)?
             } else {
@@ -203,7 +204,7 @@ fn computed(arguments: &Arguments, robot: Robot) -> Result<Outcome, Failure> {
     at_one_state(arguments, function, &robot)
 }
 
-/// The result at the state of the command line, or of a worksheet.
+/// Computes the result at the state of the command line or of a worksheet.
 fn at_one_state(arguments: &Arguments, function: Function, robot: &Robot) -> Result<Outcome, Failure> {
     let (sheet, of_sheet) = arguments.sheet(function, robot)?;
     let payload = arguments.arm.carried.payload.clone().filter(|_| function.takes(Argument::Payload));
@@ -211,7 +212,7 @@ fn at_one_state(arguments: &Arguments, function: Function, robot: &Robot) -> Res
     let (given, assumed) = given.or_state(of_sheet).at_rest(function, robot.dof());
     let state = State::new(function, &given, robot)?;
     let arm = DynArm::from_robot(robot);
-    // The lengths are checked, so this error does not occur; if it does, it says what is wrong.
+    // The lengths were checked before, so this error should not occur; if it does, it says what is wrong.
     let numbers = state.numbers(&arm).map_err(Failure::usage)?;
     if let Some(index) = numbers.iter().position(|number| !number.is_finite()) {
         return Err(Failure::input(not_finite(robot, function, index, &state.q)));
@@ -250,7 +251,7 @@ fn at_one_state(arguments: &Arguments, function: Function, robot: &Robot) -> Res
     Ok(Outcome { remark, ..Outcome::text(text) })
 }
 
-/// The intermediate values of the seven steps, as CSV, as JSON, or as text with the result.
+/// Writes the intermediate values of the seven steps, as CSV, as JSON, or as text with the result.
 fn traced(arguments: &Arguments, robot: &Robot, state: &State, numbers: &[f64]) -> Result<String, Failure> {
     let narrowed = Narrowed { joint: choice::joint_of(robot, arguments.joint.as_deref())?, step: arguments.step };
     let axes = arguments.axes.unwrap_or(Axes::Link).into();
@@ -271,7 +272,7 @@ fn traced(arguments: &Arguments, robot: &Robot, state: &State, numbers: &[f64]) 
 }
 
 impl Arguments {
-    /// The robot, and a note that counts the warnings of its file.
+    /// Reads the robot, and returns a note that counts the warnings of its file.
     fn robot(&self) -> Result<(Robot, String), Failure> {
         if self.out.is_some() && self.states.is_none() {
             return Err(Failure::usage("-o is for the results of --states; the result of one state is printed"));
@@ -283,7 +284,8 @@ impl Arguments {
         self.arm.robot_at(&self.at)
     }
 
-    /// The function that is named, or else the one that the wrenches, the frame and the loops suggest.
+    /// Returns the function that the command line names, or else the one that the given wrenches, frame and loops
+    /// require.
     fn asked(&self, robot: &Robot) -> Function {
         let has_loops = !robot.closed.is_empty();
         self.function.unwrap_or(match (&self.given.wrench, self.at.frame.is_some()) {
@@ -297,7 +299,7 @@ impl Arguments {
         })
     }
 
-    /// Whether the function can be computed and traced for a robot.
+    /// Checks that the function can be computed and traced for a robot.
     fn check(&self, function: Function, robot: &Robot) -> Result<(), Failure> {
         if self.trace && !function.returns_torques() {
             let is_traced = |f: &&Function| f.returns_torques() && f.check_for(robot).is_ok();
@@ -317,7 +319,7 @@ impl Arguments {
         Ok(())
     }
 
-    /// The worksheet that is compared, and q, q̇ and q̈ that it gives, of those that a function takes.
+    /// Reads the worksheet for `--compare`, and takes from it q, q̇ and q̈ as far as the function needs them.
     fn sheet(&self, function: Function, robot: &Robot) -> Result<(Option<Filled>, [Option<List>; 3]), Failure> {
         let read = |path: &PathBuf| worksheet_file::read(path, robot, self.axes.map(Into::into));
         let sheet = self.compare.as_ref().map(read).transpose()?;
@@ -333,7 +335,8 @@ impl Arguments {
         Ok((sheet, given))
     }
 
-    /// The function and the robot with the payload: an argument where the function has one, else a part of a link.
+    /// Returns the function and the robot for a payload: the payload is an argument if a function takes it, else a part
+    /// of a link.
     fn loaded(&self, function: Function, robot: Robot) -> Result<(Function, Robot), Failure> {
         let carried = &self.arm.carried;
         let function = function.with_payload().filter(|_| carried.is_at_tip()).unwrap_or(function);
@@ -350,7 +353,7 @@ impl Arguments {
     }
 }
 
-/// Numbers in the shape in which a function returns them.
+/// Arranges numbers in the shape of the function's result.
 fn result(robot: &Robot, function: Function, numbers: &[f64]) -> Value {
     let record = |record: Record, parts| {
         let fields = record.fields().iter().copied().map(str::to_owned);
@@ -379,13 +382,13 @@ mod tests {
         arguments: Arguments,
     }
 
-    /// Runs with options, each with its value.
+    /// Runs the command with options, some of them with values.
     fn run_with<'a>(file: &'a str, options: impl Iterator<Item = &'a str>) -> Result<Outcome, Failure> {
         let words = ["eval", file].into_iter().chain(options);
         run(&Command::try_parse_from(words).unwrap_or_else(|error| panic!("{error}")).arguments)
     }
 
-    /// Options, a value of two joints or of a base, and the arguments of functions that use it.
+    /// Options, each with a value for two joints or for a base, and with the arguments of functions that use it.
     const OPTIONS: [(&str, &str, &[Argument]); 18] = [
         ("--q", "0.1,0.2", &[Positions]),
         ("--qd", "0.1,0.2", &[Rates]),
@@ -407,8 +410,8 @@ mod tests {
         ("--frame", "shoulder", &[]),
     ];
 
-    /// Every option that has a value, and `--rotors`, with every function: it is used, or it is refused by its name.
-    /// What uses it stands in the table of functions.
+    /// For every function, every option that has a value, and `--rotors`, is either used or refused with a message that
+    /// names it. The table of functions says which functions use it.
     #[test]
     fn every_function_uses_or_refuses_every_option() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/satellite.yaml");
@@ -458,7 +461,7 @@ mod tests {
         assert!(used > 50 && refused > 500, "{used} used, {refused} refused");
     }
 
-    /// `--golden` and `--states` refuse each option of one state: none is accepted and not used.
+    /// `--golden` and `--states` either use an option of one state or refuse it; none is accepted and then ignored.
     #[test]
     fn many_states_use_or_refuse_every_option() {
         use clap::CommandFactory as _;
@@ -485,8 +488,8 @@ mod tests {
         }
     }
 
-    /// Functions that say that masses change them are changed by a payload, and the others are those of the links
-    /// alone.
+    /// A payload changes the results of exactly those functions whose entry `feels_links` says that they depend on link
+    /// masses.
     #[test]
     fn what_feels_links_is_what_a_payload_changes() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/satellite.yaml");
@@ -522,7 +525,7 @@ mod tests {
                 base_pose: take(BasePose, &six),
                 ..Given::default()
             };
-            // a floating base needs no wrenches, and what needs them is that with one wrench
+            // functions that need a wrench at each tip are skipped: they are like those with one wrench
             let Ok(state) = State::new(function, &given, &robot) else { continue };
             let [alone, loaded] = [&robot, &loaded]
                 .map(|robot| state.numbers(&DynArm::from_robot(robot)).expect("arrays of the right length"));

@@ -1,4 +1,4 @@
-//! `rne example`: the file of a shipped robot.
+//! `rne example`: prints the file of a shipped robot.
 
 use clap::Args;
 

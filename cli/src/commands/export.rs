@@ -1,4 +1,4 @@
-//! `rne export`: a robot file for programs that read other formats.
+//! `rne export`: converts a robot file for programs that read other formats.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;

@@ -49,7 +49,8 @@ pub(crate) struct Arguments {
     rne_path: Option<PathBuf>,
 }
 
-/// Names that the crate cannot have: of what it depends on, of what every crate knows, of folders that cargo makes.
+/// Names that the crate cannot have: those of its dependencies, of crates that Rust always has, and of folders that
+/// cargo makes.
 const TAKEN: [&str; 15] = [
     "rne",
     "cortex-m",
@@ -88,7 +89,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = checked.robot;
     let yaml = String::from_utf8(bytes).map_err(|error| Failure::input(error.utf8_error()))?;
     let plan = plan_file::read(&robot_file, &robot)?.map(|read| read.text);
-    // What the firmware's build would refuse, for that is late.
+    // Compiles now what the build of the firmware would refuse later.
     Compiler::new(&robot_file, &robot).compile(Function::InverseDynamics, Form::Reduced)?;
 
     let mut files = files(&arguments.name, &robot, &dependency);
@@ -98,11 +99,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome::remark(next(&folder, &files, &robot_file)))
 }
 
-/// The robot of a firmware whose name is that of no shipped robot.
+/// The robot of a firmware if its name is not that of a shipped robot.
 const DEFAULT: &str = "puma560";
 
-/// The file or name that was given; else a shipped robot, that of the firmware's name if there is one. A misspelt name
-/// of a shipped robot is an error.
+/// Returns the robot file or name that the command line gives; else the shipped robot with the name of the firmware, or
+/// the default robot. A name that is nearly that of a shipped robot is an error.
 fn robot_of(arguments: &Arguments) -> Result<PathBuf, Failure> {
     if let Some(robot) = &arguments.robot {
         return Ok(robot.clone());
@@ -122,10 +123,10 @@ fn robot_of(arguments: &Arguments) -> Result<PathBuf, Failure> {
     }
 }
 
-/// The line of `rne` in the manifest of the template.
+/// The line for `rne` in the manifest of the template.
 const PUBLISHED: &str = "rne = { version = \"0.1\", default-features = false }";
 
-/// The line of `rne` in the manifest, for a clone of its repository or for the registry.
+/// Returns the line for `rne` in the manifest: a path to a clone of its repository, or a version from the registry.
 fn dependency(clone: Option<&Path>) -> Result<String, Failure> {
     let Some(clone) = clone else { return Ok(PUBLISHED.to_owned()) };
     let is_rne = fs::read_to_string(clone.join("Cargo.toml")).is_ok_and(|text| text.contains("\nname = \"rne\"\n"));
@@ -137,16 +138,16 @@ fn dependency(clone: Option<&Path>) -> Result<String, Failure> {
             clone.display()
         )
     })?;
-    // a string of JSON is one of TOML
+    // TOML reads a JSON string as the same string
     let path = serde_json::Value::from(path);
     Ok(format!("rne = {{ path = {path}, default-features = false }}"))
 }
 
-/// The robot's file in the folder.
+/// The name of the robot file in the folder.
 const ROBOT: &str = "robot.yaml";
 
-/// The files that are made from the template, with what differs from firmware to firmware: the crate's name, where
-/// `rne` is, the number of joints, the robot's title.
+/// Makes the files from the template. They differ in the name of the crate, the place of `rne`, the number of joints
+/// and the title of the robot.
 fn files(name: &str, robot: &Robot, dependency: &str) -> Vec<(PathBuf, String)> {
     let manifest = include_str!("firmware/manifest.toml")
         .replacen("name = \"firmware\"", &format!("name = \"{name}\""), 1)
@@ -172,7 +173,7 @@ fn files(name: &str, robot: &Robot, dependency: &str) -> Vec<(PathBuf, String)> 
     files.map(|(file, text)| (file.into(), text)).into()
 }
 
-/// The robot, the list of files, and the commands to type next.
+/// Returns text that lists the robot, the files, and the commands to type next.
 fn next(folder: &Path, files: &[(PathBuf, String)], robot: &Path) -> String {
     let mut text = format!("robot: {}\n", robot.display());
     for (file, _) in files {
@@ -186,7 +187,7 @@ fn next(folder: &Path, files: &[(PathBuf, String)], robot: &Path) -> String {
     text
 }
 
-/// The commands that the README gives to its reader.
+/// Returns the commands that the README of the template contains.
 fn commands() -> impl Iterator<Item = &'static str> {
     let (_, below) = include_str!("firmware/README.md").split_once("```sh\n").unwrap_or_default();
     let lines = below.lines().take_while(|line| *line != "```");

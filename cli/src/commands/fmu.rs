@@ -1,4 +1,4 @@
-//! `rne export --fmu`: an FMU with its sources, and with a binary where there is a C compiler.
+//! `rne export --fmu`: writes an FMU with its sources, and with a binary if there is a C compiler.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -34,7 +34,7 @@ pub(super) struct Options {
 }
 
 impl Options {
-    /// The first of these options that is given.
+    /// Returns the first of these options that the command line gives.
     pub(super) fn given(self) -> Option<&'static str> {
         let options = [("--inverse", self.inverse), ("--no-build", self.no_build), ("--rotors", self.rotors)];
         options.into_iter().find_map(|(option, is_given)| is_given.then_some(option))
@@ -66,7 +66,7 @@ pub(super) fn write(
     let prefix = Prefix::of(&robot);
     let code = rne_emit::c_code(&robot, &programs, Precision::Double, &prefix)
         .map_err(|error| input_error!("{}: {error}", file.display()))?;
-    // the code says what is computed, and with which parameters
+    // the token must change with the code and its parameters, so it is a hash of the code
     let token = rne_certify::sha256(code.one_file().as_bytes());
     let fmu = Fmu { robot: &robot, programs: &programs, code: &code, version, causality, token: &token };
     let files = fmu.files();
@@ -115,7 +115,8 @@ fn can_be_fmu(file: &Path, robot: &Robot) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The binary for this computer with its path in the FMU and the compiler; none if there is no compiler.
+/// Compiles the binary for this computer; returns its path in the FMU, its bytes and the compiler, or `None` if there
+/// is no compiler.
 fn binary(fmu: &Fmu<'_>, files: &[(String, String)]) -> Result<Option<(String, Vec<u8>, String)>, Failure> {
     let folder = tempfile::tempdir().map_err(|error| {
         input_error!(
@@ -132,7 +133,7 @@ fn binary(fmu: &Fmu<'_>, files: &[(String, String)]) -> Result<Option<(String, V
     }
     let named = std::env::var("CC").ok().filter(|name| !name.trim().is_empty());
     let compiler = named.clone().unwrap_or_else(|| "cc".to_owned());
-    // as in make, options may follow the name of the compiler
+    // as in make, `CC` may contain options after the name of the compiler
     let mut words = compiler.split_whitespace();
     let mut command = Command::new(words.next().unwrap_or("cc"));
     command.args(words).args(["-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared", "-o"]).arg(&library);
@@ -155,7 +156,7 @@ fn binary(fmu: &Fmu<'_>, files: &[(String, String)]) -> Result<Option<(String, V
     }
 }
 
-/// The folder of binaries for this computer.
+/// Returns the folder of an FMU for binaries of this computer.
 fn platform(version: FmiVersion) -> String {
     let (system, short) = match std::env::consts::OS {
         "macos" => ("darwin", "darwin"),
@@ -168,7 +169,7 @@ fn platform(version: FmiVersion) -> String {
     }
 }
 
-/// The end of the name of a shared library.
+/// Returns the extension of shared libraries.
 const fn extension() -> &'static str {
     if cfg!(windows) {
         "dll"
@@ -179,8 +180,8 @@ const fn extension() -> &'static str {
     }
 }
 
-/// A zip archive without compression, which every tool reads. The date of its files is the first that an archive can
-/// store, so that the same robot file gives the same bytes.
+/// Makes a zip archive without compression, which every tool reads. All files get the earliest date of the format, so
+/// that the same robot file gives the same bytes.
 fn archive(entries: &[(String, Vec<u8>)]) -> io::Result<Vec<u8>> {
     let mut archive = rawzip::ZipArchiveWriter::new(Vec::new());
     let date = rawzip::time::UtcDateTime::from_components(1980, 1, 1, 0, 0, 0, 0);

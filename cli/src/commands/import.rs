@@ -1,4 +1,4 @@
-//! `rne import`: a robot file of an arm in a URDF or an MJCF file, and an account of what was done.
+//! `rne import`: makes a robot file from an arm in a URDF or an MJCF file, and prints what was done.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -80,7 +80,7 @@ pub(crate) struct Arguments {
     output: Output,
 }
 
-/// Reads `JOINT=VALUE`.
+/// Reads an argument of the form `JOINT=VALUE`.
 fn lock(text: &str) -> Result<(String, f64), String> {
     let (joint, value) = text.rsplit_once('=').ok_or("write JOINT=VALUE, such as finger=0.04")?;
     let value = rne_model::number(value.trim())
@@ -133,7 +133,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     arguments.output.deliver(Format::RobotFile, text, remark, &arguments.file)
 }
 
-/// The text, and what messages call its file. A robot file is refused where its text is read.
+/// Reads a file; returns its text and its name in messages. A robot file is refused later, when its text is read as
+/// XML.
 fn read(path: &Path) -> Result<(String, String), Failure> {
     let description = Description::open_by(path, input_file::open).map_err(|error| not_opened(&error))?;
     let (Description::RobotFile(bytes) | Description::Urdf(bytes)) = description else {
@@ -146,10 +147,10 @@ fn read(path: &Path) -> Result<(String, String), Failure> {
     Ok((input_file::name(path), text))
 }
 
-/// Most lines of a list that are shown.
+/// Largest number of lines of a list that are shown.
 const SHOWN: usize = 40;
 
-/// The links that are frames of the robot file, or that `--frames` would make to frames.
+/// Lists the links that are frames of the robot file, or would be with `--frames`.
 fn frames(account: &Account, keeps_frames: bool) -> String {
     let names: Vec<&str> = account.frames.iter().take(SHOWN).map(|(_, name)| name.as_str()).collect();
     let more = account.frames.len().saturating_sub(SHOWN);
@@ -165,7 +166,7 @@ fn frames(account: &Account, keeps_frames: bool) -> String {
     text
 }
 
-/// The option that changes whether the link that floats in the file is a floating base.
+/// Returns the option that changes whether the link that floats in the file becomes a floating base.
 fn other_base(account: &Account, arguments: &Arguments) -> Option<String> {
     let option = match (account.floats?, arguments) {
         (true, _) => return Some(format!("{TYPED}--fixed{TYPED:#} fixes the base where the file has it")),
@@ -179,7 +180,7 @@ fn other_base(account: &Account, arguments: &Arguments) -> Option<String> {
     Some(format!("without {TYPED}{option}{TYPED:#}, it is the floating base"))
 }
 
-/// The account of an import, line by line.
+/// Describes an import line by line.
 fn told(account: &Account, arguments: &Arguments) -> String {
     let mut text = String::new();
     let _ = writeln!(text, "from {} to {}", account.base, account.tip);
@@ -221,7 +222,7 @@ fn told(account: &Account, arguments: &Arguments) -> String {
     text
 }
 
-/// The change that snapping made.
+/// Describes the change that snapping makes.
 fn changed(change: &Difference) -> String {
     let accelerations = change.acceleration.map_or_else(
         || "the mass matrix is singular".to_owned(),

@@ -1,4 +1,4 @@
-//! `rne list`: the robots that are shipped.
+//! `rne list`: lists the shipped robots.
 
 use clap::Args;
 use rne_model::Reader;
@@ -34,7 +34,8 @@ pub(crate) fn run(_: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome::text(table(&rows, terminal::room())))
 }
 
-/// A line per robot: name, joints with convention, title. Lines of more than `room` columns have less of the title.
+/// Returns a line for each robot: name, joints with convention, title. The title is shortened if a line is wider than
+/// `room` columns.
 fn table(rows: &[(&str, String, String)], room: usize) -> String {
     let names = rows.iter().map(|(name, ..)| width(name)).max().unwrap_or(0);
     let widest = rows.iter().map(|(_, kinds, _)| width(kinds)).max().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! `rne man`: the manual pages.
+//! `rne man`: prints or writes the manual pages.
 
 use std::fs;
 use std::io;
@@ -62,7 +62,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     output_file::write_all(&files).map(Outcome::remark)
 }
 
-/// The manual pages, rne's own first: names, and what stands in them.
+/// Returns the manual pages, beginning with that of rne itself: their file names and texts.
 fn pages() -> io::Result<Vec<(String, String)>> {
     let mut root = commands::Arguments::command().disable_help_subcommand(true);
     root.build();

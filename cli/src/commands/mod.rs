@@ -1,4 +1,5 @@
-//! The grammar of the command line: a module for each command, with its `Arguments` and the `run` that answers them.
+//! The grammar of the command line: a module for each command, with its `Arguments` and the function `run` that
+//! executes it.
 //!
 //! `tour` is what `rne` does without a command. Some modules are parts of commands: `closed_form` of `show`,
 //! `residuals` of `log`; `identify` and `watch` share `prediction_errors`.
@@ -49,9 +50,9 @@ pub(crate) struct Arguments {
     pub(crate) command: Option<Command>,
 }
 
-/// The help of rne itself: the usual one, but that its two options share a line. A page has 40.
+/// Returns the help of rne itself: that of the parser, but with both options on one line, because a page has 40 lines.
 fn page() -> String {
-    // the parser's own text, as its styles are
+    // the styles of the text that the parser makes
     let (title, typed) = (TITLE.0, TYPED.0);
     format!(
         "{{about}}\n\n{{usage-heading}} {{usage}}\n\n{title}Commands:{title:#}\n{{subcommands}}\n\n\
@@ -61,7 +62,7 @@ fn page() -> String {
 }
 
 impl Arguments {
-    /// The command's name, as its help is asked for, and what it returned.
+    /// Runs the command; returns its name for messages about its help, and its result.
     pub(crate) fn run(&self) -> (&'static str, Result<Outcome, Failure>) {
         self.command.as_ref().map_or_else(|| ("rne", tour::run()), Command::run)
     }

@@ -1,4 +1,4 @@
-//! `rne new`: a robot file to fill in.
+//! `rne new`: writes a robot file to fill in.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -71,7 +71,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     )))
 }
 
-/// The robot file: slender rods of 2 kg, the first joint upright, the others in a vertical plane.
+/// Writes the robot file. Its links are slender rods of 2 kg; the first joint is vertical, the others move in a
+/// vertical plane.
 fn text(name: &str, dof: u8, prismatic: &[u8], convention: Convention) -> String {
     let (word, rows, place) = match convention {
         Convention::Standard => (
@@ -104,11 +105,11 @@ fn text(name: &str, dof: u8, prismatic: &[u8], convention: Convention) -> String
     text
 }
 
-/// The row of a joint. Only that of the first joint has comments; `place` says where the link frame is.
+/// Writes the row of a joint. Only the row of the first joint has comments; `place` says where its link frame is.
 fn row(joint: u8, slides: bool, convention: Convention, place: &str) -> String {
     let kind = if slides { "prismatic" } else { "revolute" };
     let moving = if slides { "d" } else { "theta" };
-    // joint 1 stands upright, and the others turn about horizontal axes
+    // joint 1 has a vertical axis, the others have horizontal axes
     let (d, a, alpha) = match (convention, joint) {
         (Convention::Modified, 1) => ("0.3", "0", "0"),
         (Convention::Standard, 1) => ("0.3", "0", "pi/2"),
@@ -158,7 +159,7 @@ mod tests {
                 for (index, joint) in checked.robot.joints.iter().enumerate() {
                     let kind = if index == 1 { JointKind::Prismatic } else { JointKind::Revolute };
                     assert_eq!(joint.row.kind, kind);
-                    // the rod reaches from joint to joint
+                    // the rod reaches from one joint to the next, so its centre is half its length away
                     assert_eq!(joint.row.link.com.iter().map(|c| c.abs()).sum::<f64>(), 0.15);
                 }
             }

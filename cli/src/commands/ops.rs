@@ -1,4 +1,4 @@
-//! `rne ops`: what the functions of a robot cost.
+//! `rne ops`: counts the operations of a robot's functions.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -58,7 +58,7 @@ pub(crate) struct Arguments {
     without: Vec<Trick>,
 }
 
-/// The counts of one function of one robot, as JSON has them.
+/// The counts of one function of one robot, in JSON.
 #[derive(Serialize)]
 struct Entry {
     robot: String,
@@ -75,7 +75,7 @@ struct Entry {
 pub(crate) struct Count {
     pub(crate) function: Function,
     pub(crate) form: Form,
-    /// (products, sums) before folding.
+    /// Products and sums before folding.
     pub(crate) before: (usize, usize),
     pub(crate) after: Operations,
 }
@@ -100,8 +100,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
                 if arguments.functions.is_empty() {
                     functions.extend(choice::functions_of(&robot));
                 }
-                // also those of a floating base, where the file holds the base; the compiler says why a robot has not
-                // what is asked for
+                // a named function is counted even if another one fits the robot better; if the robot cannot have it,
+                // the compiler says why
                 for asked in Function::ALL.into_iter().filter(|function| arguments.functions.contains(function)) {
                     match compiler.compiled(asked, Form::SevenSteps)? {
                         Ok(_) => functions.push(asked),
@@ -152,7 +152,7 @@ pub(crate) fn counts(
     Ok(counts)
 }
 
-/// Operations that each trick of a plan saves, in lines of `room` columns.
+/// Lists the operations that each trick of a plan saves, in lines of at most `room` columns.
 fn tricks(robot: &Robot, plans: &PlanSet, room: usize) -> String {
     let mut text = format!("{TITLE}{}{TITLE:#}\n", robot.name);
     let mut lines = vec![["trick", "saves", "what it is"].map(str::to_owned)];
@@ -184,9 +184,9 @@ fn entries(counted: &[(String, Vec<Count>)]) -> Vec<Entry> {
     counted.iter().flat_map(|(robot, counts)| counts.iter().map(move |count| entry(robot, count))).collect()
 }
 
-/// The counts of robots as a table: a line per robot, below it a line per function and form. Where it is wider than
-/// `room` columns it does without products and sums before folding, without the lines, then without all that was
-/// before; at last a function has a line of its own above its forms.
+/// Writes the counts of robots as a table: a line for each robot, and below it a line for each function and form. A
+/// table that is wider than `room` columns loses, in this order, products and sums before folding, the numbers of
+/// lines, and all other counts before folding; at last, functions get lines of their own above their forms.
 pub(crate) fn table(counted: &[(String, Vec<Count>)], room: usize) -> String {
     const LEAST: [&[usize]; 4] = [&[2, 3], &[LINES], &[4, 5], &[FUNCTION]];
     let mut left_out = Vec::new();
@@ -201,13 +201,13 @@ pub(crate) fn table(counted: &[(String, Vec<Count>)], room: usize) -> String {
     table
 }
 
-/// The column of the functions.
+/// The index of the column of functions.
 const FUNCTION: usize = 0;
 
-/// The column of the lines.
+/// The index of the column with numbers of lines.
 const LINES: usize = 11;
 
-/// The table without some of its columns; that of divisions is always counted.
+/// Writes the table without some of its columns; divisions are always shown.
 fn with_columns(counted: &[(String, Vec<Count>)], left_out: &[usize]) -> String {
     use Align::{Left, Right};
     let divides = counted.iter().flat_map(|(_, counts)| counts).any(|count| count.after.div > 0);
@@ -226,7 +226,7 @@ fn with_columns(counted: &[(String, Vec<Count>)], left_out: &[usize]) -> String 
         let mut function_before = None;
         for &Count { function, form, before: (products, sums), after } in counts {
             let again = function_before.replace(function) == Some(function);
-            // the forms of one function replace the same recursion
+            // all forms of a function replace the same recursion, so they have the same counts before folding
             let [before_mul, before_add, before] =
                 [products, sums, products + sums].map(|count| if again { String::new() } else { count.to_string() });
             lines.push(shown(vec![
@@ -262,9 +262,9 @@ fn with_columns(counted: &[(String, Vec<Count>)], left_out: &[usize]) -> String 
     text
 }
 
-/// The line above the titles: which columns are before folding, and which of the generated code.
+/// Returns the line above the titles: which columns are before folding, and which are of the generated code.
 fn above(titles: &str) -> String {
-    // what stands before the arrow ends with its total
+    // the columns before folding end with their total
     let (total, after) = (titles.find("total").unwrap_or(0), titles.rfind("mul").unwrap_or(0));
     let line = match titles.find("mul").filter(|before| *before < after) {
         Some(before) => {
@@ -301,11 +301,11 @@ mod tests {
         };
         let widest = |lines: &[String]| lines.iter().map(|line| width(line)).max().unwrap_or(0);
         assert!(widest(&lines(1000)) > 100, "the whole table is wide");
-        // the narrowest terminal that anybody has: functions above their forms
+        // from 48 columns, the narrowest terminal in use, where functions are above their forms
         for room in 48..140 {
             let lines = lines(room);
             assert!(widest(&lines) <= room, "{room}: {lines:#?}");
-            // what is generated is there in each, under its title
+            // the word "generated" is above the columns of generated code at every width
             let generated = lines[0].find("generated").expect("a title");
             let counted = lines[3..].iter().filter(|line| Form::ALL.iter().any(|form| line.contains(form.name())));
             for (line, total) in counted.zip(&totals) {

@@ -20,7 +20,7 @@ pub enum CompileError {
         /// The constant.
         name: Name,
     },
-    /// Code that would be another function than the seven steps; it is never emitted.
+    /// Code that is another function than the seven steps; such code is never emitted.
     NotIdentical {
         /// The function.
         function: Function,
@@ -29,7 +29,7 @@ pub enum CompileError {
         /// The probable cause.
         suspect: Suspect,
     },
-    /// Code that rounds too far away from the seven steps; it is never emitted.
+    /// Code that differs too much from the seven steps by rounding; such code is never emitted.
     Imprecise {
         /// The function.
         function: Function,
@@ -38,14 +38,14 @@ pub enum CompileError {
         /// The probable cause.
         suspect: Suspect,
     },
-    /// Two variables of one name, of which the second would shadow the first; it is never emitted.
+    /// Two variables with the same name, of which the second would shadow the first; such code is never emitted.
     TwoOfOneName {
         /// The function.
         function: Function,
         /// The name.
         name: String,
     },
-    /// A function whose code no compiler would take, for the arm has too many joints.
+    /// A function whose code is too large for any compiler, because the arm has too many joints.
     TooLarge {
         /// The function.
         function: Function,
@@ -54,34 +54,34 @@ pub enum CompileError {
         /// The most operations that are compiled.
         most: usize,
     },
-    /// A function with numbers of every link, of a robot some of whose joints follow others: its arrays have an element
-    /// for each coordinate.
+    /// A function that returns numbers of every link, for a robot some of whose joints follow others: its arrays have
+    /// an element only for each coordinate.
     OfEveryLink {
         /// The function.
         function: Function,
         /// The name of a joint that follows others.
         follower: String,
     },
-    /// A function that takes no positions of dependent joints, of a robot with closed loops.
+    /// A function that takes no positions of dependent joints, for a robot with closed loops.
     HasClosedLoops {
         /// The function.
         function: Function,
         /// The name of a loop.
         name: String,
     },
-    /// A function of closed loops, of a robot that has none.
+    /// A function of closed loops, for a robot without closed loops.
     NoClosedLoops {
         /// The function.
         function: Function,
     },
-    /// A function of a robot whose base floats, of one whose file has no `floating_base`.
+    /// A function of a floating base, for a robot whose file has no `floating_base`.
     NoFloatingBase {
         /// The function.
         function: Function,
         /// The robot's name.
         robot: String,
     },
-    /// The motion in contact of a robot without contacts.
+    /// The function of the motion in contact, for a robot without contacts.
     NoContacts {
         /// The function.
         function: Function,
@@ -155,20 +155,20 @@ impl fmt::Display for GraphMistake {
 pub enum Remedy {
     /// A search that leaves out what is wrong in the plan and finds the rest anew.
     SearchAfresh,
-    /// Such a search with rewriting, so that the graph is written anew too.
+    /// A search as [`Remedy::SearchAfresh`], with rewriting, so that the graph is written anew too.
     RewriteAfresh,
-    /// A search from the plan at hand on, which counts the operations anew.
+    /// A search that starts from the present plan, and counts the operations anew.
     CountAnew,
 }
 
 impl CompileError {
-    /// Whether a form was written and refused, for it is another function than the seven steps or a worse one.
+    /// Whether a form was refused because it is another function than the seven steps, or rounds too much.
     #[must_use]
     pub fn is_refusal(&self) -> bool {
         matches!(self, Self::NotIdentical { .. } | Self::Imprecise { .. })
     }
 
-    /// The remedy for the error, where another plan is one.
+    /// The remedy for the error, if another plan is one.
     #[must_use]
     pub const fn remedy(&self) -> Option<Remedy> {
         match self {
@@ -183,7 +183,7 @@ impl CompileError {
         }
     }
 
-    /// The error with what may be the cause.
+    /// Returns the error with its probable cause.
     #[must_use]
     pub fn suspecting(mut self, robot: &Robot, is_planned: bool) -> Self {
         if let Self::NotIdentical { suspect, .. } | Self::Imprecise { suspect, .. } = &mut self {
@@ -193,28 +193,29 @@ impl CompileError {
     }
 }
 
-/// Refusals of a function for a robot.
+/// Checks whether a robot has all that a function needs.
 pub trait CheckFor: Sized {
     /// Refuses a function that a robot does not have.
     ///
     /// # Errors
-    /// When a joint follows others and the function returns numbers of every link; when the function is of robots with
-    /// closed loops or of robots without, and this robot is of the other kind.
+    /// When a joint follows others and the function returns numbers of every link; when the robot has closed loops and
+    /// the function is not for such robots, or the robot has none and the function needs them.
     fn check_kind(self, robot: &Robot) -> Result<(), CompileError>;
 
-    /// Refuses a function that a robot does not have, or has not the base or the contacts for.
+    /// Refuses a function that a robot does not have, or for which it lacks the base or the contacts.
     ///
     /// # Errors
     /// Those of [`check_kind`](Self::check_kind) and of [`check_base`](Self::check_base).
     fn check_for(self, robot: &Robot) -> Result<(), CompileError>;
 
-    /// Whether a robot has the base and the contacts that the function needs. The compiler takes a robot whose file has
-    /// no `floating_base` as one whose base has no mass; whoever computes numbers of the robot asks this first, because
-    /// that mass was probably left out.
+    /// Refuses a function whose floating base or contacts the robot does not have. The compiler takes a robot whose
+    /// file has no `floating_base` as one whose base has no mass; code that computes numbers of the robot calls this
+    /// first, because that mass was probably left out.
     ///
     /// # Errors
-    /// [`CompileError::NoFloatingBase`] for a function of a floating base, and a robot without one;
-    /// [`CompileError::NoContacts`] for the motion in contact, which is a free fall without contacts.
+    /// [`CompileError::NoFloatingBase`] for a function of a floating base, if the robot has none;
+    /// [`CompileError::NoContacts`] for the motion in contact, if the robot has no contacts, because it would be a free
+    /// fall.
     fn check_base(self, robot: &Robot) -> Result<(), CompileError>;
 }
 

@@ -1,17 +1,17 @@
-//! The order of the terms of sums, and which products are fused with them: for the fewest instructions, or for the
-//! shortest wait.
+//! Chooses the order of the terms of sums and the products that are fused with them: for the fewest instructions, or
+//! for the shortest latency.
 //!
-//! A processor that has the instruction x y + z computes a sum and one product among its terms at once. How many
-//! products are left over depends on the order of the terms and on which products are computed at all:
+//! The instruction x y + z computes a product and adds it to a sum at once. How many products need an instruction of
+//! their own depends on the order of the terms and on which products are computed at all:
 //!
-//! - A sum of n terms takes n - 1 instructions, whatever they are, once there is a term to start from. So terms that
-//!   are no products come first and every product is fused with what has been summed before.
+//! - A sum of n terms takes n - 1 instructions, even if terms are products, once its first term is known. So terms that
+//!   are no products come first, and every product is fused with the sum of the terms before it.
 //! - A product that is used in several sums is fused with each of them and never computed by itself.
-//! - A sum of products alone needs one of them to start from. That costs a product, once for all sums that it can
-//!   start.
+//! - A sum that has only products needs one of them as first term. This product takes one instruction, for all sums
+//!   that it can start.
 //!
-//! Many states one after the other are computed so ([`contracted`]). A single call waits for its longest chain of
-//! operations: there the term that comes last should be added last ([`ordered_for_latency`]).
+//! [`contracted`] does this for code that evaluates many states one after another. A single call waits for its longest
+//! chain of operations: then the term that is known last should be added last ([`ordered_for_latency`]).
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -21,7 +21,7 @@ use crate::latency::{self, Latency};
 use crate::program::{Output, Program, Statement};
 use crate::values::{Contraction, Value, ValueId, Values};
 
-/// The program with its sums in the order in which most products are fused: wherever a product stands right of + or -.
+/// Returns the program with its sums in the order in which most products can be fused with the sums.
 ///
 /// ```
 /// use rne_codegen::fma;
@@ -41,7 +41,8 @@ pub fn contracted(program: &Program) -> Program {
     sums.program()
 }
 
-/// The program with the terms of every sum in the order in which they are known: what comes last is waited for least.
+/// Returns the program with the terms of every sum in the order in which they become known, so that the last term
+/// causes the shortest wait.
 #[must_use]
 pub fn ordered_for_latency(program: &Program) -> Program {
     let mut sums = Sums::of(program);
@@ -50,7 +51,8 @@ pub fn ordered_for_latency(program: &Program) -> Program {
     sums.program()
 }
 
-/// Instructions of one evaluation, without sines and cosines, where every product that stands right of + or - is fused.
+/// Counts the instructions of one evaluation, without sines and cosines, if every product that is added is fused with
+/// its sum.
 #[must_use]
 pub fn instructions(program: &Program) -> usize {
     let instructions = program.values.iter().skip(program.before_statements()).map(|(id, value)| match value {
@@ -67,14 +69,14 @@ pub fn instructions(program: &Program) -> usize {
 /// The choice of the products that are fused with what they are added to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fusing {
-    /// All.
+    /// All products.
     All,
-    /// All but those for which a call would wait longer than for a product and a sum.
+    /// All products, except those for which a call would wait longer than for a product and a sum.
     Soonest,
 }
 
-/// The program with every product that is added as one value with its sum. This is the only place where that is
-/// decided: derived code, machines and native code fuse the same products and so return the same bits.
+/// Returns the program with each chosen product and its sum as one value. Only this function decides which products are
+/// fused, so derived code, machines and native code fuse the same ones and return the same bits.
 #[must_use]
 pub fn fused(program: &Program, fusing: Fusing) -> Program {
     let first = program.before_statements();
@@ -91,11 +93,11 @@ pub fn fused(program: &Program, fusing: Fusing) -> Program {
     fused.in_written_order()
 }
 
-/// The contractions that make no value wait longer, by value.
+/// Returns, for each value, its contraction if that makes no result wait longer.
 fn soonest(program: &Program) -> Vec<Option<(Contraction, ValueId)>> {
     let (values, latency) = (&program.values, Latency::of(program));
     let mut contractions = vec![None; values.len()];
-    // what follows a value that is written where it is used; `None` where it is part of a contraction
+    // for a value without a name, the cycles from it to the last result; `None` if it is part of a contraction
     let mut rests = vec![Some(0); values.len()];
     for (id, value) in values.iter().skip(program.before_statements()).rev() {
         let Some(rest) = rests[id.index()] else { continue };
@@ -146,8 +148,8 @@ enum Named {
     Not,
 }
 
-/// The values of a program with their signs carried outwards, and its sums as lists of terms. Each value has two nodes:
-/// the value itself, and behind it a sum of one term for a statement that gives a value another name.
+/// The values of a program with their signs moved outwards, and its sums as lists of terms. Each value has two nodes:
+/// the value itself, and after it a sum of one term, for a statement that gives the value another name.
 struct Sums<'p> {
     program: &'p Program,
     /// The number of values before the statements. It is stored, because it is needed for every value.
@@ -210,7 +212,7 @@ impl<'p> Sums<'p> {
         }
     }
 
-    /// The term of a statement: a name stands for a value with its sign.
+    /// Returns the term of a statement; the name means the value together with its sign.
     fn named(&mut self, id: ValueId, term: Term) -> Term {
         let node = term.node;
         let is_free = self.names[node].is_none();
@@ -235,12 +237,12 @@ impl<'p> Sums<'p> {
         Term::plus(named)
     }
 
-    /// Whether a value is an argument, a constant, an angle, a sine or a cosine: statements are made of them.
+    /// Whether a value is an argument, a constant, an angle, a sine or a cosine, from which statements are computed.
     fn is_leaf(&self, id: ValueId) -> bool {
         id.index() < self.before_statements
     }
 
-    /// The value that a node is, unless it is a sum.
+    /// Returns the value of a node, unless the node is a sum.
     fn value(&self, node: usize) -> Option<(ValueId, Value)> {
         let is_value = node.is_multiple_of(2) && self.terms_of[node].is_none();
         let id = ValueId::at(node / 2);
@@ -271,7 +273,8 @@ impl<'p> Sums<'p> {
         }
     }
 
-    /// Sums that are used in only one sum become terms of this sum. A node comes after the nodes that it uses.
+    /// Replaces sums that are used in only one sum by their terms in this sum. A node comes after the nodes that it
+    /// uses.
     fn flatten(&mut self, which: Named) {
         for index in 0..self.terms_of.len() {
             let Some(terms) = self.terms_of[index].take() else { continue };
@@ -290,7 +293,7 @@ impl<'p> Sums<'p> {
         }
     }
 
-    /// Decides which products are computed by themselves; how many candidates it looked at.
+    /// Decides which products are computed by themselves, and returns the number of candidates that were considered.
     fn choose_products(&mut self) -> usize {
         let nodes = self.terms_of.len();
         // uses as terms of sums; a product with other uses has to be computed
@@ -338,7 +341,7 @@ impl<'p> Sums<'p> {
         steps
     }
 
-    /// A product whose factors are not computed once more wherever it is fused.
+    /// Whether a node is a product that can be fused in every sum without computing its factors again.
     fn may_be_fused(&self, node: usize) -> bool {
         let is_nameless = |&node: &usize| self.names[node].is_none() && !self.operands(node).is_empty();
         self.factors(node).is_some_and(|factors| self.uses[node] == 1 || !factors.iter().any(is_nameless))
@@ -401,7 +404,7 @@ impl Writing<'_> {
         id
     }
 
-    /// A term where it is used: what a statement computes, else its value.
+    /// Writes a term where it is used: as the value of its statement if there is one, else as an expression.
     fn operand(&mut self, term: Term) -> ValueId {
         let known = self.known[term.node].filter(|_| self.sums.is_computed[term.node]);
         let value = known.unwrap_or_else(|| self.value(term.node));
@@ -425,8 +428,8 @@ impl Writing<'_> {
         self.values.push(None, value)
     }
 
-    /// The terms in their order. A sum that begins with negative terms is written without sign up to the first that has
-    /// none.
+    /// Writes the sum of terms in their order. Negative terms at the beginning are summed without sign, until the first
+    /// term that is not negative.
     fn sum(&mut self, terms: &[Term]) -> ValueId {
         let mut sum: Option<(Sign, ValueId)> = None;
         for term in terms {

@@ -1,9 +1,9 @@
 //! The symbolic compiler: a robot in, straight-line code out.
 //!
-//! [`Compiler`] is the one door. It writes a function of the robot as a graph of sums and products (the seven steps
-//! stand once, in `formulate/seven_steps.rs`), folds what is exactly zero or one, drops what is not needed, and returns
-//! a [`Program`] of named statements. Everything else renders that program: `rne-emit` as tokens for the macro and as
-//! text for people, an [`Interpreter`] for tests, [`Program::operations`] as counts.
+//! [`Compiler`] is the only entry point. It writes a function of the robot as a graph of sums and products (the
+//! formulas of the seven steps are in `formulate/seven_steps.rs`), folds terms that are exactly zero or one, drops
+//! unused ones, and returns a [`Program`] of named statements. All other code renders that program: `rne-emit` as
+//! tokens for the macro and as text for people, an [`Interpreter`] for tests, [`Program::operations`] as counts.
 //!
 //! ```text
 //! Robot → formulate → ir::Graph → value numbering, rewriting → lower → Program → fma, latency → prove
@@ -12,7 +12,7 @@
 //! Data in, data out: nothing here opens a file or prints.
 #![warn(missing_debug_implementations)]
 #![forbid(unsafe_code)]
-// Symbolic matrices are values, as in the formulas.
+// Symbolic matrices are passed by value, so that code reads like formulas.
 #![allow(clippy::large_types_passed_by_value)]
 
 mod argument_array;
@@ -79,16 +79,16 @@ use crate::plan::PlanSet;
 use crate::proof::Reference;
 use crate::reduced::near_origins;
 
-/// Whether frames of the table stand so far from the arm that code of the seven steps loses digits.
+/// Whether frames of the table are so far from the arm that code of the seven steps loses digits.
 fn has_far_frames(robot: &Robot) -> bool {
     near_origins(robot).is_some()
 }
 
-/// Whether code that is not proved may lose more digits in single precision than need no words: frames of the table
-/// stand far from the arm, or a length is very long.
+/// Whether code without a proof may lose so many digits in single precision that users must be told: frames of the
+/// table are far from the arm, or a length is very long.
 #[must_use]
 pub fn loses_digits(robot: &Robot) -> bool {
-    /// No length of an arm that stands in its own axes is as long, m.
+    /// A length above this, in m, occurs only if the frames are far from the arm.
     const LONGEST: f64 = 20.0;
     let of_rows = robot.joints.iter().flat_map(|joint| [joint.row.dh.a, joint.row.dh.d]);
     let links = robot.joints.iter().map(|joint| &joint.row.link);
@@ -101,13 +101,13 @@ pub fn loses_digits(robot: &Robot) -> bool {
     of_rows.chain(of_links).chain(placements.flat_map(|placement| placement.xyz)).any(is_long) || has_far_frames(robot)
 }
 
-/// A program of a robot with what it loses in single precision. What is proved is measured already.
+/// Returns the program with its loss in single precision. A program with a proof has this loss already.
 #[must_use]
 pub fn measured(robot: &Robot, program: Program) -> Program {
     if program.proof.is_some() {
         return program;
     }
-    // what cannot be compared is not measured
+    // the loss stays unknown if nothing can be compiled for comparison
     let loss = proof::loss_of_seven_steps(robot, &program).unwrap_or_default();
     Program { loss, ..program }
 }
@@ -135,13 +135,13 @@ pub struct Compiler<'r> {
 }
 
 impl<'r> Compiler<'r> {
-    /// With the choices that a build makes by itself.
+    /// Makes a compiler with the choices that a build makes by itself.
     #[must_use]
     pub const fn new(robot: &'r Robot) -> Self {
         Self { robot, plans: OnceLock::new(), target: Target::Latency, intermediates: Vec::new(), explains: false }
     }
 
-    /// With these choices, such as those of a plan file.
+    /// Uses these choices, such as those of a plan file.
     #[must_use]
     pub fn with_plans(self, plans: impl Into<PlanSet>) -> Self {
         Self { plans: OnceLock::from(plans.into()), ..self }
@@ -153,14 +153,15 @@ impl<'r> Compiler<'r> {
         Self { target, ..self }
     }
 
-    /// Programs of the seven steps return, behind their own outputs, every component of these quantities. Torques do
-    /// not need the velocity ċ of step 3, so it disappears unless it is kept. The reduced form has no such quantities.
+    /// Makes programs of the seven steps return, after their own outputs, every component of these quantities. Torques
+    /// do not need the velocity ċ of step 3, so it disappears unless it is kept. The reduced form has no such
+    /// quantities.
     #[must_use]
     pub fn with_intermediates(self, quantities: &[Quantity]) -> Self {
         Self { intermediates: quantities.to_vec(), ..self }
     }
 
-    /// Programs of the seven steps tell the formula of every component as it is before anything folds
+    /// Makes programs of the seven steps keep the formula of every component as it is before folding
     /// ([`Program::equations`]).
     #[must_use]
     pub fn with_equations(self) -> Self {
@@ -192,17 +193,17 @@ impl<'r> Compiler<'r> {
         if function.entry().is_irreducible {
             return seven_steps_within(LARGEST, robot, function, &[], false);
         }
-        // then there is nothing to be held against
+        // formulas that always divide by zero cannot be compared with other code
         if proof::divides_by_zero(robot, function) {
             let refusals = vec![Refusal::new(Attempt::Any, Reason::DividesByZero)];
             return Ok(Program { refusals, ..seven_steps_within(LARGEST, robot, function, &[], false)? });
         }
         let reference = Reference::of(robot, function)?;
-        // numbers that are not known cannot be regrouped
+        // run-time parameters have no numbers yet, so they cannot be regrouped
         if !robot.run_time.is_empty() {
             return Ok(self.numbered(function, reference, Vec::new()));
         }
-        // graphs are those of links alone
+        // rewritten graphs have no rotors, and no frame but the tip
         let of_links = self
             .plans
             .get()
@@ -223,7 +224,7 @@ impl<'r> Compiler<'r> {
             Ok(program) => Ok(program),
             // fewer choices make no program shorter
             Err(error @ CompileError::TooLarge { .. }) => Err(error),
-            // a plan file answers for what it was made for; for other functions it is a suggestion
+            // a plan file must work for the function that it was made for; for other functions it is a suggestion
             Err(error) if plans.is_of_build() || function != crate::function_of_plan(robot) && error.is_refusal() => {
                 let mut refusals = vec![Refusal::of_error(Attempt::Planned(LeftOut::Nothing), error)];
                 for (left_out, plans) in plans.with_ever_fewer_choices() {
@@ -245,14 +246,14 @@ impl<'r> Compiler<'r> {
     /// # Errors
     /// The errors of [`Compiler::compile`].
     pub fn derivation(&self, program: &Program) -> Result<Option<Derivation>, CompileError> {
-        // the search of a plan computes numbers that no program has
+        // makes the plan before recording: its search computes numbers that no program has
         self.plans();
         let (compiled, ways) = ir::derivation::recorded(|| self.compile(program.function, program.form));
         let constants: Vec<_> = compiled?.constants().map(|constant| (constant.name, constant.value)).collect();
         Ok(ways.derivation(&constants))
     }
 
-    /// By the plan, with the algorithm that takes the fewest operations.
+    /// Compiles a function by the plan, with the algorithm that takes the fewest operations.
     fn planned(&self, plans: &PlanSet, function: Function, reference: &Reference<'_>) -> Result<Program, CompileError> {
         let (plan, algorithm) = plans.cheapest(self.robot, function);
         let formulation = Formulation::by_plan(self.robot, &plan, function, algorithm)?;
@@ -261,19 +262,20 @@ impl<'r> Compiler<'r> {
         Ok(Program { algorithm, choices, ..program })
     }
 
-    /// The plain formulas with every value computed once; as they are where that is cheaper, or cannot be proved.
-    /// `refusals` are those of what was tried before.
+    /// Compiles the plain formulas with every value computed once; returns the seven steps if these are cheaper, or if
+    /// the proof fails. `refusals` are those of earlier attempts.
     fn numbered(&self, function: Function, reference: Reference<'_>, mut refusals: Vec<Refusal>) -> Program {
         let attempt = Attempt::EveryValueOnce;
         let of_seven_steps = reference.operations();
         match Formulation::numbered(self.robot, function).proved(function, self.target, &reference) {
             Ok(numbered) => {
                 let operations = numbered.operations().total();
-                // digits are worth more than operations
+                // if the table has frames far from the arm, digits are worth more than operations
                 if operations <= of_seven_steps || reference.is_near() {
                     return Program { refusals, ..numbered };
                 }
-                // a value that is found where it is not used otherwise costs what it takes there
+                // longer: value numbering may take a value from a formula that nothing else uses, with all operations
+                // of that formula
                 refusals.push(Refusal::new(attempt, Reason::Longer { operations, of_seven_steps }));
             }
             Err(error) => refusals.push(Refusal::of_error(attempt, error)),

@@ -1,4 +1,5 @@
-//! From the graph to named statements: what is live, what gets a name of its own, and with which sign it is written.
+//! Lowering: turns a graph into named statements. It finds the live nodes, and decides which of them get names and with
+//! which sign each is written.
 
 mod cells;
 mod equations;
@@ -20,7 +21,7 @@ use crate::program::{Constant, Order, Program, Resolution, ResolvedAs};
 use crate::reduced::Algorithm;
 use crate::values::{Value, Values};
 
-/// Where a statement stands: the index of its node, and an order among those that stand behind one node.
+/// The position of a statement: the index of its node, and its order among the statements after this node.
 type Position = (usize, usize);
 
 /// The robot, function and form of a program.
@@ -30,7 +31,8 @@ pub(crate) struct Heading<'a> {
     pub(crate) form: Form,
 }
 
-/// Turns a written graph into a program that returns its outputs under these names, and tells what its constants are.
+/// Turns a written graph into a program that returns its outputs under these names. Also returns the exact values of
+/// its constants.
 pub(crate) fn lower(
     heading: &Heading<'_>,
     mut written: Traced,
@@ -51,7 +53,7 @@ pub(crate) fn lower(
         let joint = name.joint.checked_sub(1).and_then(|joint| heading.robot.joints.get(joint));
         joint.is_some_and(|joint| joint.row.kind == JointKind::Prismatic)
     };
-    // A length of a joint that slides may be the angle of a joint that follows it.
+    // The position of a prismatic joint is a length, but a revolute joint that follows it has it in its angle.
     let within_angles = lowering.within_angles();
     let is_angle = |definition: &Definition| {
         let Name { quantity, .. } = definition.name;
@@ -108,7 +110,8 @@ pub(crate) fn lower(
     Ok((program, exactly))
 }
 
-/// The name of an argument is that of nothing else: gravity that is given is another number than gravity of the table.
+/// Removes definitions that have the name of an argument but another value: gravity as an argument differs from gravity
+/// of the table.
 fn leave_names_to_arguments(written: &mut Traced) {
     let argument = |(at, op)| if let Op::Input(input) = op { Some((input.name(), at)) } else { None };
     let arguments: FxHashMap<Name, Ref> = written.graph.nodes().filter_map(argument).collect();
@@ -116,15 +119,15 @@ fn leave_names_to_arguments(written: &mut Traced) {
     written.trace.definitions.retain(|definition| is_free(&definition.name, definition.at));
 }
 
-/// The name of a result is that of nothing else: a torque that followers add to is another number than that of the
-/// joint alone.
+/// Removes definitions that have the name of a result but another value: a torque to which followers add differs from
+/// the torque of the joint alone.
 fn leave_names_to_results(written: &mut Traced, names: &[Name]) {
     let results: FxHashMap<Name, Ref> = names.iter().copied().zip(written.graph.outputs.iter().copied()).collect();
     let is_free = |name: &Name, at: Ref| results.get(name).is_none_or(|result| *result == at);
     written.trace.definitions.retain(|definition| is_free(&definition.name, definition.at));
 }
 
-/// How often each node is used by live nodes and outputs; 0 is dead.
+/// Counts how often live nodes and outputs use each node; 0 is a dead node.
 fn count_uses(Traced { graph, .. }: &Traced) -> Vec<usize> {
     let mut uses = vec![0_usize; graph.len()];
     for at in &graph.outputs {
@@ -153,7 +156,7 @@ fn drop_unused(written: &mut Traced, uses: &[usize]) {
     }
 }
 
-/// The name under which a node stands in the code, and whether that name means the node's negative.
+/// The name of a node in the code, and whether that name means the node's negative.
 #[derive(Clone, Copy)]
 struct Given {
     name: Name,
@@ -184,7 +187,7 @@ impl<'w> Lowering<'w> {
         lowering
     }
 
-    /// A node takes the first name it was given; a letter of the lecture wins over an auxiliary name of the same step.
+    /// Gives each node the first of its names; a letter of the lecture wins over an auxiliary name of the same step.
     fn take_given_names(&mut self) {
         for definition in &self.written.trace.definitions {
             let (node, negative) = (definition.at.magnitude(), definition.at.is_negative());
@@ -193,14 +196,14 @@ impl<'w> Lowering<'w> {
             let lectures = |name: Name| name.quantity.is_of_the_lecture();
             let is_turn = matches!(self.written.graph.op(node), Op::Sine(_) | Op::Cosine(_));
             let wins = slot.is_none_or(|old| {
-                // sines and cosines are called what they are
+                // sines and cosines keep their own names
                 !is_turn
                     && !lectures(old.name)
                     && lectures(definition.name)
                     && old.name.quantity.step() == quantity.step()
             });
-            // a torque is an alias of a component of a force or moment, a derivative may be a sine, and the sine of one
-            // angle is more or less the cosine of another
+            // aliases give no name: a torque is a component of a force or moment, a derivative may be a sine, and the
+            // sine of one angle may be plus or minus the cosine of another
             let is_alias = matches!(quantity, Quantity::Torque | Quantity::AxisTorque)
                 || (is_turn && (negative || definition.name.by.is_some()));
             if wins && !is_alias {
@@ -213,7 +216,7 @@ impl<'w> Lowering<'w> {
                 Op::Input(input) => self.names[index] = Some(Given { name: input.name(), negative: false }),
                 _ if node.is_operation() => {
                     let keeps = self.names[index].is_some_and(|given| given.name.quantity.is_of_the_lecture());
-                    // an auxiliary quantity that is used once is clearer where it is used
+                    // an auxiliary quantity that is used once gets no statement: it is clearer where it is used
                     if !keeps && self.uses[index] < 2 && !self.is_angle(id) {
                         self.names[index] = None;
                     }
@@ -221,7 +224,7 @@ impl<'w> Lowering<'w> {
                 _ => {}
             }
         }
-        // a quantity that is written twice, with two values: the second one is called as what has no name is
+        // if two values have the same name, the second one loses it, and is then named as a value without a name
         let mut taken = FxHashSet::default();
         for (given, _) in self.names.iter_mut().zip(&self.uses).filter(|(_, uses)| **uses > 0) {
             if given.is_some_and(|given| !taken.insert(given.name)) {
@@ -230,14 +233,14 @@ impl<'w> Lowering<'w> {
         }
     }
 
-    /// A term without a name that is used more than once, and a leaf without a name, are called after the quantity
-    /// in which they first stood; a sum of another unit is called after what it adds. Other names may look alike, and
-    /// what a language tells apart is their text: a number that gives a text of them is left out.
+    /// Names terms without a name that are used more than once, and leaves without a name, after the quantity in which
+    /// they were first written; a sum of another unit is named after its summand. Generated code sees only the text of
+    /// a name, so a number that would give an existing text is left out.
     fn name_shared_terms(&mut self) {
         let given = self.names.iter().flatten().map(|given| given.name);
         let defined = self.written.trace.definitions.iter().map(|definition| definition.name);
         let mut taken: FxHashSet<String> = given.chain(defined).map(|name| name.to_string()).collect();
-        // the first link of each quantity between two links, which is not always the link before
+        // the first link of each quantity between two links: it is not always the link before
         let between = self.written.trace.definitions.iter().map(|definition| definition.name);
         let between = between.filter(|name| name.quantity.indices() == Indices::Links);
         let between: FxHashMap<(Quantity, usize), [usize; 2]> =
@@ -259,7 +262,7 @@ impl<'w> Lowering<'w> {
                     ..Name::scalar(birth.place.quantity, birth.place.joint)
                 });
             let base = self.summand_of_another_unit(id, base).unwrap_or(base);
-            // counted among those that look alike: of some quantities a name does not tell the joint
+            // parts are counted per text: the names of some quantities do not contain the joint
             let part =
                 parts.entry(Name { joint: if base.tells_joint() { base.joint } else { 0 }, ..base }).or_default();
             let name = loop {
@@ -269,18 +272,19 @@ impl<'w> Lowering<'w> {
                     break name;
                 }
             };
-            // with the sign that needs no minus; operands have their names, for they are older
+            // the name means the node or its negative, whichever needs no minus; operands have names already, because
+            // they are older
             let negative = !is_constant && self.is_negative(id);
             self.names[index] = Some(Given { name, negative });
         }
     }
 
-    /// The name of a summand whose unit is not that of `name`. A force may contain a moment over a length; this part is
-    /// called a moment. Units are those of a revolute joint. A quantity without a unit gives no name. In the seven
-    /// steps, a term is a part of one equation of the lecture, and keeps its name.
+    /// Returns the name of a summand whose unit is not that of `name`. A force may contain a moment divided by a
+    /// length; this part is named as a moment. Units are those of a revolute joint. A quantity without a unit gives no
+    /// name. In the seven steps, a term is a part of one equation of the lecture, and keeps its name.
     fn summand_of_another_unit(&self, id: Ref, name: Name) -> Option<Name> {
         let (Form::Reduced, Op::Sum(a, b)) = (self.form, self.written.graph.op(id)) else { return None };
-        // an angle has no unit of its own: U adds ω̇
+        // rad counts as 1: U, in 1/s², contains ω̇, in rad/s²
         let unit = |name: Name| name.quantity.unit(JointKind::Revolute).replace("rad", "1");
         [a, b].map(Ref::magnitude).into_iter().find_map(|summand| match self.names[summand.index()] {
             None => self.summand_of_another_unit(summand, name),
@@ -289,7 +293,7 @@ impl<'w> Lowering<'w> {
         })
     }
 
-    /// Whether what a node computes is written with a minus sign in front: signs are carried outwards.
+    /// Whether the expression of a node is written with a minus sign in front: signs move outwards in expressions.
     fn is_negative(&self, id: Ref) -> bool {
         let operand = |at: Ref| {
             let is_negative = match self.name_where_used(id, at.magnitude()) {
@@ -332,7 +336,7 @@ impl<'w> Lowering<'w> {
         let at = at.magnitude().signed(constant.value < 0.0);
         let turn = match constant.name.quantity {
             Quantity::Theta | Quantity::GroupTheta => self.written.graph.turn(at),
-            // one that was made as an angle, whatever it is called after
+            // another constant may have been made as an angle, too
             _ => self.written.graph.known_turn(at),
         };
         (self.written.graph.number(at).unwrap_or_default(), turn)
@@ -346,7 +350,7 @@ impl<'w> Lowering<'w> {
         self.written.graph.nodes().filter(|&(id, _)| self.is_live(id))
     }
 
-    /// The nodes of which the angles of sines and cosines are made.
+    /// The nodes from which the angles of sines and cosines are computed.
     fn within_angles(&self) -> FxHashSet<Ref> {
         let angle = |(_, op)| if let Op::Sine(angle) | Op::Cosine(angle) = op { Some(angle.magnitude()) } else { None };
         let mut waiting: Vec<Ref> = self.live_nodes().filter_map(angle).collect();
@@ -378,7 +382,7 @@ impl<'w> Lowering<'w> {
                 constants.push((Constant { name: given.name, value }, id));
             }
         }
-        // by link, as the statements are
+        // sorted by link, like the statements
         constants.sort_by_key(|(constant, _)| (constant.name.joint, constant.name));
         Ok(constants)
     }
@@ -419,8 +423,8 @@ impl<'w> Lowering<'w> {
         self.written.trace.births[id.index()].as_ref().map_or_else(own, |birth| birth.place)
     }
 
-    /// The values with statements of their own, in no order, and those that are returned: a torque, and whatever is
-    /// computed for a returned value alone, has a statement.
+    /// Returns the values with statements of their own, in no order, and the results. A result has a statement if it is
+    /// a torque, or if its value has no other name.
     fn definitions(&self, outputs: &[(Name, Ref)]) -> (Vec<Definition>, Vec<(Name, Returned)>) {
         let mut found = Vec::new();
         for (id, node) in self.live_nodes() {
@@ -443,7 +447,7 @@ impl<'w> Lowering<'w> {
             };
             returned.push((name, Returned::Statement));
             if stated.insert(name) {
-                // after the last node that was there when it was named, and after torques named before it
+                // after the last node that existed when it was named, and after torques that were named before it
                 let position = (self.written.trace.definitions[order].after.saturating_sub(1), order);
                 found.push(Definition { position, place: place_of(name, Step::Torque), name, at, is_node: false });
             }
@@ -451,7 +455,7 @@ impl<'w> Lowering<'w> {
         (found, returned)
     }
 
-    /// The fate of each name; `stated` are those that a statement gives.
+    /// Returns how each name appears in the code; `stated` are the names of statements.
     fn resolutions(&self, stated: &BTreeSet<Name>) -> Vec<Resolution> {
         let mut seen = BTreeSet::new();
         let definitions = self.written.trace.definitions.iter().filter(|definition| seen.insert(definition.name));
@@ -467,7 +471,7 @@ impl<'w> Lowering<'w> {
                     _ => match self.names[node.index()] {
                         Some(given) if given.name == definition.name => ResolvedAs::Computed,
                         Some(given) => ResolvedAs::Same(given.name, sign(given.negative != negative)),
-                        // a torque is no name of a node
+                        // a torque has a statement although its node does not have its name
                         None if stated.contains(&definition.name) => ResolvedAs::Computed,
                         None => ResolvedAs::Inside,
                     },
@@ -485,17 +489,17 @@ struct Definition {
     name: Name,
     /// The value that has the name.
     at: Ref,
-    /// Whether it computes the node, which may have another name else.
+    /// Whether the statement computes the node `at`; otherwise it gives a result its name.
     is_node: bool,
 }
 
-/// A result: what a statement of that name computes, or a value.
+/// How a result is returned: as the value of the statement with its name, or as a value without a statement.
 enum Returned {
     Statement,
     Value(Ref),
 }
 
-/// Where what bears a name belongs; `otherwise` is the step of what no step computes.
+/// The place of a named value; `otherwise` is the step if no step computes its quantity.
 fn place_of(name: Name, otherwise: Step) -> Place {
     let step = name.quantity.step().unwrap_or(otherwise);
     Place { joint: name.joint, step, quantity: name.quantity, by: name.by }

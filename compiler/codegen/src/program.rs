@@ -1,6 +1,6 @@
-//! The compiled function: its values in order, the statements that name them, and what became of every operation.
+//! The compiled function: its values in order, the statements that name them, and how every operation was folded.
 //!
-//! One `Program`, many renderers: tokens, text, counts, an interpreter, a machine.
+//! A `Program` is rendered in many ways: as tokens, text, counts, by an interpreter, by a machine.
 
 use rustc_hash::FxHashSet;
 
@@ -19,7 +19,7 @@ named! {
     Order, "order" {
         /// The order of its formulas, joint by joint.
         Formulas = "formulas",
-        /// One in which few values are alive at once.
+        /// An order in which few values are alive at once.
         Registers = "registers",
     }
 }
@@ -29,7 +29,7 @@ named! {
 pub struct Program {
     /// The robot's name.
     pub robot: String,
-    /// Number of coordinates: of joints that follow no other.
+    /// Number of coordinates, the joints that follow no other.
     pub dof: usize,
     /// Number of joints.
     pub joints: usize,
@@ -45,14 +45,14 @@ pub struct Program {
     pub function: Function,
     /// The frame of the function, by its name in the robot file; `None` for the tip.
     pub frame: Option<String>,
-    /// The names of the frames that carry wrenches, in the order of these.
+    /// The names of the frames that carry wrenches, in the order of the wrenches.
     pub tips: Vec<String>,
-    /// The name of its code: that of the function, or at a frame `jacobian_of_camera`.
+    /// The name of its code: that of the function, or with a frame for example `jacobian_of_camera`.
     pub name: String,
-    /// How it is computed.
+    /// Its form: the seven steps, or reduced.
     pub form: Form,
-    /// All values, in the order in which they are computed: arguments, constants, angles, sines and cosines,
-    /// statements, what is returned without a statement.
+    /// All values, in the order in which they are computed: arguments, constants, angles, sines and cosines, values of
+    /// statements, and results without a statement.
     pub values: Values,
     /// Angles that are sums.
     pub angles: Vec<Statement>,
@@ -60,30 +60,31 @@ pub struct Program {
     pub sines_and_cosines: Vec<SineCosine>,
     /// The values that have statements, in order.
     pub statements: Vec<Statement>,
-    /// The values returned, in the order of [`Function::layout`], then what was asked to be kept.
+    /// The values returned: those of the function in the order of [`Function::layout`], then intermediate quantities
+    /// that were asked for.
     pub outputs: Vec<Output>,
-    /// The fate of every quantity of the recursion, in its order.
+    /// How every quantity of the recursion appears in the code, in the order of the recursion.
     pub resolutions: Vec<Resolution>,
-    /// The fate of every operation of the recursion.
+    /// How every operation of the recursion was folded.
     pub fold_report: FoldReport,
-    /// Its formulas before folding, component by component in the order in which they are computed; only of the seven
-    /// steps, and only when they were asked for ([`crate::Compiler::with_equations`]).
+    /// Its formulas before folding, component by component in the order in which they are computed; only for the seven
+    /// steps, and only if they were asked for ([`crate::Compiler::with_equations`]).
     pub equations: Vec<Equation>,
-    /// By which algorithm it is written.
+    /// The algorithm by which it is written.
     pub algorithm: Algorithm,
     /// Whether the graph of its formulas was made smaller by algebra: it resembles no recursion any more.
     pub is_rewritten: bool,
     /// The order of its statements.
     pub order: Order,
-    /// The factors of lengths and forces, where the code measures them in units of the arm.
+    /// The factors of lengths and forces, if the code measures them in units of the arm.
     pub scales: Vec<Scales>,
     /// The choices of a program that is not the seven steps, one line each.
     pub choices: Vec<String>,
-    /// Why a program that is not the seven steps gives their numbers.
+    /// The evidence that a program that is not the seven steps gives their numbers.
     pub proof: Option<Proof>,
     /// The largest error in single precision at random states, in parts of the largest number that it returns at any of
-    /// them, where that is above 1e-4 (1e-2 if the function solves by the mass matrix). Of the seven steps it is known
-    /// if frames of the table stand far from the arm, or after [`measured`](crate::measured).
+    /// them, if that is above 1e-4 (1e-2 if the function solves by the mass matrix). For the seven steps it is known if
+    /// frames of the table are far from the arm, or after [`measured`](crate::measured).
     pub loss: Option<f64>,
     /// The reduced forms that were tried before this one and refused, in order.
     pub refusals: Vec<Refusal>,
@@ -94,33 +95,35 @@ pub struct Program {
 pub struct Proof {
     /// Number of random points of two prime fields at which all numbers are identical.
     pub points: usize,
-    /// At how many random states the rounding was measured.
+    /// Number of random states at which the rounding was measured.
     pub states: usize,
-    /// The largest difference of a torque from the seven steps there in double precision, relative to the largest
-    /// torque.
+    /// The largest difference of a torque from the seven steps at these states in double precision, relative to the
+    /// largest torque.
     pub rounding: f64,
-    /// The largest difference in single precision, from double precision.
+    /// The largest difference of the program in single precision from the seven steps in double precision, relative to
+    /// the largest torque.
     pub single: f64,
-    /// The largest difference of the seven steps themselves in single precision.
+    /// The largest difference of the seven steps in single precision from themselves in double precision, relative to
+    /// the largest torque.
     pub single_of_seven_steps: f64,
     /// (products, sums) of the seven steps before folding.
     pub before: (usize, usize),
 }
 
-/// The factors by which the form `reduced` multiplies lengths and forces, so that constants become 1. What is returned
-/// is in SI units.
+/// The factors by which the form `reduced` multiplies lengths and forces, so that constants become 1. Results are in SI
+/// units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
     /// The joint on the base, counted from 1, that carries the links whose values are scaled; `None` for all links.
     pub behind: Option<usize>,
-    /// Lengths, and the velocities and accelerations of points, are multiplied by it: λ.
+    /// λ, by which lengths, and the velocities and accelerations of points, are multiplied.
     pub length: f64,
-    /// Forces are multiplied by it: μ.
+    /// μ, by which forces are multiplied.
     pub force: f64,
 }
 
 impl Scales {
-    /// The factors that are not 1: one for all links, or one per joint on the base.
+    /// Returns the factors that are not 1: one entry for all links, or one per joint on the base.
     pub(crate) fn of(rows: &[JointFrame], Parameters { lambda, mu, .. }: &Parameters) -> Vec<Self> {
         let on_base = (0..rows.len()).filter(|&index| rows[index].parent.is_none());
         let factors = on_base.map(|index| Self {
@@ -141,7 +144,7 @@ impl Scales {
     }
 }
 
-/// A named constant. A number that is two entries of the table has each of the names that the statements use.
+/// A named constant. A number that is used for two entries of the table occurs once with each name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constant {
     /// Its name.
@@ -183,23 +186,23 @@ pub struct Output {
     pub value: ValueId,
 }
 
-/// The fate of a component of a quantity.
+/// How a component of a quantity appears in the code.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resolution {
     /// The component.
     pub name: Name,
-    /// Its fate in the code.
+    /// How it appears in the code.
     pub value: ResolvedAs,
 }
 
-/// The fate of a component of a quantity in the code.
+/// How a component of a quantity appears in the code.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ResolvedAs {
     /// It is computed by the statement of its own name.
     Computed,
-    /// It is another name, or its negative: an earlier statement or an argument.
+    /// It equals the value of another name, or its negative: an earlier statement or an argument.
     Same(Name, Sign),
-    /// It is a constant, and why it is that one.
+    /// It is a constant: its value, and the causes of this value.
     Constant(f64, Causes),
     /// It is computed inside another statement.
     Inside,
@@ -231,7 +234,7 @@ impl Operations {
 }
 
 impl Program {
-    /// The shape of what it returns.
+    /// The shape of its results.
     #[must_use]
     pub fn layout(&self) -> Layout {
         self.function.layout(self.sizes())
@@ -243,8 +246,8 @@ impl Program {
         Sizes { dof: self.dof, tips: self.tips.len(), passive: self.passive.len(), equations: self.equations_of_loops }
     }
 
-    /// Refuses two variables of one name. Names are compared as the text that a language sees, with the variables that
-    /// renderers add: the second of two would shadow the first.
+    /// Refuses two variables with the same name, because the second would shadow the first. Names are compared as text
+    /// in the generated code, together with the variables that renderers add.
     ///
     /// # Errors
     /// [`CompileError::TwoOfOneName`], with the first such name.
@@ -292,7 +295,7 @@ impl Program {
         angles.chain(self.sines_and_cosines.iter().map(|turn| self.values.used(turn.angle)))
     }
 
-    /// The same program with its values in the order in which they are written, and without those that nothing needs.
+    /// Returns the program with its values in the order in which they are written, without unused ones.
     pub(crate) fn in_written_order(self) -> Self {
         let mut moving = Moving { old: &self.values, new: vec![None; self.values.len()], values: Values::default() };
         let is_leaf = |(_, value): &(ValueId, Value)| matches!(value, Value::Argument | Value::Constant(_));
@@ -313,7 +316,7 @@ impl Program {
         Self { values, angles, sines_and_cosines, statements, outputs, ..self }
     }
 
-    /// How many values stand before the statements: arguments, constants, angles, sines and cosines.
+    /// The number of values before those of the statements: arguments, constants, angles, sines and cosines.
     #[must_use]
     pub fn before_statements(&self) -> usize {
         let is_turn = |(_, value): &(ValueId, Value)| matches!(value, Value::Sine(_) | Value::Cosine(_));
@@ -329,27 +332,28 @@ impl Program {
         self.values.iter().any(|(_, value)| matches!(value, Value::BySign(_)))
     }
 
-    /// Whether the constant 0 stands somewhere: where it is returned, or chosen by a sign.
+    /// Whether the code contains the constant 0, because it is returned or chosen by a sign.
     pub fn returns_zero(&self) -> bool {
         self.values.iter().any(|(id, value)| matches!(value, Value::Constant(_)) && self.values.name(id).is_none())
     }
 
-    /// Whether it is written by composite or articulated bodies.
+    /// Whether its algorithm uses composite or articulated bodies (CRBA or ABA).
     pub const fn is_of_bodies(&self) -> bool {
         matches!(self.algorithm, Algorithm::Crba(_) | Algorithm::Aba(_))
     }
 
-    /// Whether its statements stand in the order of a recursion, joint by joint.
+    /// Whether its statements are in the order of a recursion, joint by joint.
     #[must_use]
     pub fn follows_recursion(&self) -> bool {
         !self.is_rewritten && self.order == Order::Formulas
     }
 
-    /// Whether the processor is longer busy reading the instructions than waiting for the longest chain of them: then
-    /// the fewest instructions are the fastest.
+    /// Whether the program is so long that the processor needs more time to read its instructions than to compute its
+    /// longest chain of operations: then code with the fewest instructions is the fastest.
     #[must_use]
     pub fn is_long(&self) -> bool {
-        /// Their code does not fit into the nearest cache of the processors of these years, 32 KB.
+        /// The code of more operations does not fit into the first-level instruction cache of current processors, 32
+        /// KB.
         const LONG: usize = 4000;
         self.operations().total() > LONG
     }
@@ -373,7 +377,7 @@ impl Program {
     }
 }
 
-/// Values on their way from one list into another.
+/// Copies values from one list into another.
 struct Moving<'v> {
     old: &'v Values,
     new: Vec<Option<ValueId>>,
@@ -381,7 +385,7 @@ struct Moving<'v> {
 }
 
 impl Moving<'_> {
-    /// Where a value stands in the new list, behind what it is computed from.
+    /// Returns the place of a value in the new list, after copying its operands and the value if needed.
     fn value(&mut self, id: ValueId) -> ValueId {
         if let Some(new) = self.new[id.index()] {
             return new;

@@ -1,8 +1,8 @@
-//! The gate: a program is emitted only if it is the same function of the robot as the seven steps.
+//! The proof: a program is emitted only if it is the same function of the robot as the seven steps.
 //!
 //! Both are evaluated at random points of two prime fields, without rounding. Rational functions that agree there are
-//! identical, but for a probability below 10⁻¹⁰⁰ (J. T. Schwartz, J. ACM 27, 1980). That says nothing of how constants
-//! were rounded, so both are run in double precision at random states as well.
+//! identical, except with a probability below 10⁻¹⁰⁰ (J. T. Schwartz, J. ACM 27, 1980). This says nothing about the
+//! rounding of constants, so both are also run in double precision at random states.
 
 use rne_model::{Angle, Robot};
 
@@ -14,39 +14,41 @@ use crate::program::{Program, Proof};
 use crate::refusal::{largest_loss, largest_rounding};
 use crate::{CompileError, Suspect};
 
-/// Number of random points in each field at which torques are compared.
+/// Number of random points in each field at which results are compared.
 const POINTS: u64 = 4;
-/// States at which rounding is measured when code is generated.
+/// Number of random states at which rounding is measured when code is generated.
 const STATES: usize = 24;
-/// Operations that may be run to measure a loss of single precision once [`STATES`] show that it is too much. Users are
-/// told that number, and a few states give a third of it: large errors are rare.
+/// Largest number of operations that are run to measure the loss in single precision, after [`STATES`] states have
+/// shown that it is too large. Users read this loss, and a few states would give only a third of it, because large
+/// errors are rare.
 const OPERATIONS_OF_LOSS: usize = 4_000_000;
-/// If single precision changes accelerations by this part of the largest, the mass matrix counts as singular but for
-/// rounding.
+/// If single precision changes accelerations by this part of the largest one, the mass matrix counts as numerically
+/// singular.
 const SINGULAR: f64 = 0.1;
 
-/// The payload at the random states, a body of 2 kg some centimetres from the tip: mass, centre of mass, inertia, as
-/// numbers that single precision has, too.
+/// The payload at the random states, a body of 2 kg some centimetres from the tip: mass, centre of mass, inertia. All
+/// numbers are exact in single precision.
 const PAYLOAD: [f64; 10] = [2.0, 0.0625, -0.03125, 0.125, 0.125, 0.125, 0.09375, 0.03125, -0.03125, 0.03125];
 
-/// Parts of the torques of motion, and their derivatives, may vanish but for rounding: they count as this part of those
-/// torques at least.
+/// Parts of the torques of motion, and derivatives of such torques, may be zero except for rounding. So errors are
+/// relative to at least this part of the torques of motion.
 const LEAST_SCALE: f64 = 1e-2;
 
-/// The seven steps, compiled: programs are compared with them.
+/// The compiled seven steps, with which programs are compared.
 #[derive(Debug)]
 pub struct Reference<'r> {
     robot: &'r Robot,
     faithful: Program,
-    /// The program with joints near the arm, where the table has them far away: numbers are compared with its numbers.
+    /// The seven steps with joint origins near the arm, if those of the table are far away: results are compared with
+    /// these.
     near: Option<Program>,
-    /// The torques of motion, of which what the function returns are parts.
+    /// The program of the torques of motion, if the function returns parts of them.
     motion: Option<Program>,
 }
 
 impl<'r> Reference<'r> {
-    /// `compiled` compiles a function of the robot by the seven steps, with joints near the arm. `is_far` says that the
-    /// table has joints far from the arm.
+    /// Makes the reference from the seven steps, `faithful`. `compiled` compiles a function of the robot by the seven
+    /// steps with joint origins near the arm. `is_far` says that the table has joint origins far from the arm.
     ///
     /// # Errors
     /// When they cannot be compiled.
@@ -68,7 +70,8 @@ impl<'r> Reference<'r> {
         self.robot
     }
 
-    /// Whether the table has joints far from the arm, and other code than the seven steps has not.
+    /// Whether the table has joint origins far from the arm, so that all code except the seven steps uses origins near
+    /// the arm.
     pub(crate) const fn is_near(&self) -> bool {
         self.near.is_some()
     }
@@ -78,13 +81,14 @@ impl<'r> Reference<'r> {
         self.faithful
     }
 
-    /// Their operations.
+    /// Number of operations of the seven steps.
     pub(crate) fn operations(&self) -> usize {
         self.faithful.operations().total()
     }
 }
 
-/// Compares a program with the seven steps; then what it loses in single precision, if that is too much.
+/// Proves that a program is the function of the seven steps. Also returns its loss in single precision, if that is too
+/// large.
 ///
 /// # Errors
 /// When it is another function, or rounds too badly.
@@ -109,6 +113,8 @@ pub(crate) fn prove(
     }
 }
 
+/// Checks that a program returns the same numbers as the seven steps at all points of the fields.
+///
 /// # Errors
 /// When an output differs at a point.
 pub(crate) fn identical(
@@ -132,8 +138,8 @@ pub(crate) fn identical(
     Ok(())
 }
 
-/// Whether the plain formulas of a function divide by what is zero in every state: no inverse of a mass matrix that is
-/// always singular is the same function as another.
+/// Whether the plain formulas of a function divide by zero in every state, because a mass matrix is always singular. No
+/// other code can be proved to be the same as such formulas.
 #[must_use]
 pub fn divides_by_zero(robot: &Robot, function: Function) -> bool {
     if function.divides().is_none() {
@@ -153,12 +159,12 @@ struct Value {
 }
 
 impl Value {
-    /// A number that is no angle: its sine would be wrong whatever it is.
+    /// A number that is no angle. Its sine and cosine are both 0, which no angle has, so a wrong use is noticed.
     const fn number(number: Residue) -> Self {
         Self { number, turn: (Residue::ZERO, Residue::ZERO), position: None }
     }
 
-    /// A product, which is an angle if it is that of a position and a ratio.
+    /// Returns the product, which is an angle if one factor is a joint position and the other a ratio.
     fn times(self, other: Self) -> Self {
         let number = self.number * other.number;
         match (self.position, other.position) {
@@ -180,13 +186,14 @@ operators! { Value:
 }
 
 impl Real for Value {
-    /// No rational function: an unknown, the same for the same operands.
+    /// A choice by a sign is no rational function. It gives an unknown, the same for the same operands.
     fn by_sign(self, positive: Self, negative: Self) -> Self {
         Self::number(Residue::by_sign([self, positive, negative].map(|value| value.number)))
     }
 }
 
-/// An argument. The position of a joint that slides is a length, and is the angle of a revolute joint that follows it.
+/// Returns an argument. The position of a prismatic joint is a length, but the angle of a revolute joint that follows
+/// it.
 fn argument(point: &SamplePoint, name: Name) -> Value {
     let number = Value::number(point.argument(Input::new(name)));
     match name.joint.checked_sub(1) {
@@ -202,14 +209,14 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Sam
     let constant = |name: Option<Name>, _| {
         let Some(name) = name else { return Some(Value::number(Residue::ZERO)) };
         let (number, turn) = constants.get(&name)?;
-        // A number of the table that is the offset of an angle, too, was not made as an angle.
+        // A number of the table may also be the offset of an angle, and was then not made as an angle.
         let of_number = || robot.has_couplings().then(|| point.embedding().turn(&Angle::new(number.to_f64())));
         let turn = turn.or_else(of_number);
         let turn = turn.map_or((Residue::ZERO, Residue::ZERO), |turn| (turn.sin.residue, turn.cos.residue));
         Some(Value { turn, ..Value::number(number.residue) })
     };
     let sin_cos = |angle: Value| (Value::number(angle.turn.0), Value::number(angle.turn.1));
-    // sines and cosines that are arguments belong to the positions
+    // a sine or cosine as an argument is that of the joint position
     let turn = |name: Name| argument(point, Name::scalar(Quantity::Position, name.joint)).turn;
     let input = |name: Name| match name.quantity {
         Quantity::Sine => Some(Value::number(turn(name).0)),
@@ -220,10 +227,10 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Sam
     Some(outputs.into_iter().map(|output| output.number).collect())
 }
 
-/// The error of a program of the seven steps in single precision, if that is too much.
+/// Returns the error of a program of the seven steps in single precision, if that is too large.
 ///
 /// # Errors
-/// When what it is compared with cannot be compiled.
+/// When a program for the comparison cannot be compiled.
 pub(crate) fn loss_of_seven_steps(robot: &Robot, program: &Program) -> Result<Option<f64>, CompileError> {
     let reference = Reference::to(robot, program.clone())?;
     Ok(loss(&reference, program, &errors(&reference, program, STATES)))
@@ -234,8 +241,8 @@ pub(crate) fn loss_of_seven_steps(robot: &Robot, program: &Program) -> Result<Op
 /// (docs/measured/accuracy.md).
 const MARGIN: f64 = 3.0;
 
-/// The largest error in single precision times the margin, in parts of the largest number that the function returns at
-/// any of the states, if that is too much.
+/// Returns the largest error in single precision times the margin, in parts of the largest number that the function
+/// returns at any of the states, if that is too large.
 fn loss(reference: &Reference<'_>, program: &Program, few: &[Errors]) -> Option<f64> {
     let error = |errors: &[Errors]| {
         let largest = |of: fn(&Errors) -> f64| errors.iter().map(of).fold(0.0, larger);
@@ -246,7 +253,7 @@ fn loss(reference: &Reference<'_>, program: &Program, few: &[Errors]) -> Option<
     error(few).and_then(|_| error(&errors(reference, program, states.clamp(10 * STATES, 100 * STATES))))
 }
 
-/// The program and the seven steps in floating point.
+/// Collects the errors of a program and of the seven steps in floating point into a proof.
 fn rounding(reference: &Reference<'_>, errors: &[Errors]) -> Proof {
     let mut proof = Proof {
         points: usize::try_from(POINTS).unwrap_or_default(),
@@ -265,8 +272,8 @@ fn rounding(reference: &Reference<'_>, errors: &[Errors]) -> Proof {
     proof
 }
 
-/// How much larger the error of a program in single precision is than that of the seven steps, on the average: the
-/// largest error depends on which rare states one meets.
+/// Returns how many times larger the error of a program in single precision is than that of the seven steps, on the
+/// average: the largest error depends on which rare states are drawn.
 pub(crate) fn loss_of_precision(reference: &Reference<'_>, program: &Program, states: usize) -> f64 {
     let errors = errors(reference, program, states);
     let sum = |error: fn(&Errors) -> f64| errors.iter().filter(|errors| errors.is_regular).map(error).sum::<f64>();
@@ -279,9 +286,9 @@ struct Errors {
     double: f64,
     single: f64,
     single_of_seven_steps: f64,
-    /// The largest torque.
+    /// The largest torque, to which the differences are relative.
     scale: f64,
-    /// Whether accelerations mean something: the mass matrix is not singular but for rounding.
+    /// Whether accelerations can be compared: the mass matrix is not numerically singular.
     is_regular: bool,
 }
 
@@ -302,15 +309,15 @@ fn errors(reference: &Reference<'_>, program: &Program, states: usize) -> Vec<Er
     let precise = precise.as_ref().unwrap_or(&steps);
     let motion = motion.as_ref().map(Interpreter::new);
     let reduced = Interpreter::new(program);
-    // as they stand in the file, and rounded
+    // run-time parameters of the file, rounded so that they are equal in both precisions
     let parameters = robot.run_time.values(robot);
     let parameters_in_single: Vec<f32> = parameters.iter().map(|&value| value as f32).collect();
     let parameters: Vec<f64> = parameters_in_single.iter().copied().map(f64::from).collect();
     let mut rng = fastrand::Rng::with_seed(2024);
     for state_index in 0..states {
-        // numbers of single precision, so that both precisions are given the same state
+        // random numbers that single precision can represent, so that both precisions are given the same state
         let mut between = |low: f64, high: f64| f64::from((low + (high - low) * rng.f64()) as f32);
-        // where no loop is closed, its equations may be nearly singular
+        // positions that close the loops: elsewhere their equations may be nearly singular
         let closures = &robot.closed.closures;
         let closure = closures.get(state_index % closures.len().max(1));
         let closed = |closure: &Vec<f64>, joint: usize| f64::from(closure[joint] as f32);
@@ -325,7 +332,7 @@ fn errors(reference: &Reference<'_>, program: &Program, states: usize) -> Vec<Er
             closure.map(|it| robot.closed.passive.iter().map(|&joint| closed(it, joint)).collect()).unwrap_or_default();
         let mut random = |range: f64| (0..robot.dof()).map(|_| between(-range, range)).collect::<Vec<f64>>();
         let (qd, qdd) = (random(2.0), random(4.0));
-        // users read the largest error of these states: the base must move in many ways, not in one
+        // the base moves in different ways at the states beyond `STATES`, whose largest error users read
         let vectors = [(); 4].map(|()| match state_index {
             ..STATES => [5.0, -3.0, 2.0],
             _ => [(); 3].map(|()| between(-10.0, 10.0)),
@@ -356,16 +363,17 @@ fn errors(reference: &Reference<'_>, program: &Program, states: usize) -> Vec<Er
             torques.into_iter().map(f64::from).collect::<Vec<f64>>()
         };
         let [single, single_of_seven_steps] = [&reduced, &steps].map(|code| error(&single(code)));
-        // far from the arm, the seven steps alone say nothing
+        // if the table has origins far from the arm, the error of the seven steps alone says nothing
         let least = if near.is_some() { single.min(single_of_seven_steps) } else { single_of_seven_steps };
-        // nor has one that is singular but for rounding
+        // nor has a numerically singular mass matrix
         let is_regular = least < SINGULAR || !program.function.returns_accelerations();
         all.push(Errors { double: error(&found), single, single_of_seven_steps, scale, is_regular });
     }
     all
 }
 
-/// Arguments of any function: `base` is its motion, and the first of these vectors the forces and the pose.
+/// Makes the arguments of any function. `base` is the motion of the base; its first vector also gives the force and the
+/// moment at the tip, and the pose.
 fn state<'a, T: Copy>(
     [q, passive, qd, qdd]: [&'a [T]; 4],
     base: [[T; 3]; 4],
@@ -391,12 +399,12 @@ fn state<'a, T: Copy>(
     }
 }
 
-/// A wrench for each tip, no two of them the same.
+/// A wrench for each tip; neighbouring tips have different ones.
 fn at_tips<T: Copy>(robot: &Robot, [x, y, z]: [T; 3]) -> Vec<[T; 6]> {
     [[x, y, z, z, x, y], [y, z, x, x, y, z], [z, x, y, y, z, x]].into_iter().cycle().take(robot.tip_count()).collect()
 }
 
-/// The larger of two; what is no number is larger than any.
+/// The larger of two numbers; NaN counts as larger than any number.
 fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
 }

@@ -1,5 +1,4 @@
-//! The meaning of a number of the recursion: its step, quantity, joint and axis, and the name these give it in the
-//! code.
+//! The meaning of a number of the recursion: its step, quantity, joint and axis, and its name in the code.
 
 use std::fmt;
 
@@ -27,7 +26,7 @@ pub enum Step {
 }
 
 impl Step {
-    /// All seven, in order.
+    /// All seven steps, in order.
     pub const ALL: [Self; 7] = [
         Self::AngularVelocity,
         Self::AngularAcceleration,
@@ -118,7 +117,7 @@ impl Component {
 pub(crate) enum Indices {
     /// No index: the quantity exists once.
     Alone,
-    /// A count.
+    /// A running number.
     Counted,
     /// The joint.
     Joint,
@@ -137,7 +136,7 @@ pub(crate) enum Indices {
 }
 
 impl Indices {
-    /// How they look in a legend.
+    /// The pattern of the indices in a legend, such as `i_x`.
     const fn pattern(self) -> &'static str {
         match self {
             Self::Alone => "",
@@ -170,7 +169,8 @@ macro_rules! quantities {
         $quantity:ident: $prefix:literal, $indices:ident, $step:literal, $has_statements:literal, $letter:literal,
         $unit:literal, $meaning:literal;
     )*) => {
-        /// A quantity of the recursion. Vectors of link i are in frame i, in form P: at joint i, fixed to link i.
+        /// A quantity of the recursion. Vectors of link i are in frame i, in form P of the lecture: frame i is at joint
+        /// i, fixed to link i.
         #[allow(rustdoc::broken_intra_doc_links)] // [ω]× is no link
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Quantity {
@@ -337,7 +337,8 @@ quantities! {
     Scaled:                     "sol",       Joint,     8, true,  "", "", "the same divided by D";
     ActuatorTorque:             "act",       Joint,     8, false, "", "", "what the motor adds";
 
-    // Of a link that has a first moment and no mass. They stand last: sample points know an argument by its place here.
+    // Of a link with a first moment but no mass. New quantities come here, at the end, because the random numbers of
+    // sample points depend on the index of a quantity.
     MasslessMoment:             "mc",        Vector,    0, false, "h", "kg m",
         "first moment of a link without mass";
     OmegaCrossMoment:           "wxh",       Vector,    6, false, "(ω×h)", "kg m/s", "ω × h";
@@ -361,23 +362,23 @@ quantities! {
     MomentumRate:               "rate",      Joint,     8, true,  "", "",
         "its rate without external torques, τ + ∂T/∂q - ∂V/∂q";
 
-    // Step 7 of joints that follow others, and of those that are followed.
+    // Quantity of step 7, for joints that follow others and for joints that are followed.
     AxisTorque:                 "axis_tau",  Joint,     7, false, "τ'", "N m|N",
         "τ': what this joint needs of a torque; followers are part of the torques that move them";
 
-    // Of rotors of the list `motors`: i is the first joint with which rotor j turns.
+    // Quantities of the rotors in the list `motors` of a robot file: i is the first joint with which rotor j turns.
     SpinInertia:                "jr",        Column,    0, false, "Jr", "kg m²", "inertia of rotor j about its axis";
     Spin:                       "spin",      Column,    6, false, "s", "rad/s",
         "spin of rotor j relative to the link that carries it";
     SpinDot:                    "dspin",     Column,    6, false, "ṡ", "rad/s²", "its acceleration";
 
-    // Of named tips, which are counted from 1.
+    // Quantities of named tips; i is the number of the tip, from 1.
     TipForce:                   "ft",        Vector,    0, false, "f", "N",
         "force that the robot exerts at tip i, in axes of the tip";
     TipMoment:                  "nt",        Vector,    0, false, "n", "N m",
         "moment that the robot exerts at tip i, about the origin of the tip";
 
-    // Of a floating base: i is 0.
+    // Quantities of a floating base; i is 0.
     BaseForce:                  "fb",        Vector,    6, true,  "f", "N",
         "force that must act on the base beside gravity, in axes of frame 0";
     BaseMoment:                 "nb",        Vector,    6, true,  "n", "N m",
@@ -393,7 +394,7 @@ quantities! {
     ContactMoment:              "nk",        Vector,    8, true,  "", "",
         "its moment about the origin of the tip";
 
-    // Of closed loops: i is a dependent joint.
+    // Quantities of closed loops; i is a dependent joint.
     LoopMap:                    "map",       Column,    8, true,  "", "", "velocity of joint i per velocity of joint j";
     LoopBias:                   "bias",      Joint,     8, true,  "", "rad/s²|m/s²",
         "acceleration of joint i where the joints that move by themselves do not accelerate";
@@ -401,11 +402,11 @@ quantities! {
         "position of joint i after a Newton step";
     Residual:                   "left",      Joint,     8, true,  "", "", "what is left of equation i of the loops";
 
-    // Of the torques weighted by multipliers.
+    // Quantities of the sum of torques weighted by multipliers.
     Multiplier:                 "lam",       Joint,     0, false, "λ", "", "multiplier of the torque of joint i";
     WeightedTorque:             "lt",        Alone,     8, true,  "", "", "sum of the torques times the multipliers";
 
-    // Of the rate of the Jacobian.
+    // Quantities of the time derivative of the Jacobian.
     JacobianLinearRate:         "jvd",       Vector,    8, true,  "", "",
         "rate of the velocity of the tip per rate of joint i, world axes";
     JacobianAngularRate:        "jwd",       Vector,    8, true,  "", "",
@@ -413,7 +414,7 @@ quantities! {
     WeightedByPosition:         "lt_q",      Joint,     8, true,  "", "", "its derivative by the position of joint i";
     WeightedByRate:             "lt_qd",     Joint,     8, true,  "", "", "its derivative by the rate of joint i";
 
-    // Of the step of an integrator.
+    // Quantities of one step of an integrator.
     Duration:                   "h",         Alone,     0, false, "", "s", "duration of the step";
     NextPosition:               "next_q",    Joint,     8, true,  "", "rad|m", "position after the step";
     NextRate:                   "next_qd",   Joint,     8, true,  "", "rad/s|m/s", "velocity after the step";
@@ -450,8 +451,8 @@ impl Quantity {
         self.row().has_statements
     }
 
-    /// The quantity that it becomes in a recursion that has rates in the place of accelerations; `None` for what has no
-    /// name then.
+    /// The quantity that results if the recursion has rates in place of accelerations, such as a momentum for a torque;
+    /// `None` if the value has no name then.
     pub(crate) const fn of_momentum(self) -> Option<Self> {
         Some(match self {
             Self::Omega | Self::OmegaUnturned | Self::Gradient | Self::GradientUnturned | Self::AxisTorque => {
@@ -495,7 +496,7 @@ impl Quantity {
         self.row().indices
     }
 
-    /// How its names look, for the legend of a listing: `wi_x`.
+    /// The pattern of its names in the legend of a listing, such as `wi_x`.
     #[must_use]
     pub fn pattern(self) -> String {
         [self.prefix(), self.indices().pattern()].concat()
@@ -507,13 +508,13 @@ impl Quantity {
         matches!(self.indices(), Indices::Vector | Indices::Matrix | Indices::Links)
     }
 
-    /// Its letter in formulas, without indices: of the lecture, where that has one. Empty beyond the seven steps.
+    /// Its letter in formulas, without indices; that of the lecture if there is one. Empty beyond the seven steps.
     #[must_use]
     pub const fn letter(self) -> &'static str {
         self.row().letter
     }
 
-    /// In which unit it is, at a joint of this kind; empty for plain numbers, and beyond the seven steps.
+    /// Its unit at a joint of this kind; empty for plain numbers, and beyond the seven steps.
     #[must_use]
     pub fn unit(self, kind: JointKind) -> &'static str {
         let unit = self.row().unit;

@@ -1,4 +1,4 @@
-//! Text whose parts have a kind, for renderers that colour, link or typeset them.
+//! A text whose parts have kinds, so that a renderer can colour, link or typeset them.
 
 use std::fmt;
 use std::ops::{Add, Range};
@@ -8,15 +8,15 @@ use rne_codegen::Name;
 /// The kind of a part of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// The word that opens a declaration.
+    /// The word with which a declaration begins, such as `let`.
     Keyword,
-    /// A number's name: its quantity, joint and axis.
+    /// The name of a number: its quantity, joint and axis.
     Name(Name),
-    /// A number's value.
+    /// A number.
     Number,
 }
 
-/// A text, and what some of its parts are; the others are words, operators and brackets.
+/// A text with the kinds of some of its parts; all other parts are words, operators and brackets.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Annotated {
     text: String,
@@ -29,7 +29,7 @@ impl Annotated {
         Self { spans: vec![(0..text.len(), part)], text }
     }
 
-    /// Several with the same between them.
+    /// Joins several texts, with `between` between them.
     pub(super) fn join(parts: impl IntoIterator<Item = Self>, between: &str) -> Self {
         parts.into_iter().reduce(|all, part| all + between + part).unwrap_or_default()
     }

@@ -1,10 +1,10 @@
-//! Text in ASCII alone, for compilers, editors and terminals that know nothing else. Code is ASCII as it is; what
-//! changes are comments and formulas.
+//! Converts text to ASCII, for compilers, editors and terminals that cannot show other characters. Code is ASCII in any
+//! case, so only comments and formulas change.
 
-/// Exponents, and what each of them is on the line.
+/// Superscripts, and below each of them the character that replaces it.
 const RAISED: [&str; 2] = ["ᵀ⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹", "T-+0123456789"];
 
-/// Letters with dots in one character: the letter, and how many dots it has.
+/// Letters with dots that are one character: the character, the plain letter, and the number of dots.
 const DOTTED: [(char, char, usize); 8] = [
     ('Ġ', 'G', 1),
     ('Ṁ', 'M', 1),
@@ -16,15 +16,16 @@ const DOTTED: [(char, char, usize); 8] = [
     ('ẍ', 'x', 2),
 ];
 
-/// Pairs of a letter and its spelling in ASCII.
+/// Pairs of a character and its spelling in ASCII.
 const SPELLINGS: &str = "\
     α alpha β beta γ gamma Δ Delta δ delta ε epsilon θ theta Θ Theta λ lambda μ mu π pi ρ rho Σ sum σ sigma τ tau \
     φ phi ψ psi Ω Omega ω w ∂ d · * × x − - – - — - ─ - ± +- ≤ <= ≥ >= → -> √ sqrt ∫ int ½ 1/2 ₀ 0 ₁ 1 ₂ 2 ₃ 3 ₖ k \
     … ... ’ ' ‘ ' “ \" ” \" ä a à a á a â a å a ç c è e é e ê e ë e ï i í i ñ n ö o ó o ô o ø o ü u ú u û u Ä A É E \
     Ö O Ü U ß ss";
 
-/// A text with every letter that is not ASCII written out: ω is `w`, ω̇ `dw` and q̈ `qdd` as in the code, so θ̈ is
-/// `thetadd`; × is `x`, ᵀ `^T`, s⁻² `s^-2`. What has no such spelling, as a letter of a title may, is `_`.
+/// Returns a text in which every character that is not ASCII is spelled out: ω is `w`, ω̇ `dw` and q̈ `qdd` as in the
+/// code, so θ̈ is `thetadd`; × is `x`, ᵀ `^T`, s⁻² `s^-2`. A character without a spelling, such as a letter in a title,
+/// becomes `_`.
 #[must_use]
 pub fn ascii(text: &str) -> String {
     let mut written = String::with_capacity(text.len());
@@ -53,13 +54,13 @@ fn write_letter(c: char, dots: &str, written: &mut String) {
         'q' => written.extend(["q", dots]),
         'θ' => written.extend(["theta", dots]),
         c if c.is_ascii() => written.extend([dots, c.encode_utf8(&mut [0])]),
-        // no `*` after a `/`: compilers warn of comments inside comments
+        // a blank keeps `*` away from `/`, because compilers warn about `/*` in a comment
         '·' if dots.is_empty() && written.ends_with('/') => written.push_str(" *"),
         c => written.extend([dots, spelling(c)]),
     }
 }
 
-/// The dots that a mark puts above the letter before it.
+/// Returns the number of dots that a combining mark puts above the letter before it; `None` for other marks.
 const fn dots_of(mark: char) -> Option<usize> {
     match mark {
         '\u{307}' => Some(1),

@@ -1,6 +1,7 @@
-//! The sine and cosine of emitted code in single precision, compiled here: every host gives the bits of the target.
+//! The sine and cosine of emitted code in single precision, compiled into this crate: on every host they return the
+//! same bits as emitted code on its target.
 
-/// The methods of the trait that emitted Rust code asks for.
+/// The methods of the trait `Scalar` that emitted Rust code needs.
 trait Scalar {
     fn from_f64(value: f64) -> Self;
     fn sin_cos(self) -> (Self, Self)
@@ -10,7 +11,8 @@ trait Scalar {
 
 include!("sin_cos_f32.rs");
 
-/// Sine and cosine of an angle up to 1e5 rad, with the bits that emitted code computes without fused multiply-add.
+/// Returns the sine and cosine of an angle up to 1e5 rad, with the bits that emitted code computes without fused
+/// multiply-add.
 ///
 /// ```
 /// let (sine, cosine) = rne_emit::sin_cos_f32(0.5);
@@ -18,6 +20,6 @@ include!("sin_cos_f32.rs");
 /// ```
 #[must_use]
 pub fn sin_cos_f32(angle: f32) -> (f32, f32) {
-    // a number of `f32` has an exact value in `f64`
+    // the conversion to `f64` and back is exact
     Scalar::sin_cos(<f32 as Scalar>::from_f64(f64::from(angle)))
 }

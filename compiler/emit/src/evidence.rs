@@ -1,8 +1,8 @@
-//! Why a program that is not the seven steps can be trusted, in words.
+//! Explains in words why a program in the reduced form can be trusted.
 
 use rne_codegen::{Form, Order, Program, Proof, Scales};
 
-/// The form of a program, its proof and its choices, one sentence or choice per line.
+/// Returns the form of a program, its proof and its choices, one sentence or choice per line.
 #[must_use]
 pub fn evidence(program: &Program, proof: &Proof) -> Vec<String> {
     let meaning = if program.function.returns_torques() {
@@ -53,8 +53,8 @@ pub fn evidence(program: &Program, proof: &Proof) -> Vec<String> {
     lines
 }
 
-/// The reduced forms of a function that were refused, and why; then what the function has instead. No line where
-/// nothing was refused.
+/// Returns the reduced forms of a function that were refused, and why; then the form that is used instead. No line if
+/// none was refused.
 #[must_use]
 pub fn refusals(program: &Program) -> Vec<String> {
     if program.refusals.is_empty() {
@@ -68,7 +68,8 @@ pub fn refusals(program: &Program) -> Vec<String> {
     std::iter::once(heading).chain(program.refusals.iter().map(|refusal| format!("  {refusal}"))).collect()
 }
 
-/// The functions for which single precision is not enough, with their errors. No line where it is enough for all.
+/// Returns the functions for which single precision is not accurate enough, with their errors. No line if there is
+/// none.
 #[must_use]
 pub fn losses(programs: &[Program]) -> Vec<String> {
     let lossy: Vec<_> = programs.iter().filter_map(|program| Some((program, program.loss?))).collect();

@@ -1,4 +1,4 @@
-//! The text of an expression: its parentheses, and the width of its parts.
+//! The text of an expression: where it needs parentheses, and how wide its parts are.
 
 use std::cell::Cell;
 
@@ -18,17 +18,17 @@ pub(super) enum Position {
     Factor,
     /// Right of ·.
     RightFactor,
-    /// Behind a unary minus.
+    /// After a unary minus.
     Negated,
 }
 
-/// How an operator is written.
+/// The way in which an operator is written.
 pub(super) trait Infix {
-    /// The character of the operator in Rust and C.
+    /// Returns the character of the operator in Rust and C.
     fn sign(self) -> char;
-    /// The sign with a blank on each side.
+    /// Returns the sign with a blank on each side.
     fn between_blanks(self) -> &'static str;
-    /// The positions of the two operands.
+    /// Returns the positions of the two operands.
     fn positions(self) -> [Position; 2];
 }
 
@@ -59,8 +59,8 @@ impl Infix for Operator {
     }
 }
 
-/// Whether an operand needs parentheses. A right operand keeps them even where mathematics would not: floating-point
-/// sums and products are computed in the order in which they are written.
+/// Whether an operand needs parentheses. A right operand keeps them even if mathematics would not need them, because
+/// floating-point sums and products are computed in the order in which they are written.
 pub(super) fn needs_parentheses(syntax: Syntax, operand: Expression<'_>, position: Position) -> bool {
     match operand.kind() {
         ExpressionKind::Variable(_) | ExpressionKind::Zero | ExpressionKind::Fused(..) | ExpressionKind::BySign(_) => {
@@ -75,7 +75,7 @@ pub(super) fn needs_parentheses(syntax: Syntax, operand: Expression<'_>, positio
     }
 }
 
-/// The expression on one line.
+/// Returns the expression on one line.
 pub(super) fn line(syntax: Syntax, expression: Expression<'_>) -> Annotated {
     let measured = Measured::new(syntax, expression);
     let mut text = Annotated::default();
@@ -83,36 +83,36 @@ pub(super) fn line(syntax: Syntax, expression: Expression<'_>) -> Annotated {
     text
 }
 
-/// An expression in a language, of whose every part the width is known: nobody writes a part in order to measure it.
+/// An expression in a language, with the width of each part: so no part has to be written only to be measured.
 #[derive(Default)]
 pub(super) struct Measured {
     /// The parts. An operand comes before the part that uses it, so the last part is the whole expression.
     parts: Vec<Measure>,
-    /// How many parts have been looked at, to be measured, laid out or written.
+    /// Number of times that a part was read to be measured, laid out or written.
     pub(super) visits: Cell<usize>,
 }
 
-/// A part of an expression with its width, which the breaking of lines needs.
+/// A part of an expression, with its width for the decision on line breaks.
 pub(super) struct Measure {
-    /// The columns that it takes on one line. Code is ASCII.
+    /// The number of columns that it takes on one line. Code is ASCII.
     pub(super) width: usize,
-    /// Whether the text begins with a parenthesis.
+    /// Whether the text of the part begins with a parenthesis.
     pub(super) opens: bool,
     pub(super) kind: Kind,
 }
 
 /// The kind of a part of an expression.
 pub(super) enum Kind {
-    /// A name, or zero.
+    /// A name, a number or zero.
     Word(Annotated),
     Negative(Operand),
-    /// Two or more operands of one operator, computed from the left to the right.
+    /// Two or more operands of one operator, computed from left to right.
     Chain(Operator, Vec<Operand>),
     /// The name of a function, and its arguments.
     Call(String, Vec<usize>),
 }
 
-/// An operand, by its place among the parts.
+/// An operand, by its index among the parts.
 #[derive(Clone, Copy)]
 pub(super) struct Operand {
     pub(super) part: usize,
@@ -126,18 +126,18 @@ impl Measured {
         measured
     }
 
-    /// The part that is the whole expression.
+    /// Returns the index of the part that is the whole expression.
     pub(super) fn whole(&self) -> usize {
         self.parts.len() - 1
     }
 
-    /// Looks at a part.
+    /// Returns a part and counts this visit.
     pub(super) fn visit(&self, part: usize) -> &Measure {
         self.visits.set(self.visits.get() + 1);
         &self.parts[part]
     }
 
-    /// The columns of an operand on one line, with its parentheses.
+    /// Returns the number of columns of an operand on one line, with its parentheses.
     pub(super) fn width(&self, operand: Operand) -> usize {
         self.parts[operand.part].width + if operand.in_parentheses { 2 } else { 0 }
     }
@@ -196,7 +196,8 @@ impl Measured {
         Operand { part: self.add(syntax, expression), in_parentheses }
     }
 
-    /// The operands of an operator and of the same operator in its left operand, and so on.
+    /// Returns the operands of an operator; if the left operand has the same operator, its operands are included, and
+    /// so on.
     fn chain(&mut self, syntax: Syntax, expression: Expression<'_>, operator: Operator) -> Vec<Operand> {
         let [left, right] = operator.positions();
         let mut others = Vec::new();

@@ -1,35 +1,36 @@
-//! The formulas of the seven steps and of the reduced form, for the comments of generated code.
+//! The formulas of the seven steps and of the reduced form, as text for the comments of generated code.
 
 use rne_codegen::{Argument, Function, Quantity, Step};
 use rne_model::JointKind::{self, Prismatic, Revolute};
 use rne_model::Robot;
 
-/// A formula of a step.
+/// A formula of a step, for one quantity.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Formula {
-    /// The quantity that it gives.
+    /// The quantity on the left side of the formula.
     pub quantity: Quantity,
-    /// The formula, in the letters of the lecture.
+    /// The formula, with the symbols of the lecture.
     pub text: String,
 }
 
-/// Quantities and their formulas; `{i}` is a joint and `{p}` its parent, with `{r}` from the parent to the joint. A
-/// term with `{n}` is written for everything that the link carries, each with its `{rn}`.
+/// Quantities and their formulas. `{i}` is replaced by a joint, `{p}` by its parent, and `{r}` by the subscript of the
+/// vector from the parent to the joint. A term with `{n}` is written for each joint and tip that the link carries, with
+/// its own `{rn}`.
 type Templates = &'static [(Quantity, &'static str)];
 
-/// The numbers in the formulas of a joint: its own, that of its parent, and those of the joints that its link carries
-/// and of the tips that it carries.
+/// The numbers in the formulas of a joint: its own, that of its parent, and those of the joints and tips that its link
+/// carries.
 #[derive(Clone, Debug)]
 pub(super) struct Numbers {
     joint: String,
     parent: String,
-    /// The subscript of r from the parent to the joint.
+    /// The subscript of r, the vector from the parent to the joint.
     lever: String,
-    /// Everything that the link carries.
+    /// The joints and tips that the link carries.
     carried: Vec<Carried>,
     /// The joints that follow this one, with their ratios.
     followers: Vec<(f64, JointKind, Numbers)>,
-    /// Whether this one follows others: what it needs is then a part of their torques.
+    /// Whether this joint follows others: then its torque is only a term of their torques.
     is_follower: bool,
 }
 
@@ -37,14 +38,14 @@ pub(super) struct Numbers {
 #[derive(Clone, Debug)]
 struct Carried {
     number: String,
-    /// The subscript of r from the link to it.
+    /// The subscript of r, the vector from the link to the joint or tip.
     lever: String,
-    /// Force and moment of a tip, in axes of the tip, as the code names them.
+    /// Names in the code of the force and moment of a tip, in axes of the tip.
     wrench: Option<[String; 2]>,
 }
 
 impl Carried {
-    /// A term of a template, with a force or a moment `{n}`. That of a tip is turned from the axes of the tip.
+    /// Fills in a term of a template. If it is for a tip, its force or moment `{n}` is turned from the axes of the tip.
     fn term(&self, term: &str) -> String {
         let term = match &self.wrench {
             Some([force, moment]) => {
@@ -61,7 +62,7 @@ impl Carried {
 }
 
 impl Numbers {
-    /// The letters in the place of numbers: i for the joint, h = i - 1 and j = i + 1 for its neighbours.
+    /// Returns letters in the place of numbers: i for the joint, h = i - 1 and j = i + 1 for its neighbours.
     pub(super) fn letters() -> Self {
         let [joint, parent, next] = ["i", "h", "j"].map(str::to_owned);
         Self {
@@ -74,9 +75,9 @@ impl Numbers {
         }
     }
 
-    /// The numbers of a joint of a robot, counted from 1, in the formulas of a function. From n + 1 on they are the
-    /// tips at which the function takes wrenches, or the payload. A chain has the tip of the lecture in every function,
-    /// free or not.
+    /// Returns the numbers of a joint of a robot, counted from 1, in the formulas of a function. The numbers from n + 1
+    /// on are those of the tips at which the function takes wrenches, or of the payload. For a chain, the formulas have
+    /// a tip as in the lecture for every function, also without a load.
     pub(super) fn of(robot: &Robot, joint: usize, function: Function) -> Self {
         let last = robot.joints.len();
         let tips: Vec<_> = if robot.is_chain() || function.takes(Argument::Payload) {
@@ -89,14 +90,14 @@ impl Numbers {
         } else {
             Vec::new()
         };
-        // each joint and each tip with the link that carries it, by the number of its joint; 0 is the base
+        // joints and tips with their numbers, each with the number of the joint whose link carries it; 0 is the base
         let joints = (0..last).map(|index| (robot.parent(index), None));
         let carried: Vec<_> = joints
             .chain(tips)
             .zip(1..)
             .map(|((link, wrench), number): (_, usize)| (link.map_or(0, |link| link + 1), number, wrench))
             .collect();
-        // the first thing that a link carries needs no number of its own
+        // the subscript of the first joint or tip on a link is the number of the link alone
         let lever = |link: usize, number: usize| match carried.iter().find(|(on, ..)| *on == link) {
             Some((_, first, _)) if *first != number => format!("{link}_{number}"),
             _ => link.to_string(),
@@ -123,8 +124,8 @@ impl Numbers {
     }
 }
 
-/// The formulas of a step for a joint, in the letters of the lecture; of a link without mass that has a first
-/// moment, `has_first_moment`, with its terms.
+/// Returns the formulas of a step for a joint, with the symbols of the lecture. If `has_first_moment`, they include the
+/// terms of a first moment that the link has in addition to its mass.
 pub(super) fn formulas(step: Step, kind: JointKind, numbers: &Numbers, has_first_moment: bool) -> Vec<Formula> {
     let templates: Templates = match (step, kind) {
         (Step::AngularVelocity, Revolute) => &[(Quantity::Omega, "ω{i} = R{i}ᵀ ω{p} + q̇{i} e")],
@@ -161,7 +162,7 @@ pub(super) fn formulas(step: Step, kind: JointKind, numbers: &Numbers, has_first
     written(templates, numbers)
 }
 
-/// Step 7 of one joint.
+/// Returns step 7 of one joint.
 fn of_torque(kind: JointKind, numbers: &Numbers) -> Vec<Formula> {
     let templates: Templates = match (kind, numbers.is_follower) {
         (Revolute, false) => &[(Quantity::Torque, "τ{i} = e · n{p},{i}")],
@@ -172,7 +173,7 @@ fn of_torque(kind: JointKind, numbers: &Numbers) -> Vec<Formula> {
     written(templates, numbers)
 }
 
-/// Step 7 of one joint, in the reduced form.
+/// Returns step 7 of one joint, in the reduced form.
 fn of_reduced_torque(kind: JointKind, numbers: &Numbers) -> Vec<Formula> {
     let templates: Templates = match (kind, numbers.is_follower) {
         (Revolute, false) => &[(Quantity::Torque, "τ{i} = z · n{i}")],
@@ -183,8 +184,8 @@ fn of_reduced_torque(kind: JointKind, numbers: &Numbers) -> Vec<Formula> {
     written(templates, numbers)
 }
 
-/// The formulas of a step for a payload, as the link after the last; `{p}` is the last one, R turns tip axes into its
-/// own.
+/// Returns the formulas of a step for a payload, which is treated as the link after the last one: `{p}` is the last
+/// link, and R is the rotation from tip axes to its axes.
 pub(super) fn payload_formulas(step: Step, numbers: &Numbers) -> Vec<Formula> {
     let templates: Templates = match step {
         Step::AngularVelocity => &[(Quantity::Omega, "ω{i} = Rᵀ ω{p}")],
@@ -204,8 +205,8 @@ pub(super) fn payload_formulas(step: Step, numbers: &Numbers) -> Vec<Formula> {
     written(templates, numbers)
 }
 
-/// The formulas of a step for a floating base; a is the acceleration of the origin of frame 0, F and N are
-/// what must act on the base.
+/// Returns the formulas of a step for a floating base; a is the acceleration of the origin of frame 0, F and N are the
+/// force and the moment that must act on the base.
 pub(super) fn base_formulas(step: Step, numbers: &Numbers) -> Vec<Formula> {
     let templates: Templates = match step {
         Step::Acceleration => &[(Quantity::BaseAcceleration, "c̈{i} = a{i} + ω̇{i} × d{i} + ω{i} × (ω{i} × d{i})")],
@@ -219,8 +220,8 @@ pub(super) fn base_formulas(step: Step, numbers: &Numbers) -> Vec<Formula> {
     written(templates, numbers)
 }
 
-/// The formulas of the reduced form that stand in the place of a step. The order of their terms and the frame in which
-/// they are evaluated are choices of the plan.
+/// Returns the formulas of the reduced form that correspond to a step. The order of their terms and the frame in which
+/// they are computed are choices of the plan.
 pub(super) fn reduced_formulas(step: Step, kind: JointKind, numbers: &Numbers) -> Vec<Formula> {
     const GRADIENT: (Quantity, &str) = (Quantity::Gradient, "U{i} = [ω̇{i}]× + [ω{i}]×[ω{i}]×");
     let templates: Templates = match (step, kind) {
@@ -240,7 +241,7 @@ pub(super) fn reduced_formulas(step: Step, kind: JointKind, numbers: &Numbers) -
             (Quantity::ReducedMoment, "n{i} = antisym(U{i} S) + h × a{i} + R{n} n{n} + p{n} × R{n} f{n}"),
         ],
         (Step::Torque, _) => return with_followers(numbers, of_reduced_torque, kind),
-        // gravity is in the acceleration of the base, the velocity is not needed
+        // gravity is included in the acceleration of the base, and the velocity is not needed
         (Step::Velocity | Step::Gravity | Step::Beyond, _) => &[],
     };
     written(templates, numbers)
@@ -250,8 +251,8 @@ fn written(templates: Templates, numbers: &Numbers) -> Vec<Formula> {
     templates.iter().map(|&(quantity, template)| Formula { quantity, text: text(template, numbers) }).collect()
 }
 
-/// The formulas of step 7, with what the joints that follow add to the torque: the ratio times what their actuators
-/// would deliver.
+/// Returns the formulas of step 7. Each joint that follows this one adds a term: its ratio times the torque that its
+/// own actuator would deliver.
 fn with_followers(
     numbers: &Numbers,
     of: impl Fn(JointKind, &Numbers) -> Vec<Formula>,
@@ -274,7 +275,7 @@ fn with_followers(
 fn text(template: &str, numbers: &Numbers) -> String {
     let Numbers { joint, parent, lever, carried, .. } = numbers;
     let terms = template.split_inclusive(" + ").flat_map(|part| part.split_inclusive(" - "));
-    // a term ends with the operator before the next one
+    // each term ends with the operator before the next term
     let mut text = String::new();
     for term in terms {
         let (term, operator) = match term.strip_suffix(" + ").map(|term| (term, " + ")) {
@@ -284,7 +285,7 @@ fn text(template: &str, numbers: &Numbers) -> String {
         if term.contains("{n}") {
             text += &carried.iter().map(|next| next.term(term)).collect::<Vec<_>>().join(" + ");
             if carried.is_empty() {
-                // the operator before it goes with it
+                // the term is left out, with the operator before it
                 text.truncate(text.trim_end_matches([' ', '+']).len());
             }
         } else {
@@ -311,7 +312,7 @@ mod tests {
             Form::SevenSteps => formulas(Step::Wrenches, kind, &numbers, false),
             Form::Reduced => reduced_formulas(Step::Wrenches, kind, &numbers),
         };
-        // each wrench has its name in the code
+        // the names of the wrenches in the formulas must be names in the code
         let program = rne_codegen::Compiler::new(&robot).compile(function, Form::SevenSteps).unwrap();
         let code = crate::rust_file(&robot, &[program]);
         for formula in &formulas {
@@ -330,7 +331,7 @@ mod tests {
     #[test]
     fn tips_of_a_tree_are_in_the_formulas_of_functions_that_take_wrenches() {
         use Form::{Reduced, SevenSteps};
-        // finger 3 has the tip, and joint 5 is the last
+        // finger 3 carries the tip, and joint 5 is the last joint
         assert_eq!(
             of(TREE, Function::InverseDynamics, 3, SevenSteps)[1..],
             ["f2,3 = m3 (c̈3 - g3)", "n2,3 = n3 + d3 × f2,3"]
@@ -343,9 +344,9 @@ mod tests {
         assert_eq!(force, "f2,3 = m3 (c̈3 - g3) + R6 f5,6");
         assert_eq!(moment, "n2,3 = n3 + R6 n5,6 + d3 × f2,3 + r3 × R6 f5,6");
         assert_eq!(of(TREE, Function::InverseDynamicsWithWrench, 5, SevenSteps)[1], "f1,5 = m5 (c̈5 - g5)");
-        // the payload is a link of its own
+        // the payload has its own number, 6
         assert_eq!(of(TREE, Function::InverseDynamicsWithPayload, 3, SevenSteps)[1], "f2,3 = m3 (c̈3 - g3) + f3,6");
-        // joints 3 and 5 have a hand each, in this order
+        // the links of joints 3 and 5 each carry one of the tips, in this order
         for function in [Function::InverseDynamicsWithWrenches, Function::InverseDynamicsOfFloatingBase] {
             assert_eq!(of(TIPS, function, 3, SevenSteps)[1], "f2,3 = m3 (c̈3 - g3) + R6 ft1");
             assert_eq!(of(TIPS, function, 5, SevenSteps)[2], "n4,5 = n5 + R7 nt2 + d5 × f4,5 + r5 × R7 ft2");
@@ -353,11 +354,11 @@ mod tests {
             assert_eq!(of(TIPS, function, 5, Reduced), expected);
         }
         assert_eq!(of(TIPS, Function::InverseDynamics, 5, SevenSteps)[1], "f4,5 = m5 (c̈5 - g5)");
-        // A chain on a floating base is a robot file of format 2, so its text is not frozen.
+        // A chain with a floating base is not a robot file of format 1, whose texts must not change.
         let satellite = include_str!("../../../docs/satellite.yaml");
         assert_eq!(of(satellite, Function::InverseDynamics, 2, SevenSteps)[1], "f1,2 = m2 (c̈2 - g2)");
         assert_eq!(of(satellite, Function::InverseDynamicsWithWrench, 2, Reduced)[0], "f2 = m a2 + U2 h + R3 f2,3");
-        // a tip beside a joint on one link
+        // one link carries both a joint and a tip
         let both = TIPS.replace("on: left_elbow", "on: waist");
         let [_, force, moment] = of(&both, Function::InverseDynamicsWithWrenches, 1, SevenSteps).try_into().unwrap();
         assert_eq!(force, "f0,1 = m1 (c̈1 - g1) + f1,2 + f1,4 + R6 ft1");

@@ -1,18 +1,18 @@
-//! Texts of a robot file in what is emitted. A title or the name of a joint may hold whatever can be typed; in the
-//! documentation and in the comments of code it must stay words. There is one function for each language; that of the
-//! terminal stands in the command line.
+//! Makes texts of a robot file harmless in emitted text. A title or the name of a joint may contain any characters; in
+//! the documentation and in the comments of code they must remain plain words. There is one function for each language,
+//! except for the terminal, whose function is in the command line's crate.
 
 use rne_model::{Robot, one_line};
 
-/// The name of a robot in a heading: its title, or its name where it has none.
+/// Returns the name of a robot for a heading: its title, or its name if it has no title.
 #[must_use]
 pub fn title(robot: &Robot) -> String {
     let title = robot.title.as_deref().map(one_line).filter(|title| !title.trim().is_empty());
     title.unwrap_or_else(|| one_line(&robot.name)).trim().to_owned()
 }
 
-/// Text inside a paragraph of Markdown, which is the language of Rust's documentation: no code that `cargo test` would
-/// run, no HTML that a page would execute, no link.
+/// Escapes text for a paragraph of Markdown, the language of Rust's documentation, so that it contains no code that
+/// `cargo test` would run, no HTML that a page would execute, and no link.
 #[must_use]
 pub fn markdown(text: &str) -> String {
     let line = one_line(text);
@@ -43,7 +43,7 @@ pub fn markdown(text: &str) -> String {
     escaped
 }
 
-/// Lines that Rust's documentation shows as they stand: a block with a fence that none of them can end.
+/// Returns lines that Rust's documentation shows unchanged: a code block whose fence is longer than any in the text.
 #[must_use]
 pub fn verbatim(text: &str) -> String {
     let longest = text.split(|c| c != '`').map(str::len).max().unwrap_or(0);
@@ -52,8 +52,8 @@ pub fn verbatim(text: &str) -> String {
     format!("{fence}text\n{}\n{fence}", lines.join("\n"))
 }
 
-/// Text in a `//` comment of C. A backslash at its end, or the trigraph for one, would make the next line a comment
-/// too; compilers warn of every trigraph and of comments inside comments.
+/// Makes text harmless in a `//` comment of C. A backslash at the end of a line, or the trigraph for it, would make the
+/// next line a comment, too; compilers warn about every trigraph and about comments inside comments.
 pub(super) fn c_comment(text: &str) -> String {
     let mut inert = String::new();
     let mut last = None;

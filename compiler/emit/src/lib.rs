@@ -1,6 +1,6 @@
-//! Renderers of programs: tokens for the macro, text in Rust and in C for people, listings.
+//! Writes programs as text: tokens for the macro, readable Rust and C, listings.
 //!
-//! Data in, data out: a [`Program`](rne_codegen::Program) of `rne-codegen` in, text or tokens out. Nothing here changes
+//! The input is a [`Program`](rne_codegen::Program) of `rne-codegen`, the output text or tokens. Nothing here changes
 //! what is computed.
 #![warn(missing_debug_implementations)]
 #![forbid(unsafe_code)]
@@ -54,7 +54,7 @@ pub use tokens::Body;
 mod tests {
     use rne_codegen::{Compiler, Form, Function};
 
-    /// No number has the name of a variable that renderers add.
+    /// Tests that no number has the name of a variable that renderers add.
     #[test]
     fn variables_of_the_renderers_are_reserved() {
         let robot = rne_model::Robot::from_yaml(rne_robots::find("planar2").unwrap().yaml).unwrap();

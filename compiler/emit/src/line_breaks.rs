@@ -1,8 +1,7 @@
-//! Where a long statement breaks into lines, as rustfmt does it.
+//! Breaks a long statement into lines where rustfmt would break it.
 //!
-//! A part of an expression is laid out once for each room in which it is tried, and a layout holds no text: what must
-//! be known of its lines is in its [`Extent`]. So the work is linear in the parts of the expression, however deep they
-//! are nested.
+//! A part of an expression is laid out once for each room in which it is tried. A layout has no text: an [`Extent`] has
+//! all that must be known of its lines. So the work is linear in the number of parts, however deep they are nested.
 
 use std::collections::HashMap;
 
@@ -13,36 +12,36 @@ use super::expression::{Infix as _, Kind, Measured, Operand};
 use super::syntax::Syntax;
 use super::wrap::WIDTH;
 
-/// `START EXPRESSION;`, where the start is `let NAME =` or the like, broken where it is too long.
+/// Returns `START EXPRESSION;`, where the start is such as `let NAME =`, broken into lines if it is too long.
 pub(super) fn statement(syntax: Syntax, indent: &str, start: Annotated, expression: Expression<'_>) -> Annotated {
     LineBreaks::new(syntax, expression).statement(indent, start)
 }
 
-/// The room for an expression.
+/// The space in which an expression is written.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 struct Room {
-    /// Columns that are left on its first line, less what must follow it.
+    /// Number of columns that are left on the first line, without those for the text that must follow.
     width: usize,
     /// Indentation of the surrounding block; continuation lines are indented by four more columns.
     indent: usize,
-    /// Columns used on its first line.
+    /// Number of columns that are already used on the first line.
     used: usize,
 }
 
 impl Room {
-    /// The room after `columns` columns.
+    /// Returns the room that is left after a text of `columns` columns.
     fn behind(self, columns: usize) -> Option<Self> {
         let width = self.width.checked_sub(columns)?;
         Some(Self { width, used: self.used + columns, ..self })
     }
 
-    /// The room with `columns` columns after it.
+    /// Returns the room that is left before a text of `columns` columns.
     fn before(self, columns: usize) -> Option<Self> {
         let width = self.width.checked_sub(columns)?;
         Some(Self { width, ..self })
     }
 
-    /// A line of its own, indented by four more, with the same columns after it.
+    /// Returns the room on a new line that is indented by four more columns; the text that must follow is the same.
     fn next_line(self) -> Option<Self> {
         let behind = WIDTH.saturating_sub(self.used + self.width);
         let indent = self.indent + 4;
@@ -50,16 +49,16 @@ impl Room {
     }
 }
 
-/// How many columns the lines of a text take.
+/// The size of a text that may have several lines.
 #[derive(Clone, Copy, Default)]
 struct Extent {
-    /// How many lines follow the first one.
+    /// Number of lines after the first one.
     breaks: usize,
-    /// Columns of the first line.
+    /// Number of columns of the first line.
     first: usize,
-    /// Columns of the last line, which may be the first.
+    /// Number of columns of the last line, which may be the first.
     last: usize,
-    /// The blanks with which the last line begins.
+    /// Number of blanks at the beginning of the last line.
     blanks: usize,
 }
 
@@ -68,7 +67,7 @@ impl Extent {
         Self { breaks: 0, first: columns, last: columns, blanks: 0 }
     }
 
-    /// The extent of a text and another one after it.
+    /// Returns the extent of this text followed by another one.
     const fn then(self, other: Self) -> Self {
         let first = if self.breaks == 0 { self.first + other.first } else { self.first };
         let (last, blanks) =
@@ -77,7 +76,7 @@ impl Extent {
     }
 }
 
-/// How a part is written over several lines.
+/// The layout of a part over several lines.
 #[derive(Default)]
 struct Layout {
     extent: Extent,
@@ -88,15 +87,15 @@ enum Piece {
     Text(&'static str),
     /// A new line with this number of blanks.
     NewLine(usize),
-    /// A part, as it is laid out in a room.
+    /// A part, and the room in which it is laid out.
     Part(usize, Room),
 }
 
-/// An operand that has found its place.
+/// An operand with the room in which it is laid out.
 #[derive(Clone, Copy)]
 struct Placed {
     operand: Operand,
-    /// The room between its parentheses.
+    /// The room of the operand, inside its parentheses.
     room: Room,
     extent: Extent,
 }
@@ -124,10 +123,10 @@ impl Layout {
     }
 }
 
-/// The layouts of the parts of an expression.
+/// The expression and the layouts of its parts.
 struct LineBreaks {
     measured: Measured,
-    /// The layouts that have been tried. `None` where there is no room.
+    /// The layouts that have been tried, for each part and room. `None` if the part does not fit.
     layouts: HashMap<(usize, Room), Option<Layout>>,
 }
 
@@ -139,7 +138,7 @@ impl LineBreaks {
     fn statement(&mut self, indent: &str, start: Annotated) -> Annotated {
         let mut text = Annotated::default() + indent + start;
         let whole = self.measured.whole();
-        // one column is for the blank before it, and one for the semicolon, wherever that stands
+        // one column is for the blank before the expression, and one for the semicolon
         let used = text.as_str().len() + 1;
         if used + self.measured.visit(whole).width < WIDTH {
             text.push_str(" ");
@@ -159,14 +158,14 @@ impl LineBreaks {
             self.write(whole, beside, &mut text);
         } else {
             text = text + "\n" + indent + "    ";
-            // on one line where no line is wide enough for the names of what has no room
+            // if no line is wide enough, parts that cannot be broken are written on one line
             self.write(whole, below, &mut text);
         }
         text + ";"
     }
 
-    /// The extent of a part, over several lines if need be: the operands of its outermost operator each on a line of
-    /// its own, and so on inside those that are still too long. `None` where there is no room for it.
+    /// Returns the extent of a part. If it is too long for one line, each operand of its outermost operator gets a
+    /// line, and operands that are still too long are broken in the same way. `None` if it does not fit.
     fn extent(&mut self, part: usize, room: Room) -> Option<Extent> {
         let measure = self.measured.visit(part);
         if measure.width <= room.width || matches!(measure.kind, Kind::Word(_) | Kind::Call(..)) {
@@ -203,7 +202,7 @@ impl LineBreaks {
         Some(Placed { operand, room, extent: self.extent(operand.part, room)? })
     }
 
-    /// All operands on one line; only the last may be broken, and only if the text before it is short.
+    /// Lays out all operands on one line; only the last one may be broken, and only if the text before it is short.
     fn last_line_broken(&mut self, operator: Operator, operands: &[Operand], room: Room) -> Option<Layout> {
         const LITTLE: usize = 4;
         let (last, others) = operands.split_last()?;
@@ -218,7 +217,7 @@ impl LineBreaks {
         }
         let before = layout.extent.last;
         let beside = room.behind(before)?;
-        // else it is not tried
+        // otherwise a broken last operand is not tried
         let may_break = before <= LITTLE && !self.measured.opens(*last);
         if !may_break && self.measured.width(*last) > beside.width {
             return None;
@@ -228,7 +227,7 @@ impl LineBreaks {
         (layout.extent.first <= room.width).then_some(layout)
     }
 
-    /// Every operand on a line of its own.
+    /// Lays out every operand on its own line.
     fn all_broken(&mut self, operator: Operator, operands: &[Operand], room: Room) -> Option<Layout> {
         let (first, others) = operands.split_first()?;
         let next = room.next_line()?;
@@ -236,7 +235,7 @@ impl LineBreaks {
         let mut layout = Layout::default();
         layout.operand(self.place(*first, room)?);
         for other in others {
-            // a text that is shorter than the indentation gets no line of its own
+            // a text that is shorter than the indentation is followed by the next operand on the same line
             let Extent { breaks, last, blanks, .. } = layout.extent;
             let used = if breaks > 0 { 0 } else { room.used };
             let beside = if last + used <= next.used { room.behind(sign.len() + last - blanks) } else { None };
@@ -252,7 +251,7 @@ impl LineBreaks {
         Some(layout)
     }
 
-    /// Writes a part as it is laid out in a room, or on one line.
+    /// Writes a part with its layout for a room; without a layout, on one line.
     fn write(&self, part: usize, room: Room, text: &mut Annotated) {
         let Some(Some(layout)) = self.layouts.get(&(part, room)) else { return self.measured.write(part, text) };
         self.measured.visit(part);

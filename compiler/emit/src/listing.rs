@@ -1,5 +1,5 @@
-//! The annotated code of a program as data: each step's formulas, its statements, what each component became, and what
-//! folded. Text, colour and whatever else shows it are renderers.
+//! The annotated code of a program as data: each step's formulas, its statements, what each component became, and which
+//! operations were removed. Renderers show it as text or with colours.
 
 mod explanations;
 mod headings;
@@ -24,16 +24,16 @@ use super::wrap::{TIED, WIDTH, fill};
 pub use self::explanations::reason;
 pub(super) use self::headings::recursion;
 
-/// The part of a program to list, and how much of it.
+/// Which part of a program to list, and with how many explanations.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Selection {
-    /// One joint only, counted from 1.
+    /// List one joint only, counted from 1.
     pub joint: Option<usize>,
-    /// One step only.
+    /// List one step only.
     pub step: Option<Step>,
-    /// Say what components became that are no statement, and what folded.
+    /// Whether to say what became of components that have no statement, and which operations were removed.
     pub explain: bool,
-    /// Largest number of reasons why operations are gone that are named, the commonest first.
+    /// Largest number of reasons for removed operations that are named, the most frequent first.
     pub reasons: Option<usize>,
 }
 
@@ -54,63 +54,64 @@ pub struct Listing<'a> {
     pub sections: Vec<Section<'a>>,
 }
 
-/// Lines of one section: the statements of one step for one joint.
+/// A section of a listing: the statements of one step for one joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Section<'a> {
-    /// The joint and the step, and of which variable the statements are derivatives; `None` for what belongs to no
-    /// step: the constants and angles at the head of a function, what it returns, and a program without sections.
+    /// The joint and the step, and the variable with respect to which the statements are derivatives. `None` for lines
+    /// that belong to no step: the constants and angles at the beginning of a function, its results, and a program
+    /// without sections.
     pub place: Option<(usize, Step, Option<WithRespectTo>)>,
     /// Its lines, in order.
     pub lines: Vec<Line<'a>>,
 }
 
-/// A line of a listing. Every [`Name`] in it has a quantity, a joint and an axis.
+/// A line of a listing. Every [`Name`] in it says its quantity, joint and axis.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Line<'a> {
     /// The heading of the section.
     Heading(String),
     /// A formula of its step.
     Formula(Formula),
-    /// A number that stands in no table.
+    /// A constant at the beginning of the function.
     Constant(Constant),
-    /// A sine and cosine at the head of the function.
+    /// A sine and cosine at the beginning of the function.
     SineCosine(&'a SineCosine, Expression<'a>),
-    /// A statement and its value.
+    /// A statement and its expression.
     Statement(&'a Statement, Expression<'a>),
-    /// The fate of components that have no statement.
+    /// What became of components that have no statement.
     Resolution {
         /// The components.
         names: Vec<Name>,
-        /// Their fate, with the sign or word between.
+        /// What they became, with the sign or word before it.
         became: Annotated,
     },
-    /// How many operations are left, and why the others are gone.
+    /// The number of operations that are left, and why the others were removed.
     Folds(Folds),
     /// The results of the function.
     Returned(Annotated),
 }
 
-/// The effect of folding on the operations of a step.
+/// The operations of a step before and after the removal of unneeded ones.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Folds {
-    /// Products and sums of the formulas.
+    /// Number of products and sums of the formulas.
     pub before: (usize, usize),
-    /// Products and sums that are left.
+    /// Number of products and sums that are left.
     pub left: (usize, usize),
-    /// How many are gone for which reason, the commonest first.
+    /// Number of removed operations for each reason, the most frequent first.
     pub reasons: Vec<(usize, String)>,
-    /// How many are gone for other reasons.
+    /// Number of operations that were removed for other reasons.
     pub others: usize,
 }
 
 impl Listing<'_> {
-    /// Whether the text is empty.
+    /// Whether the listing has no section.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.sections.is_empty()
     }
 
-    /// The listing in a language: blank lines between the sections.
+    /// Returns the listing in a language, with blank lines between the sections.
     pub(super) fn text(&self, syntax: Syntax) -> String {
         let section =
             |section: &Section| -> String { section.lines.iter().map(|line| line.indented(syntax) + "\n").collect() };
@@ -119,7 +120,7 @@ impl Listing<'_> {
 }
 
 impl<'a> Line<'a> {
-    /// A statement of a program.
+    /// Returns the line of a statement of a program.
     pub(super) fn statement(program: &'a Program, statement: &'a Statement) -> Self {
         Self::Statement(statement, program.values.defined(statement.value))
     }
@@ -128,13 +129,13 @@ impl<'a> Line<'a> {
         Self::SineCosine(turn, program.values.used(turn.angle))
     }
 
-    /// The line as words and code of Rust, neither indented nor marked as a comment.
+    /// Returns the line as words and Rust code, neither indented nor marked as a comment.
     #[must_use]
     pub fn annotated(&self) -> Annotated {
         self.annotated_in(Syntax::Rust, "")
     }
 
-    /// Whether it is a comment of the code.
+    /// Whether the line is a comment of the code.
     #[must_use]
     pub const fn is_comment(&self) -> bool {
         !matches!(self, Self::Constant(_) | Self::Statement(..) | Self::Returned(_))
@@ -167,21 +168,21 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// The line inside a function.
+    /// Returns the line as it is inside a function.
     pub(super) fn indented(&self, syntax: Syntax) -> String {
         let text = self.annotated_in(syntax, "    ").to_string();
         if self.is_comment() { fill(&text, WIDTH, "    // ", "    //   ") } else { text }
     }
 }
 
-/// The listing in Rust.
+/// Displays the listing in Rust.
 impl fmt::Display for Listing<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.text(Syntax::Rust))
     }
 }
 
-/// The line inside a function of Rust, as text.
+/// Displays the line as it is inside a function of Rust.
 impl fmt::Display for Line<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.indented(Syntax::Rust))
@@ -205,10 +206,11 @@ impl fmt::Display for Folds {
     }
 }
 
-/// The statements of a program, with the headings and explanations of each joint and step.
+/// Returns the statements of a program, with the headings and explanations of each joint and step.
 #[must_use]
 pub fn listing<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Listing<'a> {
-    // only what returns torques keeps to joints and steps; the code of a floating base does not, its explanation does
+    // only functions that return torques are listed by joints and steps; code for a floating base is not, but its
+    // explanation is
     let keeps_to_steps = program.form == Form::SevenSteps
         && (program.function.returns_torques()
             || matches!(program.function.shape(), Shape::Array(Length::Joints, Shape::Record(Record::Wrench, _)))

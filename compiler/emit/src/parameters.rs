@@ -1,14 +1,14 @@
-//! Parameters of the robot file in emitted code: those that are arguments, and those that are folded.
+//! Parameters of the robot file in emitted code: those that are arguments, and those whose values are constants.
 
 use std::fmt::Write;
 
 use rne_codegen::{Name, Program, Quantity};
 use rne_model::{Entry, Formula, Robot};
 
-/// More numbers of the table than this are counted, not named.
+/// If more numbers of the table depend on a parameter, they are counted instead of named.
 const MOST_NAMED: usize = 4;
 
-/// A parameter that is given at run time.
+/// A parameter whose value is given at run time.
 pub(super) struct Parameter {
     /// The name of the parameter in the robot file.
     pub(super) name: String,
@@ -16,21 +16,21 @@ pub(super) struct Parameter {
     pub(super) value: f64,
     /// The name of the parameter as a member of a struct.
     pub(super) member: String,
-    /// The unit, if the table determines it.
+    /// The unit, if the numbers of the table determine it.
     pub(super) unit: Option<&'static str>,
-    /// The numbers of the table that depend on it.
+    /// The numbers of the table that depend on the parameter.
     entries: Vec<String>,
 }
 
 impl Parameter {
-    /// The parameters of a robot in their order, as members of a struct in a language with these keywords.
+    /// Returns the parameters of a robot in their order, as members of a struct in a language with these keywords.
     pub(super) fn of(robot: &Robot, keywords: &str) -> Vec<Self> {
         let run_time = &robot.run_time;
         let parameter = |(index, (name, value)): (usize, (&String, f64))| {
             let depends = || run_time.entries.iter().filter(move |(_, formula)| formula.depends_on(index));
             let mut units = depends().filter(|(_, formula)| is_added(formula, index)).map(|(entry, _)| words(*entry).1);
             let first = units.next();
-            // numbers of two units: the file knows what that means
+            // if numbers with different units depend on it, its unit is unknown
             let unit = first.filter(|first| units.all(|other| other == *first));
             let entries = depends().map(|(entry, _)| words(*entry).0).collect();
             Self { name: name.clone(), value, member: member(name, &run_time.names, keywords), unit, entries }
@@ -38,7 +38,7 @@ impl Parameter {
         run_time.names.iter().zip(run_time.values(robot)).enumerate().map(parameter).collect()
     }
 
-    /// The documentation of its member: its value in the file, its unit, what depends on it.
+    /// Returns the documentation of its member: its value in the file, its unit, and what depends on it.
     pub(super) fn about(&self) -> String {
         let mut text = String::new();
         if self.name != self.member {
@@ -57,7 +57,7 @@ impl Parameter {
     }
 }
 
-/// Lines of a heading: which parameters of the file are given at run time, and which are folded.
+/// Returns lines of a heading: which parameters of the file are given at run time, and which are constants.
 pub(super) fn heading(robot: &Robot) -> Vec<String> {
     let run_time = &robot.run_time;
     let is_folded = |(index, (name, _)): &(usize, &(String, f64))| {
@@ -79,18 +79,18 @@ pub(super) fn heading(robot: &Robot) -> Vec<String> {
     lines
 }
 
-/// The run-time parameters that a program uses: the index and its name in the code.
+/// Returns the run-time parameters that a program uses, each with its index and its name in the code.
 pub(super) fn used(program: &Program) -> impl Iterator<Item = (usize, Name)> {
     let names = (0..program.parameters).map(|index| (index, Name::scalar(Quantity::Parameter, index + 1)));
     names.filter(|(_, name)| program.arguments().any(|used| used == *name))
 }
 
-/// Whether a program depends on run-time parameters: then they are its last argument.
+/// Whether a program depends on run-time parameters: then these are its last argument.
 pub(super) fn are_used(program: &Program) -> bool {
     used(program).next().is_some()
 }
 
-/// A name that is no word of the language, and none of the others.
+/// Returns a name that is no keyword of the language, and no other parameter's name.
 fn member(name: &str, others: &[String], keywords: &str) -> String {
     let mut member = name.to_owned();
     while keywords.split(' ').any(|keyword| keyword == member) || member != name && others.contains(&member) {
@@ -99,7 +99,7 @@ fn member(name: &str, others: &[String], keywords: &str) -> String {
     member
 }
 
-/// Whether a number is the parameter, or a sum to which it belongs: then both have one unit.
+/// Whether a formula is the parameter or a sum that contains it: then the formula and the parameter have the same unit.
 fn is_added(formula: &Formula, parameter: usize) -> bool {
     match formula {
         Formula::Parameter(index) => *index == parameter,
@@ -109,7 +109,7 @@ fn is_added(formula: &Formula, parameter: usize) -> bool {
     }
 }
 
-/// A number of the table in words, and its unit.
+/// Returns the description of a number of the table, and its unit.
 fn words(entry: Entry) -> (String, &'static str) {
     let axis = |axis: usize| ["x", "y", "z"].get(axis).copied().unwrap_or_default();
     match entry {
@@ -137,14 +137,14 @@ fn words(entry: Entry) -> (String, &'static str) {
     }
 }
 
-/// Words of Rust that are no names.
+/// Keywords of Rust.
 pub(super) const OF_RUST: &str = "\
     abstract as async await become box break const continue crate do dyn else enum extern false final fn for gen \
     if impl in let loop macro match mod move mut override priv pub ref return self Self static struct super trait \
     true try type typeof unsafe unsized use virtual where while yield _";
 
-/// Words of C and C++ that are no names, for a header is read by both; the last two are those of a compiler that does
-/// not keep to the standard.
+/// Keywords of C and C++, because both read the header; the last two are keywords of a compiler that does not follow
+/// the standard.
 pub(super) const OF_C: &str = "\
     alignas alignof and and_eq asm auto bitand bitor bool break case catch char char16_t char32_t char8_t class \
     co_await co_return co_yield compl concept const const_cast consteval constexpr constinit continue decltype \
@@ -196,7 +196,7 @@ mod tests {
         for (name, expected) in [
             ("g", "In the file 9.81 m/s²; y of gravity depends on it."),
             ("int", "The parameter int. In the file 2 kg; m1, Izz of link 1 depend on it."),
-            // a factor, and numbers of two units
+            // a parameter that is a factor, and one for numbers with different units
             ("int_", "In the file 0.5; m1, Izz of link 1 depend on it."),
             ("half", "In the file 0.25; a1, x of the centre of mass of link 1, Izz of link 1 depend on it."),
         ] {
@@ -211,7 +211,7 @@ mod tests {
             heading(&robot(&["half", "g"])),
             [
                 format!("{free}half = 0.25, g = 9.81"),
-                // twice varies with half
+                // twice is half times 2, so it also varies
                 "parameters folded: int = 2, int_ = 0.5, rest = 0.125, fixed = 3".to_owned()
             ]
         );

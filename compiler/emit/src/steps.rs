@@ -1,4 +1,4 @@
-//! The steps of a program with the lecture's equations, in a few lines: for the documentation of a method.
+//! The steps of a program with the lecture's equations, as a few lines for the documentation of a method.
 
 use rne_codegen::{Form, Program, Statement, Step};
 use rne_model::{JointKind, Robot};
@@ -6,8 +6,8 @@ use rne_model::{JointKind, Robot};
 use super::formula::{Numbers, formulas, reduced_formulas};
 use super::listing::recursion;
 
-/// The formulas of the steps in which a program computes something, for joint i between h = i - 1 and j = i + 1: a line
-/// each, with the number of its step. None of what is made by another algorithm.
+/// Returns the formulas of the steps in which a program computes something, for joint i between h = i - 1 and j = i +
+/// 1: one line each, with the number of its step. None for a program of another algorithm.
 #[must_use]
 pub fn steps(robot: &Robot, program: &Program) -> Vec<String> {
     let recursion = recursion(program);
@@ -32,7 +32,7 @@ pub fn steps(robot: &Robot, program: &Program) -> Vec<String> {
                 if lines.contains(&line) {
                     continue;
                 }
-                // a formula that only one of two kinds of joint has
+                // if the robot has both kinds of joints, a formula of prismatic joints is marked
                 let is_other = kind == JointKind::Prismatic && has_kind(JointKind::Revolute);
                 lines.push(if is_other { format!("{line}   (prismatic)") } else { line });
             }
@@ -59,7 +59,7 @@ mod tests {
     fn steps_are_those_in_which_something_is_computed() {
         let torques = steps_of(PUMA_560, Function::InverseDynamics, Form::SevenSteps);
         let numbers: String = torques.iter().map(|line| &line[..1]).collect();
-        // the velocity is not needed; step 6 has three formulas
+        // step 3, the velocity, is not needed; step 6 has three formulas
         assert_eq!(numbers, "12456667", "{torques:#?}");
         assert!(torques.contains(&"1 ωi = Riᵀ ωh + q̇i e".to_owned()), "{torques:#?}");
         assert!(torques.contains(&"6 nh,i = ni + ni,j + di × fh,i + ri × fi,j".to_owned()), "{torques:#?}");

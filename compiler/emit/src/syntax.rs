@@ -11,10 +11,10 @@ pub enum Precision {
 }
 
 impl Precision {
-    /// Both.
+    /// Both precisions.
     pub const ALL: [Self; 2] = [Self::Single, Self::Double];
 
-    /// The name of its type in C.
+    /// Returns the name of the number type in C.
     #[must_use]
     pub const fn c_type(self) -> &'static str {
         match self {
@@ -23,8 +23,8 @@ impl Precision {
         }
     }
 
-    /// A number as a literal of C: the shortest that reads back as the same number of this type. `None` if it is too
-    /// large.
+    /// Returns a number as a literal of C: the shortest one that is read as the same number of this type. `None` if it
+    /// is too large.
     pub(super) fn literal(self, value: f64) -> Option<String> {
         match self {
             Self::Double => value.is_finite().then(|| format!("{value:?}")),
@@ -37,19 +37,19 @@ impl Precision {
     }
 }
 
-/// A language, as far as statements and expressions go.
+/// The language in which statements and expressions are written.
 #[derive(Clone, Copy)]
 pub(super) enum Syntax<'a> {
     /// Rust over a trait `Scalar`.
     Rust,
-    /// C over a type; functions of the file begin with the prefix.
+    /// C over a number type; names of functions of the file begin with the prefix.
     C { precision: Precision, prefix: &'a str },
     /// CUDA and C++ over a type `T`.
     Cuda { prefix: &'a str },
 }
 
 impl Syntax<'_> {
-    /// The words before the name of a value.
+    /// Returns the words before the name of a value.
     pub(super) fn declaration(self) -> String {
         match self {
             Self::Rust => "let".to_owned(),
@@ -58,7 +58,7 @@ impl Syntax<'_> {
         }
     }
 
-    /// The constant 0 of an expression.
+    /// Returns the constant 0 of an expression.
     pub(super) const fn zero(self) -> &'static str {
         match self {
             Self::Rust => "zero",
@@ -68,7 +68,7 @@ impl Syntax<'_> {
         }
     }
 
-    /// The function that chooses by a sign.
+    /// Returns the name of the function that chooses by a sign.
     pub(super) fn by_sign(self) -> String {
         match self {
             Self::Rust => "Scalar::by_sign".to_owned(),
@@ -76,7 +76,7 @@ impl Syntax<'_> {
         }
     }
 
-    /// The function that adds a product and rounds once.
+    /// Returns the name of the function that adds a product with one rounding.
     pub(super) fn mul_add(self) -> String {
         match self {
             Self::Rust => "Scalar::mul_add".to_owned(),
@@ -85,8 +85,8 @@ impl Syntax<'_> {
         }
     }
 
-    /// Whether a product in a sum has parentheses: rule 12.1 of MISRA C does not trust readers to know what binds
-    /// tighter.
+    /// Whether a product in a sum has parentheses: rule 12.1 of MISRA C asks for them, because readers may not know the
+    /// precedence.
     pub(super) const fn groups_products(self) -> bool {
         !matches!(self, Self::Rust)
     }
@@ -103,7 +103,7 @@ mod tests {
         assert_eq!(single(2.0).as_deref(), Some("2.0f"));
         assert_eq!(single(-1e-9).as_deref(), Some("-1e-9f"));
         assert_eq!(single(1e-60).as_deref(), Some("0.0f"));
-        // a decimal that is rounded twice, to double and then to float, is another number than the shortest one
+        // if a decimal is rounded twice, to double and then to float, the result can differ from rounding once
         assert_eq!(single(1.000_000_059_604_644_8).as_deref(), Some("1.0f"));
         assert_eq!(single(1.000_000_059_604_645).as_deref(), Some("1.0000001f"));
         assert_eq!(single(3.4e38).as_deref(), Some("3.4e38f"));

@@ -1,10 +1,10 @@
-//! The Denavit-Hartenberg table for people.
+//! Readable tables: the Denavit-Hartenberg table, and operation counts.
 
 use rne_codegen::Program;
 use rne_model::{Angle, JointKind, QuarterTurns, Robot, one_line};
 use unicode_width::UnicodeWidthStr;
 
-/// The table of a robot as text: one line per joint, aligned, angles as multiples of π where they are right angles.
+/// Returns the table of a robot as text: one line per joint, in aligned columns, right angles as multiples of π.
 pub(super) fn dh_table(robot: &Robot) -> String {
     let titles = ["i", "joint", "on", "type", "theta", "d", "a", "alpha", "mass"].map(str::to_owned);
     let mut lines = vec![titles];
@@ -27,7 +27,7 @@ pub(super) fn dh_table(robot: &Robot) -> String {
         ]);
     }
     let lines = if robot.is_serial() {
-        // each joint is on the link before it
+        // in a chain, each joint is on the link before it, so the column `on` is left out
         columns(&lines.into_iter().map(|[i, joint, _, rest @ ..]| without_carrier(i, joint, rest)).collect::<Vec<_>>())
     } else {
         columns(&lines)
@@ -39,12 +39,12 @@ fn without_carrier(i: String, joint: String, [kind, theta, d, a, alpha, mass]: [
     [i, joint, kind, theta, d, a, alpha, mass]
 }
 
-/// The name of the joint whose link carries another joint; `base` for none.
+/// Returns the name of the joint whose link carries another joint; `base` for `None`.
 pub(super) fn carrier(robot: &Robot, joint: Option<usize>) -> String {
     joint.map_or_else(|| "base".to_owned(), |joint| one_line(&robot.joints[joint].name))
 }
 
-/// Lines of cells, each column as wide as its widest cell, three blanks between them.
+/// Returns lines of cells: each column is as wide as its widest cell, with three blanks between columns.
 pub(super) fn columns<const N: usize>(lines: &[[String; N]]) -> Vec<String> {
     let widths: [usize; N] =
         std::array::from_fn(|column| lines.iter().map(|line| line[column].width()).max().unwrap_or(0));
@@ -53,7 +53,7 @@ pub(super) fn columns<const N: usize>(lines: &[[String; N]]) -> Vec<String> {
     lines.iter().map(|line| row(line).trim_end().to_owned()).collect()
 }
 
-/// The effect of folding on a program: its function, products, sums, divisions, angles.
+/// Returns the function of a program, and its products, sums, divisions and angles before and after folding.
 pub(super) fn counts(program: &Program) -> [String; 5] {
     let ((products, sums), after) = (program.before(), program.operations());
     let [products, sums] =
@@ -61,7 +61,7 @@ pub(super) fn counts(program: &Program) -> [String; 5] {
     [program.function.to_string(), products, sums, after.div.to_string(), after.sincos.to_string()]
 }
 
-/// The effect of folding on each program, as a table of Markdown.
+/// Returns the operation counts of each program before and after folding, as a table of Markdown.
 #[must_use]
 pub fn operations_table(programs: &[Program]) -> String {
     let row = |[function, products, sums, _, angles]: [String; 5]| {
@@ -80,15 +80,15 @@ fn with_variable(joint: usize, constant: &str) -> String {
 }
 
 fn number(value: f64) -> String {
-    // -0 is 0
+    // -0 is written as 0
     if value == 0.0 { "0".to_owned() } else { format!("{value}") }
 }
 
-/// An angle as text; a right one, up to a full turn, as a multiple of π.
+/// Returns an angle as text; multiples of a right angle, up to a full turn, as multiples of π.
 #[must_use]
 pub fn angle(angle: &Angle) -> String {
     let Some(right) = angle.right else { return number(angle.radians) };
-    // One full turn or less is written as a multiple of π; more keeps its digits.
+    // An angle of more than a full turn keeps its digits.
     let quarters = (angle.radians / std::f64::consts::FRAC_PI_2).round();
     let text = match right {
         _ if quarters.abs() > 4.0 => return number(angle.radians),

@@ -1,5 +1,5 @@
-//! Programs as a Rust file for people: it opens with the robot, its table, the operation counts and what each name is,
-//! and compiles by itself.
+//! Writes programs as a readable Rust file that compiles by itself: it begins with the robot, its table, the operation
+//! counts and the meaning of each name.
 
 mod function;
 mod piece;
@@ -22,22 +22,23 @@ use super::wrap::{WIDTH, fill};
 
 pub(super) use self::function::returned;
 
-/// A file that holds the given programs of one robot as functions, with the one trait that they need.
+/// Returns a Rust file with the programs of one robot as functions, and the one trait that they need.
 #[must_use]
 pub fn rust_file(robot: &Robot, programs: &[Program]) -> String {
     file(robot, programs, SinCos::OfCaller)
 }
 
-/// As [`rust_file`], with the trait for `f64` and `f32`: sine and cosine have the bits that rne's runtime has without
-/// fused multiply-add, for angles up to 1e5 rad. The file needs nothing then, in `no_std` neither.
+/// Returns the file of [`rust_file`] with an implementation of the trait for `f64` and `f32`: sine and cosine have the
+/// bits of rne's runtime without fused multiply-add, for angles up to 1e5 rad. The file then needs nothing else, also
+/// in `no_std`.
 #[must_use]
 pub fn rust_file_with_sin_cos(robot: &Robot, programs: &[Program]) -> String {
     file(robot, programs, SinCos::InFile)
 }
 
-/// The names of the joints for such a file: an enum with their indices in arrays, and an array of the names. Two joints
-/// with one identifier give a file that does not compile; [`Checked::identifiers`](rne_model::Checked::identifiers) is
-/// the error then.
+/// Returns code for the names of the joints in such a file: an enum with their indices in arrays, and an array of the
+/// names. If two joints have one identifier, the code does not compile;
+/// [`Checked::identifiers`](rne_model::Checked::identifiers) returns the error in this case.
 #[must_use]
 pub fn rust_joints(robot: &Robot) -> String {
     let mut text = "\n/// The joints; `joint as usize` is the index of a joint in arrays.\n\
@@ -58,14 +59,14 @@ pub fn rust_joints(robot: &Robot) -> String {
     text
 }
 
-/// The library whose sine and cosine a file uses.
+/// Who provides the sine and cosine of a file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum SinCos {
     OfCaller,
     InFile,
 }
 
-/// The trait for `f64` and `f32`, but for its choice by a sign.
+/// The implementation of the trait for `f64` and `f32`, without the method that chooses by a sign.
 const WITH_SIN_COS: [&str; 2] = [include_str!("sin_cos_f64.rs"), include_str!("sin_cos_f32.rs")];
 
 fn file(robot: &Robot, programs: &[Program], sin_cos: SinCos) -> String {
@@ -89,7 +90,7 @@ fn file(robot: &Robot, programs: &[Program], sin_cos: SinCos) -> String {
     text
 }
 
-/// The type of the last argument of a function that depends on run-time parameters.
+/// Returns the struct that is the last argument of a function with run-time parameters.
 fn record_of_parameters(robot: &Robot) -> String {
     let parameters = Parameter::of(robot, parameters::OF_RUST);
     let (mut fields, mut values) = (String::new(), String::new());
@@ -108,7 +109,7 @@ fn record_of_parameters(robot: &Robot) -> String {
     )
 }
 
-/// The trait that the generated functions ask of a number type; the body of a function refers to nothing else.
+/// Returns the trait that the generated functions need of a number type; the body of a function uses nothing else.
 fn scalar(programs: &[Program], sin_cos: SinCos) -> String {
     let divides = programs.iter().any(|program| program.operations().div > 0);
     let chooses = programs.iter().any(Program::chooses_by_sign);
@@ -169,7 +170,7 @@ fn header(robot: &Robot, programs: &[Program], sin_cos: SinCos) -> String {
          | name | meaning |\n|---|---|\n",
     );
     for (pattern, meaning) in legend(robot, programs) {
-        // a bar would end the cell, brackets would be a link
+        // a bar would end the cell of the table, and brackets would be a link
         let meaning = meaning.replace('|', "\\|").replace('[', "\\[");
         let _ = writeln!(text, "| `{pattern}` | {meaning} |");
     }
@@ -181,7 +182,7 @@ fn header(robot: &Robot, programs: &[Program], sin_cos: SinCos) -> String {
     text.lines().map(|line| format!("//! {line}").trim_end().to_owned() + "\n").collect()
 }
 
-/// The implementation of the trait with the chosen sine.
+/// Returns the text that shows how a caller implements the trait.
 fn scalar_of_caller(programs: &[Program]) -> String {
     let by_sign = if programs.iter().any(Program::chooses_by_sign) { BY_SIGN_OF_STD } else { "" };
     format!(
@@ -216,14 +217,14 @@ const BY_SIGN_OF_FLOAT: &str = "    fn by_sign(self, positive: Self, negative: S
     }
 ";
 
-/// Every kind of name that occurs, with its meaning.
+/// Returns every kind of name that occurs, with its meaning.
 pub(super) fn legend(robot: &Robot, programs: &[Program]) -> Vec<(String, &'static str)> {
     let mut names = BTreeSet::new();
     for program in programs {
         let constants = program.constants().map(|constant| constant.name);
         let statements = program.angles.iter().chain(&program.statements).map(|statement| statement.name);
         let turns = program.sines_and_cosines.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten();
-        // functions that mean different things by a name have a line each
+        // if a name has different meanings in different functions, each meaning has its own line
         names.extend(constants.chain(statements).chain(turns).map(|Name { quantity, .. }| {
             let own = rne_codegen::own(program.function, quantity).and_then(|own| own.meaning);
             (quantity, own.unwrap_or_else(|| meaning(robot, quantity)))
@@ -232,14 +233,15 @@ pub(super) fn legend(robot: &Robot, programs: &[Program]) -> Vec<(String, &'stat
     names.into_iter().map(|(quantity, meaning)| (quantity.pattern(), meaning)).collect()
 }
 
-/// The meaning of a quantity in the code of a robot. On a serial arm the link before link i is link i - 1.
+/// Returns the meaning of a quantity in the code of a robot. On a serial arm the link before link i is link i - 1.
 #[must_use]
 pub fn meaning(robot: &Robot, quantity: Quantity) -> &'static str {
     let of_tree = if robot.is_serial() { None } else { meaning_in_tree(quantity) };
     of_tree.unwrap_or_else(|| quantity.meaning())
 }
 
-/// The meaning of a quantity whose usual words name the next joint or the link before, which a tree may not have.
+/// Returns the meaning of a quantity whose usual description mentions the next joint or the link before; in a tree
+/// there may be several or none.
 const fn meaning_in_tree(quantity: Quantity) -> Option<&'static str> {
     Some(match quantity {
         Quantity::R => {
@@ -254,7 +256,7 @@ const fn meaning_in_tree(quantity: Quantity) -> Option<&'static str> {
     })
 }
 
-/// Describes the frame that replaces the tip; `None` for a program of the tip.
+/// Returns a sentence about the frame that replaces the tip; `None` for a program of the tip.
 pub(super) fn about_frame(program: &Program) -> Option<String> {
     let frame = program.frame.as_ref()?;
     Some(format!("The frame {frame} stands in the place of the tip, and its link in the place of the last link."))

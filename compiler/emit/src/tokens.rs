@@ -1,4 +1,4 @@
-//! A program as Rust tokens.
+//! Writes a program as Rust tokens.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,55 +13,57 @@ use rne_codegen::{
 use super::expression::{Infix as _, Position, needs_parentheses};
 use super::syntax::Syntax;
 
-/// The body of a program's function: everything between its braces.
+/// The body of a program's function: the tokens between its braces.
 ///
-/// The arguments `q`, `qd`, `qdd`, `force`, `moment` (those that the function has) are references to arrays of the type
-/// `T`; `scalar` is the path of the trait that gives `T` its `from_f64`, `sin_cos` and `sin_cos_array`.
+/// The arguments `q`, `qd`, `qdd`, `force`, `moment` (those that the function has) must be references to arrays of the
+/// type `T`; `scalar` is the path of the trait that gives `T` its `from_f64`, `sin_cos` and `sin_cos_array`.
 #[derive(Debug)]
 pub struct Body<'a> {
     program: Cow<'a, Program>,
     scalar: &'a TokenStream,
-    /// The path of the type with `mul_add`, `sin_cos` and `sin_cos_array`: the scalar, if no other type is given.
+    /// The path of the type with `mul_add`, `sin_cos` and `sin_cos_array`: the scalar, if no other path is given.
     arithmetic: &'a TokenStream,
-    /// The path of the record types; without it, records are tuples.
+    /// The path of the record types; if it is `None`, records are tuples.
     library: Option<&'a TokenStream>,
 }
 
 impl<'a> Body<'a> {
-    /// The body of a program, its products and sums rounded one by one.
+    /// Returns the body of a program whose products and sums are rounded one by one.
     #[must_use]
     pub fn new(program: &'a Program, scalar: &'a TokenStream) -> Self {
         Self { program: Cow::Borrowed(program), scalar, arithmetic: scalar, library: None }
     }
 
-    /// The body with `mul_add`, `sin_cos` and `sin_cos_array` of the type or the trait at `arithmetic`.
+    /// Returns the body with `mul_add`, `sin_cos` and `sin_cos_array` of the type or the trait at `arithmetic`.
     #[must_use]
     pub fn with_arithmetic(self, arithmetic: &'a TokenStream) -> Self {
         Self { arithmetic, ..self }
     }
 
-    /// The body with poses and other records as types of the crate at `library`, where they are tuples otherwise.
+    /// Returns the body with poses and other records as types of the crate at `library`; without this call they are
+    /// tuples.
     #[must_use]
     pub fn with_records_of(self, library: &'a TokenStream) -> Self {
         Self { library: Some(library), ..self }
     }
 
-    /// The body with the scalar's `mul_add` where a product is added: one instruction on a target that has it, product
-    /// and sum on any other. Where the call waits for a sum that is sooner there without, the two stay apart.
+    /// Returns the body with the scalar's `mul_add` for a product and the sum to which it is added: one instruction if
+    /// the target has it, otherwise two. They stay separate where the result is known sooner that way and the caller
+    /// has to wait for it.
     ///
-    /// Results differ in the last digits from target to target, so the seven steps are not written so.
+    /// The results then differ in the last digits from target to target, so this is not used for the seven steps.
     #[must_use]
     pub fn fused(self) -> Self {
         Self { program: Cow::Owned(fma::fused(&self.program, Fusing::Soonest)), ..self }
     }
 
-    /// The body with `mul_add` wherever a product is added: the fewest instructions.
+    /// Returns the body with `mul_add` for every product that is added: the fewest instructions.
     #[must_use]
     pub fn all_fused(self) -> Self {
         Self { program: Cow::Owned(fma::fused(&self.program, Fusing::All)), ..self }
     }
 
-    /// All of it.
+    /// Returns the whole body.
     #[must_use]
     pub fn whole(&self) -> TokenStream {
         let arguments = self.arguments(|_| true, |_| true);
@@ -72,8 +74,8 @@ impl<'a> Body<'a> {
         quote!(#arguments #constants #angles #turns #rest)
     }
 
-    /// Its first part, for a loop of its own: the angles of [`Program::sines_and_cosines`] as an array, from the
-    /// argument `q`.
+    /// Returns the first part of the body, for a separate loop: it computes the angles of
+    /// [`Program::sines_and_cosines`] as an array, from the argument `q`.
     #[must_use]
     pub fn angles(&self) -> TokenStream {
         let used: BTreeSet<Name> = self.program.angle_expressions().flat_map(Expression::names).collect();
@@ -84,11 +86,12 @@ impl<'a> Body<'a> {
         quote!(#arguments #constants #statements [#(#turns),*])
     }
 
-    /// The part after the angles, when the arguments `sin` and `cos` are references to the sines and cosines of its
-    /// angles.
+    /// Returns the part after the angles; the arguments `sin` and `cos` must be references to the sines and cosines of
+    /// these angles.
     ///
-    /// The results that `places` names, in the order of [`Program::outputs`], are written to the reference to an array
-    /// `outputs`, each as soon as it is known: what waits in a register is written to memory and read again.
+    /// The results that `places` names, in the order of [`Program::outputs`], are written to `outputs`, a reference to
+    /// an array, each as soon as it is known. Otherwise a result that waits in a register may be written to memory and
+    /// read again.
     #[must_use]
     pub fn beyond_angles(&self, places: &[usize]) -> TokenStream {
         let used: BTreeSet<Name> = self.program.expressions().flat_map(Expression::names).collect();
@@ -119,8 +122,9 @@ impl<'a> Body<'a> {
         quote!(#arguments #turns #constants #known #(#rest)*)
     }
 
-    /// For each result, in the order of [`Program::outputs`], the first that is the same value: of an element above the
-    /// diagonal that below. `None` for what is always zero.
+    /// Returns, for each result in the order of [`Program::outputs`], the first result with the same value: for an
+    /// element above the diagonal of a symmetric matrix, that is the element below it. `None` for a result that is
+    /// always zero.
     #[must_use]
     pub fn distinct(&self) -> Vec<Option<usize>> {
         let (values, mut first) = (&self.program.values, BTreeMap::new());
@@ -169,14 +173,14 @@ impl<'a> Body<'a> {
         lines.collect()
     }
 
-    /// The names of the sines and of the cosines, as patterns of arrays.
+    /// Returns the names of the sines and of the cosines, as patterns of arrays.
     fn turn_names(&self) -> [TokenStream; 2] {
         let sines = self.program.sines_and_cosines.iter().map(|turn| name_or_underscore(turn.sine));
         let cosines = self.program.sines_and_cosines.iter().map(|turn| name_or_underscore(turn.cosine));
         [quote!([#(#sines),*]), quote!([#(#cosines),*])]
     }
 
-    /// The sines and cosines, all at once.
+    /// Returns the statement that computes all sines and cosines at once.
     fn turns(&self) -> TokenStream {
         let arithmetic = self.arithmetic;
         let [sines, cosines] = self.turn_names();
@@ -191,14 +195,14 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// The statements and the results.
+    /// Returns the statements and the results.
     fn beyond_turns(&self) -> TokenStream {
         let statements = self.statements(&self.program.statements);
         let outputs = self.returned();
         quote!(#statements #outputs)
     }
 
-    /// The results in their layout; with additional kept values, they are a list.
+    /// Returns the results in their layout; if additional values are kept, the results are a list.
     fn returned(&self) -> TokenStream {
         let outputs = || self.program.outputs.iter().map(|output| self.used(output.value));
         let layout = self.program.layout();
@@ -255,8 +259,8 @@ fn name_or_underscore(name: Option<Name>) -> TokenStream {
     name.map_or_else(|| quote!(_), |name| variable(name).to_token_stream())
 }
 
-/// A number as a literal that reads back as the same number; negative numbers as a minus and a literal, as in source
-/// text.
+/// Returns a number as a literal that is read as the same number; a negative number is a minus and a literal, as in
+/// source text.
 fn literal(value: f64) -> TokenStream {
     let text = format!("{:?}", value.abs());
     let magnitude = text.parse().unwrap_or_else(|_| Literal::f64_unsuffixed(value.abs()));

@@ -1,4 +1,4 @@
-//! Words in lines of a width.
+//! Breaks words into lines of a given width.
 
 use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
 
@@ -8,8 +8,8 @@ pub(super) const WIDTH: usize = 100;
 /// A blank at which no line breaks.
 pub(super) const TIED: &str = "\u{A0}";
 
-/// Words in lines of `width` columns, the first after `first`, those below it behind `others`. A word that is longer
-/// than a line stays whole.
+/// Breaks words into lines of `width` columns; the first line begins with `first`, the others with `others`. A word
+/// that is longer than a line is not broken.
 pub(super) fn fill(text: &str, width: usize, first: &str, others: &str) -> String {
     let options = Options::new(width)
         .initial_indent(first)

@@ -1,9 +1,8 @@
 //! Logs of robot arms as runs of joint states.
 //!
 //! A [`Log`] is one or more files: bags of ROS 2 in SQLite and MCAP, tables in Parquet and CSV, arrays of numpy.
-//! [`Log::survey`] says what is in them, [`Log::motions`] hands out runs, filtered, with accelerations, and
-//! [`Log::recorded`] hands out states as they were recorded. All of these read in memory that does not grow with the
-//! files.
+//! [`Log::survey`] reports their content, [`Log::motions`] returns filtered runs with accelerations, and
+//! [`Log::recorded`] returns unfiltered states. The memory of all of these does not grow with the files.
 //!
 //! ```no_run
 //! use rne_logs::{Log, Options};

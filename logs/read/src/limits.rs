@@ -1,27 +1,28 @@
-//! Limits of a log. A small file may claim a lot: memory and time stay within bounds whatever it claims.
+//! Limits of a log. They keep memory and time bounded, whatever sizes a file states.
 
-/// Joints of a log, of a message or of a row: more than any arm has.
+/// Largest number of joints of a log, a message or a row: more than any arm has.
 pub(crate) const MOST_JOINTS: usize = 1024;
 
-/// Bytes of the name of a joint, a column or a topic.
+/// Largest number of bytes of the name of a joint, a column or a topic.
 pub(crate) const LONGEST_NAME: usize = 256;
 
-/// Numbers of rows that are held at once: 32 MB.
+/// Largest count of numbers in rows that are in memory at once: 32 MB.
 pub(crate) const MOST_NUMBERS: usize = 1 << 22;
 
-/// Bytes of messages that are held at once.
+/// Largest number of bytes of messages that are in memory at once.
 pub(crate) const MOST_BYTES: usize = 32 << 20;
 
-/// Steps of a gap that is filled.
+/// Longest gap that is filled by interpolation, in sampling intervals.
 pub(crate) const LONGEST_GAP: f64 = 1000.0;
 
-/// Rows of a grid for each state of the log, once there are more than [`FEW_ROWS`]: what is filled is not measured.
+/// Largest number of rows of an even grid for each state of the log, checked above [`FEW_ROWS`] rows, because
+/// interpolated rows are not measured.
 pub(crate) const MOST_FILLED: u64 = 20;
 
-/// Rows of a grid that nobody waits for.
+/// Number of rows of an even grid up to which the computing time is negligible.
 pub(crate) const FEW_ROWS: u64 = 100_000;
 
-/// Why a message or a row has too many joints, if it has.
+/// Refuses a message with too many joints, or with names that are too long; `Err` is the reason.
 #[cfg(feature = "bags")]
 pub(crate) fn check_names<'a>(mut names: impl ExactSizeIterator<Item = &'a str>) -> Result<(), String> {
     if names.len() > MOST_JOINTS {
@@ -36,14 +37,14 @@ pub(crate) fn check_names<'a>(mut names: impl ExactSizeIterator<Item = &'a str>)
     }
 }
 
-/// Work is counted, in tests: it is to grow as the log does, and no clock tells that surely.
+/// Counts work in tests: it must grow in proportion to the log, which times cannot show reliably.
 pub(crate) mod work {
     #[cfg(test)]
     thread_local! {
         static DONE: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
     }
 
-    /// Adds to the work of this thread: a name or a number that was looked at.
+    /// Adds steps to the work of this thread: names or numbers that were processed.
     #[inline]
     #[cfg_attr(not(test), expect(unused_variables, reason = "only tests count"))]
     pub(crate) fn add(steps: usize) {
@@ -51,7 +52,7 @@ pub(crate) mod work {
         DONE.set(DONE.get() + steps as u64);
     }
 
-    /// Work that a call has done.
+    /// Returns the work of a call.
     #[cfg(test)]
     pub(crate) fn of(call: impl FnOnce()) -> u64 {
         let before = DONE.get();

@@ -1,4 +1,4 @@
-//! How the torques of a robot with a floating base change with its state, and the matrices of Pinocchio.
+//! Derivatives of the torques of a robot with a floating base, and their conversion to the matrices of Pinocchio.
 
 use crate::values::pose_log::cross;
 use crate::{BaseMotion, FloatingTorqueDerivatives, Scalar};
@@ -7,14 +7,14 @@ use crate::{BaseMotion, FloatingTorqueDerivatives, Scalar};
 const BASE: usize = 6;
 
 impl<const DOF: usize, const NV: usize, T: Scalar> FloatingTorqueDerivatives<DOF, NV, T> {
-    /// ∂τ/∂q and ∂τ/∂v of Pinocchio's `computeRNEADerivatives` with a free flyer, in this order. Rows are force,
-    /// moment and torques. Columns are those of its tangent space: translation and rotation of the base, or its linear
-    /// and angular velocity, in axes of the base, then the joints. Its ∂τ/∂a is the mass matrix.
+    /// Returns ∂τ/∂q and ∂τ/∂v of Pinocchio's `computeRNEADerivatives` with a free flyer, in this order. Rows are
+    /// force, moment and torques. Columns are those of its tangent space: translation and rotation of the base, or its
+    /// linear and angular velocity, in axes of the base, then the joints. Its ∂τ/∂a is the mass matrix.
     ///
     /// `base`: the motion at which the derivatives were taken, with `velocity` and `gravity` in axes of frame 0, as
-    /// [`BaseMotion::from_pinocchio`] gives it. `mass`: the
-    /// [mass matrix](crate::FloatingBase::floating_mass_matrix) at the same q, M, of which the three columns L of the
-    /// linear acceleration count. Pinocchio holds its spatial acceleration a - ω × v and gravity in world axes:
+    /// [`BaseMotion::from_pinocchio`] returns it. `mass`: the [mass matrix](crate::FloatingBase::floating_mass_matrix)
+    /// M at the same q; its three columns L for the linear acceleration are used. In Pinocchio, the spatial
+    /// acceleration a - ω × v and gravity in world axes are constant:
     ///
     /// ```text
     /// ∂τ/∂q:  0,  L (e × g) for e = x, y, z,  dq        ∂τ/∂v:  L (ω × e),  domega + L (e × v),  dqd
@@ -32,8 +32,8 @@ impl<const DOF: usize, const NV: usize, T: Scalar> FloatingTorqueDerivatives<DOF
 
 #[cfg(feature = "std")]
 impl<T: Scalar> crate::DynFloatingTorqueDerivatives<T> {
-    /// As [`FloatingTorqueDerivatives::to_pinocchio`], of a mass matrix with 6 + n rows. Rows that `mass` lacks are
-    /// left out.
+    /// Converts as [`FloatingTorqueDerivatives::to_pinocchio`] does, with a mass matrix of 6 + n rows. Rows that `mass`
+    /// lacks are left out.
     #[must_use]
     pub fn to_pinocchio(&self, base: &BaseMotion<T>, mass: &[Vec<T>]) -> [Vec<Vec<T>>; 2] {
         let units = Units::new(base);
@@ -48,11 +48,11 @@ impl<T: Scalar> crate::DynFloatingTorqueDerivatives<T> {
     }
 }
 
-/// Changes of a - g for a unit of each linear and angular variable of the base.
+/// Derivatives of a - g with respect to each linear and angular variable of the base.
 struct Units<T> {
-    /// By its rotation, less that of gravity: e × g.
+    /// With respect to its rotation, which only turns gravity: e × g.
     turned: [[T; 3]; 3],
-    /// By its velocities: ω × e, then e × v.
+    /// With respect to its linear and its angular velocity: ω × e, then e × v.
     moved: [[[T; 3]; 3]; 2],
 }
 
@@ -64,7 +64,7 @@ impl<T: Scalar> Units<T> {
         Self { turned: each(&|e| cross(&e, &base.gravity)), moved: [linear, each(&|e| cross(&e, &base.velocity))] }
     }
 
-    /// An element of ∂τ/∂q, or of ∂τ/∂v where `kind` is 1, from a row of each matrix.
+    /// Returns an element of ∂τ/∂q, or of ∂τ/∂v if `kind` is 1, from a row of each matrix.
     fn element(&self, kind: usize, column: usize, (mass, joints, domega): (&[T], [&[T]; 2], &[T; 3])) -> T {
         let by = |change: [T; 3]| mass.iter().zip(change).fold(T::zero(), |sum, (&element, x)| sum + element * x);
         match (kind, column) {

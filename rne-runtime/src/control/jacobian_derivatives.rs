@@ -1,4 +1,5 @@
-//! How the Jacobian of the tip changes; of an [`Arm`] by dual numbers through its Jacobian, exact up to rounding.
+//! Derivatives of the Jacobian of the tip. Those of an [`Arm`] come from dual numbers through its Jacobian, and are
+//! exact up to rounding.
 
 use core::array::from_fn;
 
@@ -12,7 +13,7 @@ use crate::{
 };
 use crate::{Dual, Scalar};
 
-/// The rate of the rows of a Jacobian at velocities.
+/// Returns the rate of the rows of a Jacobian at velocities.
 pub(crate) fn rate_of_rows<T: Scalar, const DOF: usize>(
     q: &[T; DOF],
     qd: &[T; DOF],
@@ -22,7 +23,7 @@ pub(crate) fn rate_of_rows<T: Scalar, const DOF: usize>(
     jacobian(&moving).map(|row| row.map(|element| element.derivative))
 }
 
-/// The derivatives of the rows of a Jacobian by the position of each joint.
+/// Returns the derivatives of the rows of a Jacobian with respect to the position of each joint.
 pub(crate) fn derivatives_of_rows<T: Scalar, const DOF: usize>(
     q: &[T; DOF],
     jacobian: impl Fn(&[Dual<T>; DOF]) -> [[Dual<T>; DOF]; 6],

@@ -1,4 +1,4 @@
-//! Controllers, observers and derivatives for optimisers, made of the functions.
+//! Controllers, observers and derivatives for optimisers, composed of the functions of a robot.
 
 pub(crate) mod computed_torque;
 pub(crate) mod floating_derivatives;

@@ -9,8 +9,8 @@
 //! r   = r₋ + w (t - r₋),   w = 1 - e^(-K h)       exact where τ_ext is the same throughout the tick
 //! ```
 //!
-//! After A. De Luca, R. Mattone (2003, 2005). Their integral of the rates, which grows, is not formed: only its
-//! increments are, so rounding of the past is forgotten as the past is, in `f32` too.
+//! After A. De Luca, R. Mattone (2003, 2005). Their integral of the rates grows without bound, so it is not formed.
+//! Only its increments are used, so that old rounding errors decay like old torques, in `f32` too.
 
 use core::array;
 
@@ -23,9 +23,9 @@ const SHORTEST_PERIOD: f64 = 1e-30;
 
 /// External torques without accelerations: what an observer knows from one tick of a controller to the next.
 ///
-/// The torques are those of the environment on the arm, positive along the joint: a hand that pushes joint i towards
-/// larger q_i shows as a positive number, and what a wrench w, exerted by the environment on the tip, makes is Jᵀ w.
-/// Whatever the model lacks shows as well: friction, unless it is taken out of `tau`, and a payload.
+/// The torques are those of the environment on the arm, positive along the joint: a person who pushes joint i towards
+/// larger q_i causes a positive number, and a wrench w that the environment exerts on the tip causes Jᵀ w. Everything
+/// that the model lacks also appears in them: friction, unless it is subtracted from `tau`, and a payload.
 ///
 /// ```
 /// # struct Link;
@@ -48,10 +48,10 @@ pub struct ObserverState<const DOF: usize, T> {
     momentum: [T; DOF],
     rate: [T; DOF],
     external: [T; DOF],
-    /// w at the next update: 0 at the first one, before which there is no tick.
+    /// The weight w at the next update; 0 at the first one, because no tick precedes it.
     next: T,
     weight: T,
-    /// 1/h
+    /// 1/h, Hz.
     frequency: T,
 }
 
@@ -95,10 +95,11 @@ impl<const DOF: usize, T: Scalar> ObserverState<DOF, T> {
         external
     }
 
-    /// Forgets all that was observed: the next update begins anew.
+    /// Forgets all earlier ticks: the next update is the first one again.
     pub fn reset(&mut self) {
         let zeros = [T::zero(); DOF];
-        // what is not finite would stay in the products with a weight of zero
+        // momentum, rate and external torques too, because a number that is not finite remains so when it is multiplied
+        // by zero
         (self.momentum, self.rate, self.external, self.next) = (zeros, zeros, zeros, T::zero());
     }
 
@@ -115,7 +116,7 @@ impl<const DOF: usize, T: Scalar> ObserverState<DOF, T> {
     }
 }
 
-/// r of a joint, from that before and from momentum and rate, [before, now].
+/// Returns r of a joint from r at the tick before, and from momentum and rate, each as [before, now].
 #[inline]
 fn low_pass<T: Scalar>(before: T, momentum: [T; 2], rate: [T; 2], frequency: T, weight: T) -> T {
     let change = (momentum[1] - momentum[0]) * frequency;
@@ -123,9 +124,9 @@ fn low_pass<T: Scalar>(before: T, momentum: [T; 2], rate: [T; 2], frequency: T, 
     before + (mean - before) * weight
 }
 
-/// The weight and the frequency of a tick.
+/// Returns the weight w and the frequency 1/h of a tick of length h.
 fn tick<T: Scalar>(gain: f64, period: f64) -> (T, T) {
-    // of a shorter tick the frequency is not finite, in single precision at least
+    // for a shorter tick the frequency may not be finite, at least in single precision
     let (weight, frequency) = if period >= SHORTEST_PERIOD {
         (weight(core::f64::consts::TAU * gain * period), 1.0 / period)
     } else {
@@ -142,7 +143,7 @@ pub struct DynObserverState<T> {
     rate: Vec<T>,
     external: Vec<T>,
     has_begun: bool,
-    /// Hz and s, of [`Self::update`].
+    /// The gain, Hz, and the period, s, of [`Self::update`].
     gain: f64,
     period: f64,
 }
@@ -215,11 +216,11 @@ impl<T: Scalar> DynObserverState<T> {
 /// 1 - e^(-x) for x ≥ 0, as s / (1 + s) with the series of s = e^x - 1 after a division of x by 2^n: `core` has no
 /// exponential.
 fn weight(x: f64) -> f64 {
-    // no gain, and what is no number
+    // without a gain, or for NaN
     if x.is_nan() || x <= 0.0 {
         return 0.0;
     }
-    // beyond, all is forgotten within a tick
+    // for larger x, e^(-x) is below rounding
     if x >= 40.0 {
         return 1.0;
     }

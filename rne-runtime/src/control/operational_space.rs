@@ -1,6 +1,7 @@
-//! The arm seen from its tip or from a frame: the operational-space inertia Λ = (J M⁻¹ Jᵀ)⁻¹ and the dynamically
-//! consistent inverse J̄ = M⁻¹ Jᵀ Λ of the Jacobian. Source: O. Khatib, "A unified approach for motion and force control
-//! of robot manipulators: the operational space formulation", IEEE Journal of Robotics and Automation 3(1), 1987.
+//! Dynamics of the arm at its tip or at a frame: the operational-space inertia Λ = (J M⁻¹ Jᵀ)⁻¹ and the dynamically
+//! consistent inverse J̄ = M⁻¹ Jᵀ Λ of the Jacobian. Source: O. Khatib, "A unified approach for motion and force
+//! control of robot manipulators: the operational space formulation", IEEE Journal of Robotics and Automation 3(1),
+//! 1987.
 //!
 //! M and J M⁻¹ Jᵀ are factored as L D Lᵀ, as in [forward dynamics](crate::ForwardDynamics).
 
@@ -86,7 +87,8 @@ const fn at_most_one_row_per_joint(rows: usize, joints: usize) {
     assert!(rows <= joints, "give at most as many rows of the Jacobian as the arm has joints, such as `[j[0], j[1]]`");
 }
 
-/// Returns Λ in the place of `zeros`, and makes J̄ᵀ of the rows J. Of M only factors are left.
+/// Returns Λ, written to `zeros`, and replaces the rows of J by those of J̄ᵀ. `mass` contains the factors of M
+/// afterwards.
 #[doc(hidden)]
 pub fn operational_space<T: Scalar, R, S, A>(mass: &mut [R], jacobian: &mut [R], zeros: A) -> A
 where
@@ -97,7 +99,7 @@ where
     let (Some(row), Some(zero)) = (jacobian.first().cloned(), zeros.as_ref().first().cloned()) else { return zeros };
     let mut pivots = row;
     factor(mass, pivots.as_mut());
-    // the mobility J M⁻¹ Jᵀ, of which one half is computed
+    // the mobility J M⁻¹ Jᵀ, which is symmetric, so only one half is computed
     let mut mobility = zeros;
     for k in 0..jacobian.len() {
         let mut solved = jacobian[k].clone();

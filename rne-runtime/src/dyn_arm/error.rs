@@ -20,7 +20,7 @@ pub enum LoadError {
     },
     /// The file describes no robot; the report has line, column and what is allowed.
     Invalid(Report),
-    /// The robot has another number of joints than the type that was to hold it.
+    /// The robot has another number of joints than the type for which it was loaded.
     WrongJointCount(WrongJointCount),
 }
 
@@ -57,16 +57,16 @@ impl From<WrongJointCount> for LoadError {
     }
 }
 
-/// A robot file has another number of joints than the type that was to hold it.
+/// The error that a robot file has another number of joints than the type for which it was loaded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WrongJointCount {
-    /// Joints that the type has, its `DOF`.
+    /// Number of joints of the type, its `DOF`.
     pub expected: usize,
-    /// Joints that the robot has.
+    /// Number of joints of the robot.
     pub found: usize,
-    /// How many of them follow others; an `Arm` has none.
+    /// How many of these joints follow others; an `Arm` cannot have any.
     pub followers: usize,
-    /// How many motors its list `motors` has; an `Arm` has none.
+    /// How many motors the list `motors` of the robot file has; an `Arm` cannot have any.
     pub drives: usize,
 }
 
@@ -94,9 +94,10 @@ impl Error for WrongJointCount {}
 pub struct WrongLength {
     /// Name of the argument: `q`, `qd`, `qdd`, `sin`, `cos`, `tau`, `motors`, `motor_torques` or `wrenches`.
     pub argument: &'static str,
-    /// Joints of the robot; motors, for `motor_torques`; tips, for `wrenches`.
+    /// The number of elements that it must have: joints of the robot; motors, for `motor_torques`; tips, for
+    /// `wrenches`.
     pub expected: usize,
-    /// Elements of the argument.
+    /// The number of elements that it has.
     pub found: usize,
 }
 
@@ -114,7 +115,7 @@ impl fmt::Display for WrongLength {
 
 impl Error for WrongLength {}
 
-/// A number of things, in English.
+/// A number of things, written in English, with the plural where it is needed.
 struct Count(usize, &'static str);
 
 impl fmt::Display for Count {

@@ -1,4 +1,4 @@
-//! Any function of an arm by its id, as the flat numbers of its result.
+//! Computes any function of an arm by its id, and returns its result as a flat list of numbers.
 
 use rne_functions::Function;
 
@@ -7,7 +7,7 @@ use crate::{BaseMotion, BaseTwist, Constant, DynArm, Payload, Pose, Scalar, Wren
 
 macro_rules! inputs {
     ($($(#[$doc:meta])* $name:ident: ($($type:tt)*);)*) => {
-        /// The arguments of every function, by the names of the table. A function reads its own.
+        /// The arguments of all functions, under the names in the table of functions. A function reads only its own.
         #[derive(Clone, Copy, Debug)]
         pub struct Inputs<'a, T> { $($(#[$doc])* pub $name: $($type)*),* }
     };
@@ -15,7 +15,7 @@ macro_rules! inputs {
 rne_functions::every_argument!(inputs);
 
 impl<S: Constant> DynArm<S> {
-    /// The numbers of a function, in the order of its layout.
+    /// Returns the numbers of a function's result, in the order of its layout.
     ///
     /// # Errors
     /// When an argument of the function does not have one element per joint or tip.

@@ -24,8 +24,8 @@ use crate::seven_steps::mount::Mount;
 use crate::seven_steps::trace::{self, LinkTrace, turn_to_base, turn_to_lecture};
 use crate::{BaseMotion, Constant, Payload, Scalar, Wrench};
 
-/// [`Arm`](crate::Arm) for a number of joints known at run time: the same recursion, the same bits, with slices for
-/// arrays.
+/// A robot like [`Arm`](crate::Arm), whose number of joints is only known at run time. It computes by the same
+/// recursion, with the same bits, and takes slices in place of arrays.
 ///
 /// Functions of closed loops take the positions of the dependent joints, too. The other functions are those of the open
 /// tree: their slices have an element for each joint that follows no other by a coupling, in the order of the joints.
@@ -51,7 +51,7 @@ pub struct DynArm<S = f64> {
     /// The frames that carry wrenches.
     tips: Vec<FixedFrame<S>>,
     prepared_tips: Vec<Tip<S>>,
-    /// The tips that are held.
+    /// The contacts, at tips that something outside the robot holds.
     pub(crate) contacts: Vec<Contact>,
     /// The closed loops.
     pub(crate) closed: Loops<S>,
@@ -139,14 +139,14 @@ impl<S: Constant> DynArm<S> {
         }
     }
 
-    /// As [`Arm::with_rotors`](crate::Arm::with_rotors): rotors belong to the arm.
+    /// Returns the arm with its rotors, as [`Arm::with_rotors`](crate::Arm::with_rotors) does.
     #[must_use]
     pub fn with_rotors(self) -> Self {
         Self { rotors: true, ..self }
     }
 
-    /// Number of coordinates: of the joints that follow no other by a coupling. Dependent joints of closed loops count
-    /// as joints of the open tree.
+    /// Number of coordinates: of all joints that follow no other joint by a coupling. Dependent joints of closed loops
+    /// are included, as joints of the open tree.
     #[must_use]
     pub fn dof(&self) -> usize {
         self.couplings.dof()
@@ -158,32 +158,32 @@ impl<S: Constant> DynArm<S> {
         &self.rows
     }
 
-    /// The motors, base to tip. [`actuator_torques`](Self::actuator_torques) alone asks for them.
+    /// The motors, base to tip. Only [`actuator_torques`](Self::actuator_torques) uses them.
     #[must_use]
     pub fn motors(&self) -> &[Option<Motor<S>>] {
         &self.motors
     }
 
-    /// How the rows are to be read.
+    /// The convention by which the rows are read.
     #[must_use]
     pub fn convention(&self) -> Convention {
         self.convention
     }
 
-    /// World → frame 0.
+    /// The placement of frame 0 in the world.
     #[must_use]
     pub fn base(&self) -> &Transform<S> {
         &self.base
     }
 
-    /// Frame n → tip frame.
+    /// The placement of the tip frame in frame n.
     #[must_use]
     pub fn tool(&self) -> &Transform<S> {
         &self.tool
     }
 
-    /// The frames that carry wrenches, in the order of these: those of the list `tips` of the robot file, or the tip
-    /// frame alone.
+    /// The frames at which wrenches act, in the order of arrays of wrenches: those of the list `tips` of the robot
+    /// file, or the tip frame alone.
     #[must_use]
     pub fn tips(&self) -> &[FixedFrame<S>] {
         &self.tips
@@ -378,7 +378,7 @@ impl<T: Scalar> DynTrace<T> {
         self.links.iter().map(|link| link.tau).collect()
     }
 
-    /// As [`Trace::to_lecture`](crate::Trace::to_lecture).
+    /// Returns the vectors in the lecture's axes, as [`Trace::to_lecture`](crate::Trace::to_lecture) does.
     #[must_use]
     pub fn to_lecture(&self) -> Vec<LinkTrace<T>> {
         let mut links = self.links.clone();
@@ -386,7 +386,7 @@ impl<T: Scalar> DynTrace<T> {
         links
     }
 
-    /// As [`Trace::to_base`](crate::Trace::to_base).
+    /// Returns the vectors in the axes of the base, as [`Trace::to_base`](crate::Trace::to_base) does.
     #[must_use]
     pub fn to_base(&self) -> Vec<LinkTrace<T>> {
         let mut links = self.links.clone();

@@ -1,4 +1,4 @@
-//! Steps of integrators for a robot with a floating base, on the manifold of its positions.
+//! Steps of integrators for a robot with a floating base, whose orientation is integrated as a rotation.
 
 use core::array::from_fn;
 
@@ -51,7 +51,7 @@ pub trait FloatingIntegratorStep<const DOF: usize, const NV: usize, const TIPS: 
         let found = self.floating_forward_dynamics(&state.q, &state.qd, tau, omega, wrenches);
         let rotation = state.orientation.rotation();
         let linear = moved(&state.twist.linear, &found.base.linear, step);
-        // in world axes
+        // the new velocity of the origin, in world axes
         let linear = moved(&times(&rotation, &linear), gravity, step);
         let angular = moved(omega, &found.base.angular, step);
         let orientation = unit(&state.orientation.then(&turn(&angular, step)));
@@ -92,8 +92,8 @@ pub trait FloatingIntegratorStep<const DOF: usize, const NV: usize, const TIPS: 
     }
 }
 
-/// The numbers that a step integrates, their rates, or changes of either: the turn of the base, the velocity of its
-/// origin in world axes, its angular velocity in its axes, and the joints, an array or a list.
+/// The variables that a step integrates, their rates, or changes of either: the turn of the base during the step, the
+/// velocity of its origin in world axes, its angular velocity in its axes, and the joints, as an array or a list.
 #[doc(hidden)]
 #[derive(Clone, Debug)]
 pub struct Stage<J, T> {
@@ -105,13 +105,14 @@ pub struct Stage<J, T> {
 }
 
 impl<J: AsRef<[T]> + AsMut<[T]> + Clone, T: Scalar> Stage<J, T> {
-    /// The numbers of a state, from which the base turns.
+    /// Returns the variables of a state at the beginning of a step, when the base has not turned yet.
     pub fn of(orientation: &Quaternion<T>, twist: &BaseTwist<T>, q: J, qd: J) -> Self {
         let linear = times(&orientation.rotation(), &twist.linear);
         Self { u: [T::zero(); 3], linear, omega: twist.angular, q, qd }
     }
 
-    /// Their rates by the accelerations, where the base turns from this orientation.
+    /// Returns the rates of the variables from the accelerations. `orientation` is that of the base at the beginning of
+    /// the step.
     #[must_use]
     pub fn rates(&self, base: &BaseAcceleration<T>, qdd: J, orientation: &Quaternion<T>, gravity: &[T; 3]) -> Self {
         let linear = times(&orientation.then(&turned(&self.u)).rotation(), &base.linear);
@@ -124,14 +125,14 @@ impl<J: AsRef<[T]> + AsMut<[T]> + Clone, T: Scalar> Stage<J, T> {
         }
     }
 
-    /// The orientation of the base that turned from this one, and its velocity in its axes.
+    /// Returns the orientation of the base after its turn from `orientation`, and its velocity in its axes.
     pub fn base(&self, orientation: &Quaternion<T>) -> (Quaternion<T>, BaseTwist<T>) {
         let orientation = unit(&orientation.then(&turned(&self.u)));
         let linear = times(&transposed(&orientation.rotation()), &self.linear);
         (orientation, BaseTwist { linear, angular: self.omega })
     }
 
-    /// These and h times other ones.
+    /// Returns these variables plus h times other ones.
     fn moved(&self, by: &Self, step: T) -> Self {
         Self {
             u: moved(&self.u, &by.u, step),
@@ -143,8 +144,8 @@ impl<J: AsRef<[T]> + AsMut<[T]> + Clone, T: Scalar> Stage<J, T> {
     }
 }
 
-/// The numbers after a step of the classical Runge-Kutta method, by their rates at its four states, which have the
-/// numbers 0 to 3, and the mean of the velocities at these states, with which the position moves.
+/// Returns the variables after a step of the classical Runge-Kutta method, and the mean of the velocities with which
+/// the position moves. `rates` returns the rates at one of the four states, which are numbered 0 to 3.
 #[doc(hidden)]
 pub fn runge_kutta<J: AsRef<[T]> + AsMut<[T]> + Clone, T: Scalar>(
     start: &Stage<J, T>,
@@ -163,8 +164,8 @@ pub fn runge_kutta<J: AsRef<[T]> + AsMut<[T]> + Clone, T: Scalar>(
     (start.moved(&sum, sixth), mean)
 }
 
-/// The turn, in the turned axes, by a change of the coordinates u of a turn: 4 / (1 + s) times the change, turned back
-/// by half of the turn.
+/// Converts a change of the coordinates u of a turn to a rotation vector in the turned axes: 4 / (1 + s) times the
+/// change, turned back by half of the turn.
 pub(crate) fn turn_by_change<T: Scalar>(u: &[T; 3], change: &[T; 3]) -> [T; 3] {
     let half = T::one() / (T::one() + dot(u, u));
     let scale = half + half;
@@ -173,7 +174,7 @@ pub(crate) fn turn_by_change<T: Scalar>(u: &[T; 3], change: &[T; 3]) -> [T; 3] {
     from_fn(|axis| (scale + scale) * (change[axis] + scale * (twice[axis] - once[axis])))
 }
 
-/// The rate of the coordinates u of a turn, by the angular velocity in the turned axes.
+/// Returns the rate of the coordinates u of a turn from the angular velocity in the turned axes.
 fn rate_of_turn<T: Scalar>(u: &[T; 3], omega: &[T; 3]) -> [T; 3] {
     let (two, quarter) = (T::one() + T::one(), T::from_f64(0.25));
     let (scale, along, across) = (T::one() - dot(u, u), two * dot(u, omega), cross(u, omega));
@@ -185,13 +186,13 @@ impl<const DOF: usize, const NV: usize, const TIPS: usize, R: FloatingBase<DOF, 
 {
 }
 
-/// The rotation by which a step turns the base.
+/// Returns the rotation by which a step turns the base.
 pub(crate) fn turn<T: Scalar>(omega: &[T; 3], step: T) -> Quaternion<T> {
     let quarter = step * T::from_f64(0.25);
     turned(&omega.map(|x| x * quarter))
 }
 
-/// The unit quaternion (1 - s, 2 u) / (1 + s) with s = u·u.
+/// Returns the unit quaternion (1 - s, 2 u) / (1 + s) with s = u·u.
 pub(crate) fn turned<T: Scalar>(u: &[T; 3]) -> Quaternion<T> {
     let square = dot(u, u);
     let scale = T::one() / (T::one() + square);
@@ -199,7 +200,7 @@ pub(crate) fn turned<T: Scalar>(u: &[T; 3]) -> Quaternion<T> {
     Quaternion { w: (T::one() - square) * scale, x, y, z }
 }
 
-/// The quaternion with the length 1, if its length is nearly that: a step of Newton's method.
+/// Normalises a quaternion whose length is nearly 1, by one step of Newton's method.
 pub(crate) fn unit<T: Scalar>(near: &Quaternion<T>) -> Quaternion<T> {
     let square = near.to_wxyz().iter().fold(T::zero(), |sum, &part| sum + part * part);
     let scale = T::from_f64(1.5) - square * T::from_f64(0.5);

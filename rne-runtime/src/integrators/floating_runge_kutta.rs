@@ -11,7 +11,7 @@ use crate::{
     FloatingStepDerivatives, FloatingTorqueDerivatives, Quaternion, Scalar, Wrench,
 };
 
-/// Six velocities of the base stand before those of the joints.
+/// The six velocities of the base come before those of the joints.
 const BASE: usize = 6;
 
 /// Derivatives of the step of
@@ -20,9 +20,9 @@ const BASE: usize = 6;
 pub trait FloatingRungeKuttaStepDerivatives<const DOF: usize, const NV: usize, const TIPS: usize>:
     FloatingBase<DOF, NV, TIPS> + FloatingInverseDynamicsDerivatives<DOF, NV, TIPS>
 {
-    /// The derivatives of this step by the state and by the torques, exact up to rounding: the chain rule over its four
-    /// states. The changes of the accelerations there are -M⁻¹ times those of the wrench on the base and of the
-    /// torques.
+    /// The derivatives of this step with respect to the state and the torques, exact up to rounding: the chain rule
+    /// over its four states. The changes of the accelerations there are -M⁻¹ times those of the wrench on the base and
+    /// of the torques.
     #[must_use]
     fn floating_runge_kutta_step_derivatives<T: Scalar>(
         &self,
@@ -37,7 +37,8 @@ pub trait FloatingRungeKuttaStepDerivatives<const DOF: usize, const NV: usize, c
         let (next, _) = runge_kutta(&Stage::of(orientation, twist, *q, *qd), step, |number, stage| {
             let Stage { omega, q, qd, .. } = stage;
             let accelerations = self.floating_forward_dynamics(q, qd, tau, omega, wrenches);
-            // the acceleration of the base is less gravity, so the field `gravity` of the motion stays zero
+            // the computed acceleration of the base already contains -g, so the field `gravity` of the motion stays
+            // zero
             let base = BaseMotion {
                 omega: *omega,
                 omega_dot: accelerations.base.angular,
@@ -87,10 +88,10 @@ where
 {
 }
 
-/// Gives every derivative of a step to `put`: whether it is of a velocity and its kind (0 by positions, 1 by
-/// velocities, 2 by torques), row, column and number. `orientations` are those before and after the step, `next` the
-/// numbers after it, `linear` how the rates change at each of the four states, `x` a place for as many numbers as the
-/// mass matrix has rows.
+/// Passes every derivative of a step to `put`: [0 for a position or 1 for a velocity, kind of the argument (0
+/// positions, 1 velocities, 2 torques)], row, column and value. `orientations` are those before and after the step, and
+/// `next` has the variables after it. `linear` returns how the rates change at each of the four states. `x` is scratch
+/// memory for as many numbers as the mass matrix has rows.
 #[doc(hidden)]
 pub fn derivatives<'a, T: Scalar + 'a, R: AsRef<[T]> + 'a, J: AsRef<[T]> + AsMut<[T]> + Clone + 'a>(
     orientations: [&Quaternion<T>; 2],
@@ -142,15 +143,15 @@ pub fn derivatives<'a, T: Scalar + 'a, R: AsRef<[T]> + 'a, J: AsRef<[T]> + AsMut
     }
 }
 
-/// How the base turns and accelerates at a state.
+/// Turn, angular velocity, orientation and acceleration of the base at a state.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
 pub struct Turning<T> {
     u: [T; 3],
     omega: [T; 3],
-    /// From the axes of frame 0 to those of the world.
+    /// The rotation from the axes of frame 0 to those of the world.
     rotation: [[T; 3]; 3],
-    /// Acceleration of the base less gravity, in its axes.
+    /// Acceleration of the base less gravity, in axes of the base.
     acceleration: [T; 3],
 }
 
@@ -161,7 +162,7 @@ impl<T: Scalar> Turning<T> {
     }
 }
 
-/// How the rates at a state change: by the derivatives of the forces, and by the factors of M.
+/// The linear model of the rates at a state: derivatives of the forces, and factors of M.
 #[doc(hidden)]
 #[derive(Debug)]
 pub struct Linear<'a, T, R, J> {
@@ -174,8 +175,8 @@ pub struct Linear<'a, T, R, J> {
 }
 
 impl<T: Scalar, R: AsRef<[T]>, J: AsRef<[T]> + AsMut<[T]> + Clone> Linear<'_, T, R, J> {
-    /// The changes of the rates, by those of the state, by the turn of the base before the step, in world axes, and by
-    /// the torques. `x` is a place for the accelerations.
+    /// Returns the changes of the rates, caused by changes of the state, by a turn of the base before the step (in
+    /// world axes) and by changes of the torques. `x` is scratch memory for the accelerations.
     fn rates(
         &self,
         change: &Stage<J, T>,
@@ -207,7 +208,7 @@ impl<T: Scalar, R: AsRef<[T]>, J: AsRef<[T]> + AsMut<[T]> + Clone> Linear<'_, T,
     }
 }
 
-/// The change of the rate ((1 - s) ω + 2 u × ω + 2 (u·ω) u) / 4 of the coordinates u of a turn.
+/// Returns the change of ((1 - s) ω + 2 u × ω + 2 (u·ω) u) / 4, which is the rate of the coordinates u of a turn.
 fn change_of_rate<J, T: Scalar>(u: &[T; 3], omega: &[T; 3], change: &Stage<J, T>) -> [T; 3] {
     let half = T::from_f64(0.5);
     let (scale, along) = (half * (T::one() - dot(u, u)), dot(u, omega));

@@ -1,5 +1,6 @@
-//! The step of the classical Runge-Kutta method, and its derivatives by the state and by the torques, for every robot
-//! that has the accelerations and their derivatives. They allocate nothing, and no branch depends on a number.
+//! The step of the classical Runge-Kutta method, and its derivatives with respect to the state and the torques, for
+//! every robot that has the accelerations and their derivatives. They allocate nothing, and no branch depends on a
+//! number.
 
 use core::convert::Infallible;
 
@@ -31,11 +32,11 @@ use crate::{
 /// assert_eq!((next.q, next.qd), ([0.25], [1.0]));
 /// ```
 pub trait RungeKuttaStep<const DOF: usize>: ForwardDynamics<DOF> {
-    /// A step of the classical Runge-Kutta method, with the accelerations at four states. The error of a motion is of
-    /// order h⁴.
+    /// A step of the classical Runge-Kutta method, which computes the accelerations at four states. The error of a
+    /// motion is of order h⁴.
     ///
-    /// The velocities at the four states are known by the accelerations before, so with q̈₁ to q̈₄ at these states q̇' =
-    /// q̇ + h (q̈₁ + 2 q̈₂ + 2 q̈₃ + q̈₄) / 6 and q' = q + h (q̇ + h (q̈₁ + q̈₂ + q̈₃) / 6).
+    /// The velocities at the four states follow from the accelerations before. With the accelerations q̈₁ to q̈₄ at
+    /// these states, q̇' = q̇ + h (q̈₁ + 2 q̈₂ + 2 q̈₃ + q̈₄) / 6 and q' = q + h (q̇ + h (q̈₁ + q̈₂ + q̈₃) / 6).
     #[must_use]
     fn runge_kutta_step<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], tau: &[T; DOF], step: T) -> NextState<DOF, T> {
         let accelerations = |q: &_, qd: &_| Ok::<_, Infallible>(self.forward_dynamics(q, qd, tau));
@@ -51,8 +52,8 @@ impl<const DOF: usize, R: ForwardDynamics<DOF>> RungeKuttaStep<DOF> for R {}
 ///
 /// They are exact up to rounding: the chain rule over the four states at which the step has the accelerations.
 pub trait RungeKuttaStepDerivatives<const DOF: usize>: ForwardDynamics<DOF> + ForwardDynamicsDerivatives<DOF> {
-    /// The derivatives of [`runge_kutta_step`](RungeKuttaStep::runge_kutta_step) by q, q̇ and τ, from those of the
-    /// accelerations at its four states, and five products of matrices of `DOF` rows and 3 `DOF` columns.
+    /// The derivatives of [`runge_kutta_step`](RungeKuttaStep::runge_kutta_step) with respect to q, q̇ and τ, from
+    /// those of the accelerations at its four states, and five products of matrices of `DOF` rows and 3 `DOF` columns.
     #[must_use]
     fn runge_kutta_step_derivatives<T: Scalar>(
         &self,

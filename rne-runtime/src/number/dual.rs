@@ -85,7 +85,7 @@ impl<T: Scalar> Div for Dual<T> {
     }
 }
 
-/// The assigning forms of a generic scalar's operators.
+/// Defines the assigning operators of a generic scalar, such as `+=`.
 macro_rules! assigning {
     ($type:ident: $($operator:ident $assign:ident $sign:tt,)*) => {
         $(

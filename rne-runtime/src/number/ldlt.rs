@@ -3,13 +3,13 @@
 
 use crate::Scalar;
 
-/// Makes L and D of M, which keeps L below its diagonal and c above: c_ij stands at (j, i). `inverse` is a place for
+/// Factors M = L D Lᵀ in place. Afterwards M has L below its diagonal and c above it: c_ij is at (j, i). `inverse` gets
 /// the reciprocals of D.
 #[doc(hidden)]
 pub fn factor<T: Scalar, R: AsRef<[T]> + AsMut<[T]>>(m: &mut [R], inverse: &mut [T]) {
     let n = m.len();
     for j in 0..n {
-        // What is left of column j, M being symmetric: c_ij for i ≥ j, of which the first is D_j.
+        // What remains of column j, M being symmetric: c_ij for i ≥ j; the first of them is D_j.
         for i in j..n {
             let mut rest = m[j].as_ref()[i];
             for k in 0..j {
@@ -24,7 +24,7 @@ pub fn factor<T: Scalar, R: AsRef<[T]> + AsMut<[T]>>(m: &mut [R], inverse: &mut 
     }
 }
 
-/// Makes the solution x of M x = b from b, by the factors and the reciprocals of D.
+/// Solves M x = b with the factors and the reciprocals of D. `x` contains b before and the solution afterwards.
 pub(crate) fn solve<T: Scalar, R: AsRef<[T]>>(m: &[R], inverse: &[T], x: &mut [T]) {
     let n = x.len();
     for i in 0..n {
@@ -42,7 +42,7 @@ pub(crate) fn solve<T: Scalar, R: AsRef<[T]>>(m: &[R], inverse: &[T], x: &mut [T
     }
 }
 
-/// The inverse of M; `zeros` is a row of them.
+/// Returns the inverse of M; `zeros` is a row of zeros.
 pub(crate) fn inverse_of<T: Scalar, R, M>(mut m: M, zeros: &R) -> M
 where
     R: AsRef<[T]> + AsMut<[T]> + Clone,

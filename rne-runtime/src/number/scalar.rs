@@ -77,8 +77,8 @@ pub trait Scalar:
     /// `self * factor + addend`: rounded once where the compiled target has an instruction for that, else a product and
     /// a sum.
     ///
-    /// Of the scalars here only `f32` and `f64` are ever rounded once: on x86-64 built with the target feature `fma`
-    /// and on AArch64, with `std`; without it, and on Cortex-M (`f32` alone) and RISC-V, with the feature
+    /// Of the scalars here, only `f32` and `f64` can be rounded once: on x86-64 built with the target feature `fma` and
+    /// on AArch64, with `std`; without it, and on Cortex-M (`f32` alone) and RISC-V, with the feature
     /// `core_float_math`, which needs a nightly compiler, for `core` has the operation in no stable one yet. It is
     /// never a call of a library.
     ///

@@ -7,10 +7,11 @@ use num_traits::{One, Zero};
 use crate::Scalar;
 use crate::number::dual::assigning;
 
-/// A number that computes as `value` does, except for [`by_sign`](Scalar::by_sign): there s = x / √(x² + width²) stands
-/// for the sign, and ½ (p - n) s + ½ (p + n) s² for the choice between p and n: p at s = 1, n at s = -1, 0 at s = 0.
+/// A number that computes as `value` does, except for [`by_sign`](Scalar::by_sign). There s = x / √(x² + width²)
+/// replaces the sign, and ½ (p - n) s + ½ (p + n) s² replaces the choice between p and n: p at s = 1, n at s = -1, 0 at
+/// s = 0.
 ///
-/// The width stays with the left operand; a constant has none.
+/// A result has the width of its left operand; a constant has none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SmoothSign<T> {
     pub(crate) value: T,

@@ -9,7 +9,7 @@ mod of_robots;
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use of_robots::*;
 
-/// The tests themselves, where there is a runtime to compare with.
+/// Compiles the tests if there is a runtime to compare with.
 #[cfg(all(feature = "arm", feature = "std"))]
 #[doc(hidden)]
 #[macro_export]
@@ -17,7 +17,7 @@ macro_rules! __with_runtime {
     ($($tests:item)*) => { $($tests)* };
 }
 
-/// One message in place of the tests.
+/// Reports one message in place of the tests, because there is no runtime to compare with.
 #[cfg(not(all(feature = "arm", feature = "std")))]
 #[doc(hidden)]
 #[macro_export]

@@ -1,4 +1,4 @@
-//! The file of a certificate: it is written, or it is compared with the certificate of now.
+//! Writes the file of a certificate, or compares it with the certificate that would be written now.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -12,7 +12,7 @@ use crate::files::output_file::{self, Existing, is_standard_output};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TITLE, TYPED};
 
-/// The certificate on standard output or in a file, or the check of a file.
+/// Writes the certificate to standard output or to a file, or checks a file.
 pub(super) fn written(arguments: &Arguments, certificate: &Certificate) -> Result<Outcome, Failure> {
     let text = if arguments.json {
         serde_json::to_string_pretty(certificate).map_err(Failure::input)? + "\n"
@@ -54,7 +54,8 @@ fn is_ours(text: &str) -> bool {
         || text.starts_with("{\n  \"command\": \"rne certify")
 }
 
-/// Compares a file with the certificate of now, line by line, and then the code beside it with its SHA-256.
+/// Compares a file with the certificate that would be written now, line by line, and then the code beside it with its
+/// SHA-256.
 fn check(file: &Path, text: &str, certificate: &Certificate) -> Result<Outcome, Failure> {
     let shown = file.display();
     let found = match output_file::existing(file) {
@@ -73,7 +74,7 @@ fn check(file: &Path, text: &str, certificate: &Certificate) -> Result<Outcome, 
         let code = code_beside(file, certificate)?;
         return Ok(Outcome::remark(format!("{GOOD}up to date:{GOOD:#} {shown}\n{code}")));
     }
-    // other figures before other hashes
+    // the message lists differing figures before differing hashes
     let (mut differences, mut hashes): (Vec<String>, Vec<String>) = Default::default();
     let mut section = "the head";
     let (old, new): (Vec<&str>, Vec<&str>) = (found.lines().collect(), text.lines().collect());
@@ -101,7 +102,7 @@ fn check(file: &Path, text: &str, certificate: &Certificate) -> Result<Outcome, 
     ))
 }
 
-/// Compares the files of the code beside a file with the hashes of the certificate; says what was compared.
+/// Compares the files of the code beside a certificate with the hashes in the certificate. Returns what was compared.
 fn code_beside(beside: &Path, certificate: &Certificate) -> Result<String, Failure> {
     let mut remark = String::new();
     let is_code = |name: &str| [".c", ".h", ".rs"].iter().any(|end| name.ends_with(end));
@@ -126,7 +127,7 @@ fn code_beside(beside: &Path, certificate: &Certificate) -> Result<String, Failu
     Ok(remark)
 }
 
-/// The command of a certificate, as its page or its JSON says it.
+/// Returns the command by which a certificate was made, from its page or its JSON.
 fn command_of(text: &str) -> Option<&str> {
     text.lines().find_map(|line| {
         let of_json = line.strip_prefix("  \"command\": \"").and_then(|line| line.strip_suffix("\","));

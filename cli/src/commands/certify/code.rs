@@ -1,4 +1,4 @@
-//! The code that `rne certify` compiles, links with a program for a board, and runs.
+//! Writes, compiles, links and runs the code that `rne certify` measures.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -20,21 +20,21 @@ use crate::commands::toolchain;
 use crate::files::input_file::is_stream;
 use crate::outcome::Failure;
 
-/// The code of the arm in files of a folder.
+/// The code of the arm, in files of a folder.
 pub(super) struct Code {
-    /// The file with the functions, and how the certificate names it.
+    /// The name of the file with the functions, also in the certificate.
     pub(super) source: String,
     /// SHA-256 of the files.
     pub(super) hashes: BTreeMap<String, String>,
     /// The text of the code.
     pub(super) text: String,
-    /// An image for each call.
+    /// The names of the linked programs, one for each call.
     pub(super) images: Vec<String>,
     /// Options of the compiler.
     pub(super) options: Vec<String>,
 }
 
-/// Writes the code and a program of the board for each call, and compiles and links them.
+/// Writes the code and a test program for each call, compiles them and links them.
 pub(super) fn build(
     arguments: &Arguments,
     robot: &Robot,
@@ -80,11 +80,11 @@ pub(super) fn build(
     Ok(Code { source, hashes, text, images, options })
 }
 
-/// A folder in which code is compiled for a processor.
+/// A folder in which code is compiled for one processor.
 struct Build<'a> {
     folder: &'a Path,
     gcc: &'a str,
-    /// Options of gcc for the processor.
+    /// Options of gcc that choose the processor.
     flags: [&'static str; 4],
 }
 
@@ -98,10 +98,10 @@ impl Build<'_> {
         toolchain::text(command.current_dir(self.folder).args(options).args(self.flags).args(files)).map(drop)
     }
 
-    /// Compiles a source in C; returns the options as the certificate lists them.
+    /// Compiles a C source; returns the options as the certificate lists them.
     fn c(&self, source: &str, more: &[&str]) -> Result<Vec<String>, Failure> {
         let own = [&board::OPTIONS[..], &["-ffunction-sections", "-fstack-usage", "-c"]].concat();
-        // behind those of the processor, as the certificate lists them
+        // after the options of the processor, which is the order in the certificate
         self.compile(&own, &[more, &[source]].concat())?;
         Ok(owned(&[&board::OPTIONS[..], &["-ffunction-sections"], &self.flags, more].concat()))
     }
@@ -113,7 +113,7 @@ impl Build<'_> {
         let mut command = Command::new(compiler);
         command.current_dir(self.folder).args(&options);
         command.args(["--crate-type", "lib", "--crate-name", "arm", "--emit", "obj=arm.o", "lib.rs"]);
-        // rustc says what to do if the target is not installed
+        // rustc itself says what to do if the target is not installed
         toolchain::text(&mut command)?;
         Ok(owned(&options))
     }
@@ -130,14 +130,14 @@ fn owned(options: &[&str]) -> Vec<String> {
     options.iter().map(|&option| option.to_owned()).collect()
 }
 
-/// The name of the files without their endings.
+/// Returns the name of the code files without extension.
 pub(super) fn stem(arguments: &Arguments, robot: &Robot) -> String {
     let file = arguments.source.as_ref().unwrap_or(&arguments.file);
     let stem = file.file_stem().filter(|_| !is_stream(file));
     stem.map_or_else(|| robot.name.clone(), |stem| stem.to_string_lossy().into_owned())
 }
 
-/// The emitted Rust as a library with a function for C for each program.
+/// Returns the emitted Rust code as a library that has a C function for each program.
 fn rust_library(dof: usize, programs: &[Program], calls: &[Call]) -> String {
     let mut text = "#![no_std]\nmod arm;\n".to_owned();
     for (program, Call { function: symbol, arguments: arrays, lengths, .. }) in programs.iter().zip(calls) {
@@ -155,7 +155,8 @@ fn rust_library(dof: usize, programs: &[Program], calls: &[Call]) -> String {
     text
 }
 
-/// Runs the code in QEMU and compares instructions with the listing and results with those of this computer.
+/// Runs the code in QEMU. Compares the number of executed instructions with the listing, and the results with those
+/// that this computer computes.
 pub(super) fn emulate(
     core: Core,
     robot: &Robot,

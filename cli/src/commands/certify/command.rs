@@ -1,4 +1,4 @@
-//! The commands that a certificate names: its own, and the one that writes its code.
+//! The commands that a certificate contains: the one that made it, and the one that writes its code.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -9,7 +9,7 @@ use crate::commands::certify::{Arguments, Language};
 use crate::commands::emit::options;
 use crate::files::robot_file;
 
-/// The options that `rne emit` takes, too.
+/// Returns those options of the command that `rne emit` has, too.
 fn shared(arguments: &Arguments) -> String {
     let mut options = String::new();
     if let Some(prefix) = &arguments.prefix {
@@ -22,12 +22,12 @@ fn shared(arguments: &Arguments) -> String {
     options
 }
 
-/// The functions as a list for an option.
+/// Returns the functions as the value of an option.
 fn list(functions: &[Function]) -> String {
     functions.iter().map(|function| function.name()).collect::<Vec<_>>().join(",")
 }
 
-/// The command that writes the code that is certified.
+/// Returns the command that writes the certified code.
 pub(super) fn of_code(arguments: &Arguments, source: &str) -> String {
     let file = robot_file::shell(Path::new(&file_name(&arguments.file)));
     let sine = if arguments.lang == Language::Rust { " --with-sin-cos" } else { "" };
@@ -40,7 +40,8 @@ pub(super) fn of_code(arguments: &Arguments, source: &str) -> String {
     )
 }
 
-/// The command that makes the certificate: the file by its name, so that the page is the same in each folder.
+/// Returns the command that makes the certificate. It names the robot file without its folder, so that the certificate
+/// is the same in each folder.
 pub(super) fn of_certificate(arguments: &Arguments) -> String {
     let lang = arguments.lang.name();
     let mut function = format!("--function {}", list(&arguments.programs()));

@@ -1,4 +1,4 @@
-//! The measurements of a function: its cost, its run in QEMU, and its error.
+//! Measures a function: its cost, its run in QEMU, and its error.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -17,7 +17,7 @@ use crate::commands::certify::subject::Subject;
 use crate::commands::toolchain;
 use crate::outcome::Failure;
 
-/// The code of a robot, compiled in a folder.
+/// The code of a robot, compiled in a folder, with the tools that measure it.
 pub(super) struct Measurement<'a> {
     pub(super) arguments: &'a Arguments,
     pub(super) robot: &'a Robot,
@@ -28,7 +28,7 @@ pub(super) struct Measurement<'a> {
 }
 
 impl Measurement<'_> {
-    /// Measures a function by its image.
+    /// Measures a function in its compiled image.
     pub(super) fn of(&self, subject: &Subject<'_>, call: &Call, image: &str) -> Result<Certified, Failure> {
         let &Self { arguments, robot, prefix, objdump, folder, has_qemu } = self;
         let cpu = arguments.cpu;
@@ -47,9 +47,9 @@ impl Measurement<'_> {
     }
 }
 
-/// The cost of a call: of the function and of those that it calls.
+/// Computes the cost of a call: that of the function and of all functions that it calls.
 fn cost(core: Core, image: &Image, symbol: &str, callees: &[String]) -> Result<Cost, NoFigures> {
-    // the compiler makes copies of static functions, with a point in their names
+    // the compiler makes copies of static functions, which have a point and a suffix after the name
     let is_of = |name: &str, own: &String| name.strip_prefix(own).is_some_and(|s| s.is_empty() || s.starts_with('.'));
     let may_be_called = |name: &str| name.contains("sin_cos") || callees.iter().any(|own| is_of(name, own));
     let figures = image.straight_but_for(symbol, may_be_called)?;

@@ -1,4 +1,4 @@
-//! Options of `rne certify` that are refused together.
+//! Refuses options of `rne certify` that do not fit together.
 
 use rne_codegen::{Argument, Function, Shape};
 
@@ -8,12 +8,12 @@ use crate::palette::TYPED;
 
 /// Checks that the options fit together, and that the gain and the period of an observer are above zero.
 pub(super) fn fit_together(arguments: &Arguments) -> Result<(), Failure> {
-    // rotors are in Rust, too
+    // all these options need C, except `--rotors`, which comes first
     let [_, of_c @ ..] = arguments.flags();
     if let Some((option, _)) = of_c.into_iter().find(|(_, is_given)| *is_given && arguments.lang != Language::C) {
         return Err(usage_error!("{TYPED}{option}{TYPED:#} is for {TYPED}--lang c{TYPED:#}"));
     }
-    // a list of options that choose code: others write files or stop the compiler
+    // only options that choose how code is compiled are allowed: others write files or stop the compiler
     let chooses = |word: &str| ["-f", "-m", "-O", "-W", "--param", "-C"].iter().any(|start| word.starts_with(start));
     let words = arguments.cc_options.split_whitespace();
     let writes = |word: &str| ["-fdump", "-flto", "-fsyntax-only"].iter().any(|start| word.starts_with(start));
@@ -54,7 +54,7 @@ pub(super) fn fit_together(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     for (option, value) in [("--gain", arguments.gain), ("--period", arguments.period)] {
-        // powers of ten between which the numbers of single precision are far from their ends
+        // within this range, numbers of single precision are far from underflow and overflow
         if !(1e-6..=1e6).contains(&value) {
             return Err(usage_error!("{option} is {value}; it must be between 1e-6 and 1e6"));
         }

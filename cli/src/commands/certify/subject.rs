@@ -1,4 +1,5 @@
-//! Functions that `rne certify` certifies: a program, an update of the observer, friction or limits of the joints.
+//! The kinds of functions that `rne certify` measures: a program, an update of the observer, friction or limits of the
+//! joints.
 
 use rne_certify::accuracy::{self, Error, Sample};
 use rne_certify::board::{self, Call};
@@ -12,17 +13,17 @@ use rne_model::{JointKind, Limits, Robot};
 use crate::outcome::Failure;
 use crate::palette::TYPED;
 
-/// A function of the code.
+/// A function of the code that is certified.
 pub(super) enum Subject<'a> {
     Program(&'a Program),
     /// An update of the observer, which calls the program.
     Observer(&'a Program, LowPass),
-    /// Friction or limits, which belong to the joints alone.
+    /// Friction or limits, which depend only on the joints.
     Joints(JointFunction),
 }
 
 impl Subject<'_> {
-    /// Its name in the code, without the prefix.
+    /// Returns the name of the function in the code, without the prefix.
     pub(super) fn name(&self) -> &str {
         match self {
             Self::Program(program) => program.function.name(),
@@ -31,7 +32,8 @@ impl Subject<'_> {
         }
     }
 
-    /// The other functions that it may call beside the sine, without their prefix.
+    /// Returns the other functions that it may call, without their prefix; calls of the sine function are always
+    /// allowed.
     pub(super) fn callees(&self) -> Vec<&str> {
         match self {
             Self::Program(_) => Vec::new(),
@@ -40,7 +42,7 @@ impl Subject<'_> {
         }
     }
 
-    /// Why there is no certificate of it.
+    /// Makes the error that says why the function has no certificate.
     pub(super) fn refused(&self, fault: &NoFigures) -> Failure {
         match (self, fault) {
             (Self::Program(program), NoFigures::NotStraight(..)) if program.function == Function::ActuatorTorques => {
@@ -53,8 +55,8 @@ impl Subject<'_> {
         }
     }
 
-    /// The call on the board; an error where a program takes other arguments than arrays of joints, or returns no
-    /// plain array.
+    /// Returns the call in the test program; an error where a program takes other arguments than arrays of joints, or
+    /// does not return a plain array.
     pub(super) fn call(&self, prefix: &str, robot: &Robot) -> Result<Call, Failure> {
         let dof = robot.dof();
         if dof > board::MOST_JOINTS {
@@ -70,7 +72,7 @@ impl Subject<'_> {
         })
     }
 
-    /// The numbers that the call writes at a state of the board, with the operations of the code.
+    /// Computes the numbers that the call writes at a state of the test program, with the same operations as the code.
     pub(super) fn expected(&self, robot: &Robot, number: u32) -> Option<Vec<f32>> {
         let sin_cos = rne_emit::sin_cos_f32;
         match self {
@@ -84,7 +86,7 @@ impl Subject<'_> {
         }
     }
 
-    /// How the function was compared with the recursive Newton-Euler algorithm.
+    /// Returns sentences on how the function was compared with the recursive Newton-Euler algorithm.
     pub(super) fn proof(&self) -> Vec<String> {
         match self {
             Self::Program(program) | Self::Observer(program, _) => {
@@ -118,7 +120,7 @@ impl Subject<'_> {
         }
     }
 
-    /// The error over a sample.
+    /// Computes the error of the function over a sample of states.
     pub(super) fn accuracy(&self, robot: &Robot, sample: Sample) -> Result<Accuracy, Failure> {
         let errors = self.errors(robot, sample);
         let errors = errors.ok_or_else(|| Failure::input("the interpreter cannot run this function"))?;
@@ -155,7 +157,7 @@ impl Subject<'_> {
         }
     }
 
-    /// How the states are chosen.
+    /// Returns a sentence on how the states are chosen.
     fn how(&self, Sample { states, seed }: Sample) -> String {
         let random = format!("The function runs at {states} random states (seed {seed}).");
         match self {
@@ -180,7 +182,7 @@ impl Subject<'_> {
         }
     }
 
-    /// The ranges of the states, a line per joint.
+    /// Returns the ranges of the states, a line for each joint.
     fn ranges(&self, robot: &Robot) -> Vec<String> {
         let range = |(index, ((range, joint), limits)): (usize, ((accuracy::Range, &rne_model::Joint), Limits))| {
             let (unit, torque_is, torque_unit) = match joint.row.kind {
@@ -216,7 +218,7 @@ impl Subject<'_> {
     }
 }
 
-/// The arguments that are the same at each state, in words.
+/// Describes the arguments that are the same at each state.
 fn fixed(function: Function) -> String {
     let parts = function.arguments().iter().flat_map(|argument| argument.parts());
     let clauses: Vec<String> = parts.filter_map(|part| Some(accuracy::same(part.name)?.1)).collect();
@@ -234,12 +236,12 @@ fn fixed(function: Function) -> String {
     words
 }
 
-/// A number that a program returns: its place in the result, its joint and its unit; `SI` for an element of a matrix,
-/// whose row and column have units of their own.
+/// Describes a number that a program returns: its place in the result, its joint and its unit. The unit is `SI` for an
+/// element of a matrix whose rows and columns have different units.
 fn named(program: &Program, robot: &Robot, name: Name, place: &str) -> (String, Option<usize>, &'static str) {
     let joint = name.joint.checked_sub(1);
     let kind = joint.and_then(|joint| robot.joints.get(joint)).map_or(JointKind::Revolute, |joint| joint.row.kind);
-    // an index of what one link exerts on another names the link
+    // the index of a force that one link exerts on the next is that of a link
     let is_of_pair = matches!(name.quantity, Quantity::JointForce | Quantity::JointMoment);
     let is_of_matrix = name.by.is_some() || name.indices != [0; 2] && !is_of_pair;
     let unit = match name.quantity {
@@ -254,7 +256,7 @@ fn named(program: &Program, robot: &Robot, name: Name, place: &str) -> (String, 
             JointKind::Prismatic => "N s",
         },
         Quantity::CentroidalMoment if program.function.takes(Argument::BaseTwist) => "N m s",
-        // a distance of two places, or a product of axes
+        // an equation of a loop is a distance or a scalar product of axes
         Quantity::Residual => "m or 1",
         Quantity::ActuatorTorque | Quantity::MomentumRate => kind.effort_unit(),
         quantity => match quantity.unit(kind) {
@@ -262,7 +264,8 @@ fn named(program: &Program, robot: &Robot, name: Name, place: &str) -> (String, 
             unit => unit,
         },
     };
-    // these count tips and equations, or are of the base; elements of a matrix have a row and a column
+    // indices of these results count tips, equations or components of the base, not joints; elements of a matrix have a
+    // row and a column
     let is_of_no_joint = is_of_matrix
         || matches!(
             name.quantity,
@@ -275,7 +278,7 @@ fn named(program: &Program, robot: &Robot, name: Name, place: &str) -> (String, 
     (format!("`{place}`"), joint.filter(|_| !is_of_no_joint), unit)
 }
 
-/// Sines or cosines of the positions at the states of the board, in C.
+/// Writes the sines or the cosines of the positions at the states of the test program, as C.
 fn turns(dof: usize, name: &str, of: impl Fn(f32) -> f32) -> String {
     let list = |numbers: Vec<String>| numbers.join(", ");
     let row = |number| {
@@ -289,7 +292,8 @@ fn turns(dof: usize, name: &str, of: impl Fn(f32) -> f32) -> String {
     )
 }
 
-/// The call of a function with arrays of a state of the board, and with the arrays that are the same at each state.
+/// Returns the call of a function whose arguments are arrays of a state of the test program, and arrays that are the
+/// same at each state.
 fn program_call(program: &Program, prefix: &str, passive: &[f32]) -> Call {
     let function = program.function;
     let list = |numbers: &[f32]| numbers.iter().map(|x| format!("{x:?}f")).collect::<Vec<_>>().join(", ");
@@ -299,7 +303,7 @@ fn program_call(program: &Program, prefix: &str, passive: &[f32]) -> Call {
         let ArgumentArray { name, row, is_number, .. } = &array;
         let (kind, given) = match (*name, row) {
             ("q" | "qd" | "qdd", _) => ("const float *".to_owned(), format!("s->{name}")),
-            // the third array of a state
+            // a state of the test program has three arrays per joint; these arguments use the third
             ("tau" | "multipliers", _) => ("const float *".to_owned(), "s->qdd".to_owned()),
             ("sin" | "cos", _) => {
                 let of = |q| rne_emit::sin_cos_f32(q);

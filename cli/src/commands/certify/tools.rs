@@ -1,4 +1,4 @@
-//! The tools of `rne certify`: a compiler with its `objdump`, and QEMU and cppcheck if they are installed.
+//! The tools of `rne certify`: a compiler with its `objdump`, and, if they are installed, QEMU and cppcheck.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -32,7 +32,7 @@ impl Tool {
         }
     }
 
-    /// The sentence for a certificate without the tool.
+    /// Returns the note on a certificate that was made without the tool.
     fn is_missing(self) -> String {
         let what = match self {
             Self::Qemu => "does not run the code",
@@ -46,11 +46,12 @@ impl Tool {
     }
 }
 
-/// The versions of QEMU and cppcheck, and a note for each that is not installed; an error for one that is required.
+/// Returns the versions of QEMU and cppcheck, and notes on those that are not installed; an error if a missing one is
+/// required.
 pub(super) fn versions(lang: Language, required: &[Tool]) -> Result<([Option<String>; 2], String), Failure> {
     let mut notes = String::new();
     let mut version = |tool: Tool| {
-        // the rules are for C
+        // the rules of MISRA C are only for C
         if tool == Tool::Cppcheck && lang != Language::C {
             return Ok(None);
         }
@@ -69,7 +70,7 @@ pub(super) fn versions(lang: Language, required: &[Tool]) -> Result<([Option<Str
     Ok((versions, notes))
 }
 
-/// The compiler, its `objdump`, and the versions of both and of rne.
+/// Returns the compiler, its `objdump`, and the versions of both and of rne.
 pub(super) fn compiler(arguments: &Arguments) -> Result<(String, String, BTreeMap<String, String>), Failure> {
     let compiler = arguments.cc.clone().unwrap_or_else(|| arguments.lang.compiler().to_owned());
     let version = match arguments.lang {

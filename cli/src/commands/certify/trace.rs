@@ -1,4 +1,4 @@
-//! The trace that the independent checker reads: the table of the arm, and the exact expressions of the constants.
+//! Writes the trace for the independent checker: the table of the arm, and the exact expressions of the constants.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -21,7 +21,7 @@ use crate::palette::{TITLE, TYPED};
 /// The functions that the checker computes.
 const CHECKED: [Function; 3] = [Function::InverseDynamics, Function::BiasTorques, Function::GravityTorques];
 
-/// Refuses evidence of code that the checker does not read.
+/// Refuses options for code that the checker cannot read.
 pub(super) fn check_options(arguments: &Arguments, functions: &[Function]) -> Result<(), Failure> {
     if arguments.lang == Language::C && functions.iter().any(|function| CHECKED.contains(function)) {
         return Ok(());
@@ -33,7 +33,7 @@ pub(super) fn check_options(arguments: &Arguments, functions: &[Function]) -> Re
     ))
 }
 
-/// The keys of the robot file that the checker does not support.
+/// Returns the keys of the robot file that the checker does not support.
 fn not_supported(robot: &Robot) -> Vec<&'static str> {
     let keys = [
         ("couplings", robot.has_couplings()),
@@ -44,7 +44,7 @@ fn not_supported(robot: &Robot) -> Vec<&'static str> {
     keys.into_iter().filter(|(_, is_there)| *is_there).map(|(key, _)| key).collect()
 }
 
-/// Writes the C code, its header and the trace of its constants; returns a note where the checker does not support the
+/// Writes the C code, its header and the trace of its constants. Returns a note if the checker does not support the
 /// robot.
 pub(super) fn write(
     arguments: &Arguments,
@@ -104,7 +104,8 @@ pub(super) fn write(
     ))
 }
 
-/// Whether nothing is at the place of a file, or this text, or what rne wrote, or any text that `force` gives up.
+/// Returns whether a file may be written at a path: nothing is there, the same text is there, rne wrote the text, or
+/// `force` allows to overwrite it.
 fn may_be_replaced(path: &Path, text: &str, force: bool) -> bool {
     match output_file::existing(path) {
         Existing::Nothing => true,
@@ -115,7 +116,7 @@ fn may_be_replaced(path: &Path, text: &str, force: bool) -> bool {
     }
 }
 
-/// The constants of a function with their expressions.
+/// Returns the constants of a function with their exact expressions.
 fn function(program: &Program, derivation: &Derivation, prefix: &Prefix) -> Value {
     let steps: Vec<Value> = derivation.steps.iter().map(step).collect();
     let constants: serde_json::Map<String, Value> = derivation
@@ -132,8 +133,8 @@ fn function(program: &Program, derivation: &Derivation, prefix: &Prefix) -> Valu
     json!({"function": format!("{prefix}_{}", program.function), "steps": steps, "constants": constants})
 }
 
-/// The SHA-256 of each function of a source that the checker does not compute: of its text from the parameters on,
-/// without comments and with one blank between words.
+/// Returns the SHA-256 of each function of a source that the checker does not compute: of its text from the parameters
+/// on, without comments and with one blank between words.
 fn texts(source: &str, prefix: &str, real: &str, checked: &[String]) -> BTreeMap<String, String> {
     let heads = ["void", real, &format!("static {real}")].map(|kind| format!("\n{kind} {prefix}_"));
     let functions = rne_emit::without_c_tests(source).split("\n}\n").filter_map(|part| {
@@ -146,7 +147,7 @@ fn texts(source: &str, prefix: &str, real: &str, checked: &[String]) -> BTreeMap
     functions.filter(|(name, _)| !checked.contains(name)).collect()
 }
 
-/// A step: its operator, and the places of its operands. Numbers are texts, which keep their digits.
+/// Returns a step as JSON: its operator, and the indices of its operands. Numbers are texts, which keep all digits.
 fn step(step: &ExactStep) -> Value {
     match step {
         ExactStep::Decimal(value) => json!(["number", format!("{value:?}")]),
@@ -160,10 +161,10 @@ fn step(step: &ExactStep) -> Value {
     }
 }
 
-/// The Denavit-Hartenberg table with the links, in the numbers that the compiler reads.
+/// Returns the Denavit-Hartenberg table with the links as JSON, with the numbers that the compiler uses.
 fn table(robot: &Robot) -> Value {
     let text = |x: f64| format!("{x:?}");
-    // an angle within some units in the last place of a right angle is this right angle
+    // an angle within some units in the last place of a right angle is taken for this right angle
     let angle = |angle: &Angle| match angle.right {
         Some(QuarterTurns::Zero) => text(0.0),
         Some(QuarterTurns::One) => text(std::f64::consts::FRAC_PI_2),
@@ -198,7 +199,7 @@ fn table(robot: &Robot) -> Value {
             }
             if is_tree {
                 let placement = joint.branch.map_or(Transform::IDENTITY, |branch| branch.placement);
-                // counted from 1; 0 is the base
+                // joints are counted from 1 here, so that 0 is the base
                 row["parent"] = json!(robot.parent(index).map_or(0, |parent| parent + 1).to_string());
                 row["xyz"] = json!(placement.xyz.map(text));
                 row["rpy"] = json!(placement.rpy.each_ref().map(angle));

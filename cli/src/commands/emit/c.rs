@@ -1,4 +1,4 @@
-//! `rne emit --lang c`: the source, its header, and the functions that are added on request.
+//! `rne emit --lang c`: writes the source, its header, and the functions that options add.
 
 use std::path::{Path, PathBuf};
 
@@ -13,19 +13,19 @@ use crate::files::output_file::is_standard_output;
 use crate::outcome::Failure;
 use crate::palette::TYPED;
 
-/// A header's file.
+/// The file of a header.
 pub(crate) struct Header {
     pub(crate) path: PathBuf,
-    /// Without the folder, as the source includes it.
+    /// The file name without the folder, as the source includes it.
     pub(crate) name: String,
 }
 
-/// The header beside a source of C.
+/// Returns the header beside a C source.
 pub(crate) fn header_beside(source: &Path) -> Result<Header, Failure> {
     let extension = source.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     let path = source.with_extension("h");
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
-    // what ends an `#include "…"`
+    // these characters would end an `#include "…"` or change its meaning
     let name = name.filter(|name| !name.contains(['"', '\\', '\n', '\r', char::REPLACEMENT_CHARACTER]));
     match name {
         _ if extension.is_empty() && !is_standard_output(source) => Err(usage_error!(
@@ -47,7 +47,7 @@ pub(crate) fn header_beside(source: &Path) -> Result<Header, Failure> {
     }
 }
 
-/// The contents of a file of C beside the programs, and the robot file that it names.
+/// What the command line asks for in a C file besides the programs, and the robot file that its heading names.
 #[allow(clippy::struct_excessive_bools)] // options of commands
 pub(crate) struct Request<'a> {
     pub(crate) file: &'a Path,
@@ -65,7 +65,7 @@ pub(crate) struct Request<'a> {
     pub(crate) ascii: bool,
 }
 
-/// The code, with the tests that are asked for.
+/// Writes the C code, with tests if they are asked for.
 pub(crate) fn c_code(request: &Request<'_>, robot: &Robot, programs: &[Program]) -> Result<CCode, Failure> {
     let &Request { file, precision, limits, names, casadi, acados, runge_kutta, .. } = request;
     let prefix = request.prefix.cloned().unwrap_or_else(|| Prefix::of(robot));
@@ -103,7 +103,7 @@ pub(crate) fn c_code(request: &Request<'_>, robot: &Robot, programs: &[Program])
     Ok(if request.ascii { code.in_ascii() } else { code })
 }
 
-/// Kernels in PTX, or else a header for CUDA and C++.
+/// Writes kernels in PTX, or a header for CUDA and C++.
 pub(super) fn for_gpu(
     language: Language,
     request: &Request<'_>,
@@ -120,7 +120,8 @@ pub(super) fn for_gpu(
     text.map_err(|error| too_large(request, &error))
 }
 
-/// The robot file of a request. Without its folder: the same file gives the same bytes wherever it is.
+/// Returns the origin of the code for its heading: the robot file without its folder, so that the same file gives the
+/// same code everywhere.
 fn origin(request: &Request<'_>) -> Origin {
     let name = request.file.file_name().unwrap_or_default().to_string_lossy();
     let name = if is_stream(request.file) { "on standard input" } else { &*name };
@@ -132,7 +133,7 @@ fn too_large(request: &Request<'_>, error: &ConstantTooLarge) -> Failure {
     input_error!("{file}: {error}. {TYPED}rne emit --real double{TYPED:#} can store this number")
 }
 
-/// The friction of the joints; an error says where to write what is missing.
+/// Returns the friction of the joints; an error says where to write missing numbers.
 pub(crate) fn friction(file: &Path, robot: &Robot) -> Result<Vec<JointFriction>, Failure> {
     JointFriction::of(robot).map_err(|why| {
         let file = file.display();

@@ -1,4 +1,4 @@
-//! The files of generated code: they are written, or compared.
+//! Writes the files of generated code, or compares them with existing ones.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -10,20 +10,20 @@ use crate::files::output_file::{self, Existing};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TYPED};
 
-/// A file with the text that it should have.
+/// A file and the text that it should contain.
 pub(super) struct Generated {
     pub(super) path: PathBuf,
     pub(super) text: String,
 }
 
-/// Whether a text has the mark of rne; the title before the mark may take several lines.
+/// Returns whether a text has the mark that rne generated it; the title before the mark may have several lines.
 fn is_ours(text: &str) -> bool {
     let mut heading = text.lines().take_while(|line| line.starts_with("//"));
     let is_mark = |line: &str| line.starts_with(rne_emit::GENERATED);
     heading.any(|line| ["//! ", "// "].iter().any(|mark| line.strip_prefix(mark).is_some_and(is_mark)))
 }
 
-/// Writes all files, or none if one of them is another's.
+/// Writes all files, or none if rne did not generate one of the existing files.
 pub(super) fn write(arguments: &Arguments, files: &[Generated]) -> Result<Outcome, Failure> {
     files.iter().try_for_each(|file| may_be_written(arguments, &file.path))?;
     for path in files.iter().map(|file| &file.path) {
@@ -58,7 +58,8 @@ fn may_be_written(arguments: &Arguments, out: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Compares all files. The message names the first that differs, and the command that writes them all.
+/// Compares all files with the generated code. The message names the first file that differs, and the command that
+/// writes all of them.
 pub(super) fn check(arguments: &Arguments, out: &Path, files: &[Generated]) -> Result<Outcome, Failure> {
     let mut stale: Option<String> = None;
     let mut force = "";

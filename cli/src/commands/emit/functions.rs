@@ -1,4 +1,4 @@
-//! The functions that `rne emit` writes, and their programs.
+//! Chooses the functions that `rne emit` writes, and compiles their programs.
 
 use std::fmt::Write as _;
 
@@ -13,7 +13,7 @@ use crate::outcome::Failure;
 use crate::palette::TYPED;
 use crate::values::choice::{self, FunctionOrAll};
 
-/// The functions asked for, each once, in the order of the traits.
+/// Returns the functions that the command line asks for, each once, in the order of the traits.
 fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
     let asked = &arguments.functions;
     if asked.contains(&FunctionOrAll::All) {
@@ -22,15 +22,15 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
     let (is_for_casadi, has_frames) = (arguments.casadi && robot.closed.is_empty(), !arguments.frames.is_empty());
     let is_asked = |function: &Function| match asked.as_slice() {
         _ if (arguments.acados || arguments.runge_kutta) && *function == Function::ForwardDynamics => true,
-        // with its derivatives
+        // the derivatives of a Runge-Kutta step need this function
         [] if arguments.runge_kutta && *function == Function::ForwardDynamicsDerivatives => true,
-        // each option adds its functions
+        // without `--functions`, each of these options adds the functions that it needs
         [] if arguments.runge_kutta || arguments.rollout || is_for_casadi || has_frames => match function {
             Function::InverseDynamics => is_for_casadi,
             Function::ForwardDynamics => is_for_casadi || arguments.rollout,
             function => has_frames && function.of_frame().is_some(),
         },
-        // tips are there for their wrenches
+        // a robot with named tips gets functions that take a wrench at each tip
         [] => {
             Function::TORQUES.contains(function)
                 || matches!(function, Function::ClosureStep | Function::InverseDynamicsOfLoops)
@@ -38,7 +38,7 @@ fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
         }
         asked => asked.contains(&FunctionOrAll::One(*function)),
     };
-    // a function by its name is refused by the compiler, which says why the robot has it not
+    // a function that is named is kept: the compiler refuses it, and says why the robot does not have it
     let of_robot: Vec<Function> = match asked.as_slice() {
         [] if arguments.runge_kutta => rne_codegen::functions_of(robot).chain([Function::ForwardDynamics]).collect(),
         [] => rne_codegen::functions_of(robot).collect(),
@@ -66,9 +66,9 @@ fn compiled(arguments: &Arguments, compiler: &Compiler<'_>, function: Function) 
     })
 }
 
-/// The programs that are written: of the tip or the whole robot, then of the frames.
+/// Compiles the programs: first those of the tip or the whole robot, then those of the frames.
 pub(super) fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failure> {
-    // kernels of a batch want the fewest instructions
+    // kernels that compute many states need few instructions, not a short dependency chain
     let target = if arguments.lang == Language::Ptx { Target::Throughput } else { Target::Latency };
     let compiler = Compiler::new(&arguments.file, robot).for_target(target);
     if arguments.rollout {
@@ -102,7 +102,7 @@ pub(super) fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Progr
     in_order(arguments.order, arguments.form(), programs)
 }
 
-/// Programs with their statements in an order.
+/// Puts the statements of programs in an order.
 pub(crate) fn in_order(order: Order, form: Form, programs: Vec<Program>) -> Result<Vec<Program>, Failure> {
     match (order, form) {
         (Order::Formulas, _) => Ok(programs),
@@ -114,7 +114,7 @@ pub(crate) fn in_order(order: Order, form: Form, programs: Vec<Program>) -> Resu
     }
 }
 
-/// The frames asked for, or those of the list `frames`.
+/// Returns the frames that the command line names, or those of the list `frames`.
 fn frames(arguments: &Arguments, robot: &Robot) -> Result<Vec<FrameId>, Failure> {
     if arguments.frames.is_empty() {
         return Ok((0..robot.frames.len()).map(FrameId::Named).collect());
@@ -122,7 +122,7 @@ fn frames(arguments: &Arguments, robot: &Robot) -> Result<Vec<FrameId>, Failure>
     arguments.frames.iter().map(|name| robot.frame(name).map_err(Failure::usage)).collect()
 }
 
-/// Refuses rollouts of a robot whose own equations of motion no kernel integrates.
+/// Refuses rollouts of a robot whose equations of motion no kernel can integrate.
 fn can_be_rolled_out(arguments: &Arguments, robot: &Robot) -> Result<(), Failure> {
     if !robot.closed.is_empty() {
         return Err(usage_error!(

@@ -1,4 +1,4 @@
-//! Options of `rne emit`: what they refuse, and the command that repeats them.
+//! Checks the options of `rne emit`, and writes the command that repeats a call.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -10,7 +10,7 @@ use crate::files::robot_file;
 use crate::outcome::Failure;
 use crate::palette::TYPED;
 
-/// Refuses a file whose name says that it is in another language.
+/// Refuses an output file whose extension is that of another language.
 pub(super) fn is_named_for(lang: Language, out: &Path) -> Result<(), Failure> {
     let extension = out.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     let (is_other, other) = match lang {
@@ -35,7 +35,7 @@ pub(super) fn is_named_for(lang: Language, out: &Path) -> Result<(), Failure> {
     ))
 }
 
-/// Refuses a parameter without a name, or named twice.
+/// Refuses an empty name of a parameter, or one that is there twice.
 pub(super) fn is_named_once(run_time: &[String]) -> Result<(), Failure> {
     if run_time.iter().any(String::is_empty) {
         return Err(Failure::usage("--run-time names no parameter; write --run-time NAME,NAME"));
@@ -44,7 +44,7 @@ pub(super) fn is_named_once(run_time: &[String]) -> Result<(), Failure> {
     twice.map_or(Ok(()), |(_, name)| Err(usage_error!("--run-time names {name} twice")))
 }
 
-/// Refuses options that code in the language does not have.
+/// Refuses options that do not exist for the language.
 pub(super) fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
     use Language::{C, Cuda, Ptx, Rust};
     let options: [(&str, bool, &[Language], &str); 11] = [
@@ -85,7 +85,7 @@ pub(super) fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure>
     ))
 }
 
-/// The command that writes `out`.
+/// Returns the command that writes `out`.
 pub(super) fn command(arguments: &Arguments, out: &Path) -> String {
     let mut command = format!("rne emit {} --lang {}", robot_file::shell(&arguments.file), arguments.lang.name());
     if let Some(real) = arguments.real {
@@ -128,7 +128,7 @@ pub(super) fn command(arguments: &Arguments, out: &Path) -> String {
     command
 }
 
-/// The option of an order, where it is not the usual one.
+/// Returns the option for an order of statements, if it is not the default.
 pub(crate) fn of_order(order: Order) -> String {
     if order == Order::Formulas { String::new() } else { format!(" --order {order}") }
 }

@@ -1,4 +1,5 @@
-//! `rne eval --trace --compare`: somebody's worksheet beside the right one, and where they first differ.
+//! `rne eval --trace --compare`: compares a worksheet that somebody filled in with the right one, and finds the first
+//! difference.
 
 use std::fmt::Write as _;
 
@@ -14,16 +15,16 @@ use crate::render::worksheet::{is_formula, matrix, triple};
 use crate::terminal;
 use crate::values::numbers::fixed;
 
-/// How far a hand may be off, and whether a program reads the answer.
+/// How values are compared: the accepted error, and whether the answer is JSON for a program.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Manner {
     pub(crate) digits: u8,
     pub(crate) json: bool,
-    /// Whether the right values are not told.
+    /// Whether the right values stay hidden.
     pub(crate) hint: bool,
 }
 
-/// The answer as JSON has it.
+/// The answer in JSON.
 #[derive(Serialize)]
 struct Reply {
     agrees: bool,
@@ -208,7 +209,7 @@ fn introduced(reach: Reach, previous: Option<Reach>) -> &'static str {
     }
 }
 
-/// Numbers that a formula takes.
+/// Writes the numbers that a formula uses.
 fn inputs(line: &Line) -> String {
     let mut text = String::new();
     let width = line.inputs.iter().map(|input| crate::render::layout::width(&input.symbol)).max().unwrap_or(0);
@@ -228,7 +229,7 @@ fn inputs(line: &Line) -> String {
     text
 }
 
-/// The terms of a formula, and their sum.
+/// Writes the terms of a formula, and their sum.
 fn terms(line: &Line) -> String {
     if line.terms.len() < 2 {
         return String::new();

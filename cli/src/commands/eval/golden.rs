@@ -1,4 +1,4 @@
-//! Golden values: what the runtime, which knows nothing of generated code, computes at states that are the same in each
+//! Golden values: results of the runtime, which is independent of generated code, at states that are the same in each
 //! run.
 
 use std::borrow::Cow;
@@ -13,11 +13,11 @@ use crate::values::definite::least_resistance;
 use crate::values::random::{self, rounding};
 use crate::values::state::State;
 
-/// Number of states with which emitted code is compared.
+/// Number of states at which emitted code is compared with the runtime.
 const STATES: usize = 4;
 
-/// The states at which emitted code is tested, with what its functions return there. The parameters that are known at
-/// run time have other values than in the file.
+/// Returns the states at which emitted code is tested, with the expected results of its functions. Run-time parameters
+/// have other values there than in the file.
 pub(crate) fn of_programs(robot: &Robot, programs: &[Program], precision: Precision) -> Result<Vec<Golden>, Failure> {
     let (random, rounded) = (random::of(precision), rounding(precision));
     let in_file = robot.run_time.values(robot);
@@ -46,7 +46,8 @@ pub(crate) fn of_programs(robot: &Robot, programs: &[Program], precision: Precis
         .collect()
 }
 
-/// The changes that a step of the Runge-Kutta method makes, and its derivatives, for code with accelerations.
+/// Computes the changes that a step of the Runge-Kutta method makes, and its derivatives, for code that has
+/// accelerations.
 fn steps(
     State { q, qd, tau, .. }: &State,
     arm: &DynArm,
@@ -67,7 +68,7 @@ fn steps(
     Ok(steps.map(|numbers| if numbers.iter().all(|number| number.is_finite()) { numbers } else { Vec::new() }))
 }
 
-/// The arm with the frame of a program in the place of the tip, if the program has one.
+/// Returns the arm with the frame of a program in place of the tip, if the program has a frame.
 fn at_frame<'a>(robot: &Robot, program: &Program, arm: &'a DynArm) -> Cow<'a, DynArm> {
     let frame = program.frame.as_deref().and_then(|name| robot.frame(name).ok());
     match frame.and_then(|frame| arm.clone().at_frame(robot.fixed_frame(frame))) {
@@ -76,8 +77,8 @@ fn at_frame<'a>(robot: &Robot, program: &Program, arm: &'a DynArm) -> Cow<'a, Dy
     }
 }
 
-/// How large the terms of a function are: lengths and directions are about one, dynamics has the torques on a base that
-/// moves in all directions under a gravity that no axis is parallel to.
+/// Estimates the size of the terms in a function, to which errors are relative. Lengths and directions are about 1; for
+/// dynamics it is the largest torque on a base that moves in all directions, with gravity parallel to no axis.
 fn size(function: Function, state: &State, arm: &DynArm) -> Result<f64, Failure> {
     if function.entry().is_geometry {
         return Ok(1.0);
@@ -91,8 +92,8 @@ fn size(function: Function, state: &State, arm: &DynArm) -> Result<f64, Failure>
     Ok(torques.iter().filter(|torque| torque.is_finite()).fold(0.0, |largest, torque| torque.abs().max(largest)))
 }
 
-/// The pivot of the mass matrix below which accelerations have too few digits to compare. They lose all digits at a
-/// joint, or a base, that has hardly any inertia while the joints after it move freely.
+/// Returns the pivot of the mass matrix below which accelerations lose too many digits to be compared. This happens at
+/// a joint, or a base, that hardly any inertia resists while the distal joints move freely.
 const fn least_of(precision: Precision) -> f64 {
     match precision {
         Precision::Single => 1e-3,
@@ -100,16 +101,16 @@ const fn least_of(precision: Precision) -> f64 {
     }
 }
 
-/// Whether contacts can hold an arm as they should, by what its forward dynamics in contact returns: redundant ones
-/// cannot where their tips would have to move in different ways, and their forces are large.
+/// Returns whether the contacts can be fulfilled, from the result of forward dynamics in contact. Redundant contacts
+/// cannot if they require different motions of their tips; the forces are then large.
 fn can_hold(numbers: &[f64], arm: &DynArm) -> bool {
-    /// Largest acceleration of a tip, m/s² or rad/s².
+    /// Largest accepted acceleration of a tip in contact, m/s² or rad/s².
     const MOST: f64 = 1e-3;
     let forces = numbers.len().saturating_sub(6 * arm.tips().len());
     numbers[forces..].iter().all(|force| force.abs() * Contact::DAMPING < MOST)
 }
 
-/// Every argument by its name in emitted code.
+/// Returns every argument with its name in emitted code.
 fn arguments(state: &State, parameters: Vec<f64>) -> Vec<(&'static str, Vec<f64>)> {
     let (sin, cos) = state.q.iter().map(|&q| Scalar::sin_cos(q)).unzip();
     let wrench = state.wrench.unwrap_or_else(Wrench::zero);
@@ -140,14 +141,14 @@ fn arguments(state: &State, parameters: Vec<f64>) -> Vec<(&'static str, Vec<f64>
     ]
 }
 
-/// Reads how many states a golden file is to have.
+/// Reads the number of states that a golden file should have.
 pub(crate) fn states(text: &str) -> Result<u16, String> {
     let states = text.parse().ok().filter(|&states| states > 0);
     states.ok_or_else(|| format!("a golden file has 1 to {} states, such as --golden 100", u16::MAX))
 }
 
-/// A golden file: torques of a robot at `states` states; its heading lists the settings that differ from the robot
-/// file.
+/// Writes a golden file: torques of a robot at a number of states. Its heading lists the settings that differ from the
+/// robot file.
 pub(crate) fn file(robot: &Robot, states: u16, settings: &[String]) -> Result<String, Failure> {
     let (random, arm) = (random::of(Precision::Double), DynArm::from_robot(robot));
     let rotors = if robot.has_rotors() { ", with its rotors" } else { "" };

@@ -1,4 +1,4 @@
-//! `rne excite`: a motion by which an identification learns the most.
+//! `rne excite`: finds a motion from which an identification learns the most.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -27,13 +27,13 @@ use crate::remedy;
 use crate::render::layout::{Align, PAGE, note, push_table, shortened, wrap};
 use crate::values::numbers::{List, checked, rounded};
 
-/// Samples of a trajectory, at most: some hundred megabytes of an arm of six joints.
+/// Largest number of samples in a trajectory: some hundred megabytes for an arm of six joints.
 const MOST: f64 = 500_000.0;
 
-/// Motions that are tried, at most: a day.
+/// Largest number of motions that a search tries: about a day.
 const MOTIONS: u64 = 100_000_000;
 
-/// Samples of a picture.
+/// Number of samples in a picture.
 const DRAWN: u32 = 1000;
 
 /// Find a motion for `rne identify` that excites the parameters well
@@ -126,7 +126,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let plot = arguments.plot.as_deref();
     for path in trajectory.into_iter().chain(plot) {
         check_new(path, None, &sources, arguments.force)?;
-        // before the search, not after it
+        // checked before the search, so that a wrong path wastes no time
         drop(Replacement::begin(path).map_err(|error| unwritable(path, &error))?);
     }
     trajectory.map(|path| file_name::format(path, &[Format::Csv])).transpose()?;
@@ -139,7 +139,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     })?;
     let account = account(arguments, &robot, &found);
     let trajectory = || csv(&found.motion, robot.dof(), arguments);
-    // both files or none
+    // either both files are written or none
     let mut files = Vec::new();
     if let Some(path) = &arguments.plot {
         files.push((path.as_path(), picture(arguments, &robot, &found)));
@@ -158,7 +158,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     })
 }
 
-/// The failure for a motion that is not found.
+/// Makes the error for a motion that cannot be found.
 pub(super) fn failure(error: &ExcitationError) -> Failure {
     let text = remedy::of_excitation(error);
     if error.is_of_request() { Failure::usage(text) } else { Failure::input(text) }
@@ -184,7 +184,7 @@ fn options(arguments: &Arguments) -> ExcitationOptions {
     options
 }
 
-/// Searches with a progress bar on a terminal.
+/// Searches a motion, with a progress bar on a terminal.
 fn watched(robot: &Robot, limits: &[MotionLimits], options: &ExcitationOptions) -> Result<Excitation, ExcitationError> {
     let bar = ProgressBar::new(options.evaluations);
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent} % searched, {eta} to go, {msg}") {
@@ -213,7 +213,7 @@ fn condition(condition: f64) -> String {
     }
 }
 
-/// The result as tables.
+/// Writes the result as tables.
 fn account(arguments: &Arguments, robot: &Robot, found: &Excitation) -> String {
     let friction = if arguments.no_friction { "without friction" } else { "with friction" };
     let period = found.motion.period();
@@ -282,13 +282,13 @@ fn not_excited(text: &mut String, found: &Excitation) {
     push_table(text, "not excited: the deviation is more than half of the plausible value", &align, &cells);
 }
 
-/// The states of the whole motion, its ends included.
+/// Writes the states of the whole motion, including both ends, as CSV.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to half a million")]
 fn csv(motion: &Fourier, dof: usize, arguments: &Arguments) -> String {
     let names = ["q", "qd", "qdd"].into_iter().flat_map(|name| (1..=dof).map(move |joint| format!("{name}{joint}")));
     let mut text = names.fold("t".to_owned(), |header, name| header + "," + &name);
     text.push('\n');
-    // whole steps, none of them longer than those of the rate
+    // a whole number of steps, none longer than the rate asks for
     let steps = (arguments.seconds * arguments.rate * (1.0 - 1e-12)).ceil().max(1.0) as u32;
     for step in 0..=steps {
         let part = f64::from(step) / f64::from(steps);
@@ -301,7 +301,7 @@ fn csv(motion: &Fourier, dof: usize, arguments: &Arguments) -> String {
     text
 }
 
-/// The positions of every joint between their limits.
+/// Draws the positions of every joint between their limits.
 fn picture(arguments: &Arguments, robot: &Robot, found: &Excitation) -> String {
     let parts: Vec<f64> = (0..=DRAWN).map(|sample| f64::from(sample) / f64::from(DRAWN)).collect();
     let time: Vec<f64> = parts.iter().map(|part| arguments.seconds * part).collect();

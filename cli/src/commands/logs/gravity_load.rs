@@ -1,4 +1,4 @@
-//! The effort that an arm needs against gravity at rest: it can leave no room for any motion.
+//! Computes the effort that gravity alone needs at rest, because it may leave no effort for a motion.
 
 use rne_identify::{ExcitationError, MotionLimits};
 use rne_machine::{CompiledArm, Form};
@@ -9,7 +9,8 @@ use crate::outcome::Failure;
 use crate::remedy;
 use crate::values::numbers::rounded;
 
-/// No motion is within the effort limits: where gravity alone is beyond them, a slower one is no way out.
+/// Makes the error for a search that found no motion within the effort limits. Where gravity alone exceeds them, it
+/// says so, because a slower motion would not help.
 pub(super) fn beyond_effort(robot: &Robot, limits: &[MotionLimits], error: &ExcitationError) -> Failure {
     let none = "no motion was found within the effort limits";
     let Some(loads) = Load::all(robot, limits) else { return failure(error) };
@@ -45,26 +46,26 @@ pub(super) fn beyond_effort(robot: &Robot, limits: &[MotionLimits], error: &Exci
     })
 }
 
-/// Positions at which gravity is looked at.
+/// Number of positions at which gravity torques are computed.
 const POSITIONS: u32 = 2000;
 
-/// Torques that differ by no more are rounding.
+/// Relative difference below which two loads count as equal.
 const SAME: f64 = 1e-9;
 
-/// Load by gravity at rest on the joint that has the least effort to spare.
+/// The load by gravity at rest, on the joint that has the least effort in reserve.
 struct Load {
     q: Vec<f64>,
     joint: usize,
-    /// N m or N
+    /// Torque or force that gravity needs, N m or N.
     needed: f64,
-    /// Part of the joint's effort limit, 0 to 1.
+    /// The same torque as a part of the joint's effort limit; above 1 it exceeds the limit.
     part: f64,
 }
 
 impl Load {
-    /// At positions that fill what the limits allow, the first of them in its middle: multiples of powers of the root
-    /// of x^(n + 1) = x + 1 for n joints, without their whole parts (Roberts, The Unreasonable Effectiveness of
-    /// Quasirandom Sequences, 2018). None where there are no effort limits.
+    /// Computes the loads at positions that fill the range of the limits evenly, the first in the middle: multiples of
+    /// powers of the root of x^(n + 1) = x + 1 for n joints, without their whole parts (Roberts, The Unreasonable
+    /// Effectiveness of Quasirandom Sequences, 2018). `None` if there are no effort limits.
     fn all(robot: &Robot, limits: &[MotionLimits]) -> Option<Vec<Self>> {
         let arm = CompiledArm::from_robot(robot).in_form(Form::SevenSteps);
         let power = f64::from(u32::try_from(robot.dof() + 1).ok()?);

@@ -1,4 +1,4 @@
-//! `rne identify`: links, rotors and friction from logs.
+//! `rne identify`: identifies links, rotors and friction from logs.
 
 use std::path::{Path, PathBuf};
 
@@ -91,7 +91,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     check_places(arguments, &sources)?;
     let robot = &robot_file::robot(&arguments.file, Shape::Coupled)?;
     check_unknown_rotors(robot, arguments.rotors)?;
-    // a file is judged by all that the log has
+    // a file is judged on all data of the log
     let purpose = if arguments.judge { Purpose::Judge } else { Purpose::Fit };
     let log = &MotionLog::open(&arguments.logs, robot, &arguments.reading, purpose)?;
     let task = Task { arguments, sources: &sources, robot, log, remark: log.remark() };
@@ -107,7 +107,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 /// A robot file and logs of the arm, with the remarks on them.
 struct Task<'a> {
     arguments: &'a Arguments,
-    /// The files that are read, so no result is written there.
+    /// Files that the command reads, so that no result may overwrite them.
     sources: &'a [&'a Path],
     robot: &'a Robot,
     log: &'a MotionLog,
@@ -234,7 +234,7 @@ impl Task<'_> {
         self.written(text, || found.robot_file(drawn, with.is_some(), &log.words()))
     }
 
-    /// Draws the measured and the predicted torques of a part of the log, where a picture is asked for.
+    /// Draws the measured and the predicted torques of a part of the log, if the command line asks for a picture.
     fn draw(&mut self, robot: &Robot, judged: &Judged, title: &str, about: &str) -> Result<(), Failure> {
         if let Some(path) = &self.arguments.plot {
             let svg = judged.picture(robot, self.log, title, about)?;
@@ -243,7 +243,7 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// Writes the torques of parts of the log, each marked as held out or not, as a table.
+    /// Writes the torques of parts of the log as a table; the flag of each part says whether it was held out.
     fn tabulate(&mut self, robot: &Robot, parts: &[(Part, bool)]) -> Result<(), Failure> {
         if let Some(path) = &self.arguments.csv {
             self.remark += &residuals::write(path, robot, self.log, parts)?;
@@ -251,7 +251,7 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// The outcome without a robot file, and the reason.
+    /// Returns an outcome without a robot file; `why` is the reason.
     fn not_written(self, text: String, why: &str, before: &str) -> Outcome {
         let path = self.arguments.output.as_ref().map(|path| one_line(&path.display().to_string()));
         let not_written = path.map_or_else(String::new, |path| format!("{before}{path} is not written"));
@@ -259,11 +259,11 @@ impl Task<'_> {
         Outcome { text, remark, remark_last: true, at_fault: true }
     }
 
-    /// The outcome with the robot file, where it is asked for.
+    /// Returns the outcome, and writes the robot file if the command line asks for it.
     fn written(self, text: String, file: impl Fn() -> String) -> Result<Outcome, Failure> {
         let mut remark = self.remark;
         match &self.arguments.output {
-            // what is not the file is a remark then
+            // standard output gets only the robot file, so all other text goes to the remarks
             Some(path) if is_standard_output(path) => {
                 return Ok(Outcome { text: file(), remark: remark + &text, ..Outcome::default() });
             }
@@ -274,7 +274,7 @@ impl Task<'_> {
     }
 }
 
-/// The verdict, the errors and, with `--all`, every number.
+/// Writes the verdict, the errors and, with `--all`, every number.
 fn account(
     arguments: &Arguments,
     worded: &Worded<'_>,
@@ -298,7 +298,7 @@ fn account(
     text
 }
 
-/// The robot and the log.
+/// Describes the robot and the log in a heading.
 fn heading(robot: &Robot, log: &MotionLog) -> String {
     let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), log.cutoff());
     format!("{TITLE}{}{TITLE:#}\n", wrap(&about, PAGE, "  "))
@@ -312,7 +312,7 @@ fn logs(arguments: &Arguments) -> Vec<String> {
     arguments.logs.iter().map(|log| log.display().to_string()).collect()
 }
 
-/// Warnings about a log.
+/// Returns warnings about the log.
 fn warnings(found: &Identification) -> Vec<String> {
     let mut said = Vec::new();
     for (joint, report) in found.robot.independent_joints().zip(&found.joints) {
@@ -341,7 +341,7 @@ fn warnings(found: &Identification) -> Vec<String> {
     said
 }
 
-/// Whether what is written can be: nobody should wait for an identification whose result has no place.
+/// Checks, before the long identification, that all output files can be written.
 fn check_places(arguments: &Arguments, sources: &[&Path]) -> Result<(), Failure> {
     let output = arguments.output.as_deref().filter(|path| !is_standard_output(path));
     let plot = arguments.plot.as_deref();

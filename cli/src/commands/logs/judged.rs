@@ -1,4 +1,4 @@
-//! A part of a log on which a robot was judged: its errors, and its picture.
+//! The errors and the picture of a part of a log on which a robot was judged.
 
 use rne_identify::{JointError, JudgedPart, MotionError, Part, Prediction};
 use rne_logs::Motion;
@@ -8,10 +8,10 @@ use rne_plot::{Comparison, comparison_svg};
 use crate::files::motion_log::MotionLog;
 use crate::outcome::Failure;
 
-/// States of a picture.
+/// Number of states in a picture.
 const DRAWN: u64 = 4000;
 
-/// A part of a log on which a robot was judged.
+/// A part of a log on which a robot was judged, with its errors.
 pub(super) struct Judged {
     part: Part,
     pub(super) errors: Vec<JointError>,
@@ -29,16 +29,16 @@ impl Judged {
         Ok(Self { part, errors: prediction.errors(), extent })
     }
 
-    /// The part in words, such as `from 13.5 s on`.
+    /// Describes the part, such as `from 13.5 s on`.
     pub(super) fn words(&self, log: &MotionLog) -> String {
         match self.extent.from {
-            // times of several runs may begin anew
+            // only with one run, because the times of several runs may overlap
             Some(from) if log.runs() == 1 => format!("from {from:.1} s on"),
             _ => format!("the last {} of {} states", self.extent.states, log.states()),
         }
     }
 
-    /// The measured and the predicted torques as a picture, with a title and what is below it.
+    /// Draws the measured and the predicted torques, with a title and the text `about` below.
     pub(super) fn picture(&self, robot: &Robot, log: &MotionLog, title: &str, about: &str) -> Result<String, Failure> {
         let stride = usize::try_from(self.extent.states.div_ceil(DRAWN)).unwrap_or(usize::MAX).max(1);
         let prediction = Prediction::new(robot, Some(log.cutoff()));
@@ -53,7 +53,7 @@ impl Judged {
         let side = |of: fn(&(f64, f64)) -> f64| -> Vec<Vec<f64>> {
             pairs.iter().map(|pairs: &Vec<(f64, f64)>| pairs.iter().map(of).collect()).collect()
         };
-        // the number of the table
+        // the same error that the table has
         let notes: Vec<String> =
             self.errors.iter().map(|error| format!("error {:.1} %", 100.0 * error.error)).collect();
         let picture = Comparison {

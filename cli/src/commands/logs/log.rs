@@ -1,4 +1,4 @@
-//! `rne log`: what a log of an arm has, and its motion, filtered.
+//! `rne log`: describes a log of an arm, and writes its filtered motion.
 
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -64,7 +64,7 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    /// Opens and surveys the log, by the joints of the robot where there is one.
+    /// Opens and surveys the log, with the joints of the robot file if there is one.
     fn describe(&self, mut options: Options, is_result_shown: bool) -> Result<Described, Failure> {
         let mut matched = None;
         let robot = self.robot.as_deref().map(|path| robot_file::robot(path, Shape::Coupled)).transpose()?;
@@ -80,7 +80,7 @@ impl Arguments {
         Ok(Described { log, survey, matched })
     }
 
-    /// Describes the rows of each text in a column.
+    /// Describes separately the rows with each text in a column.
     fn describe_each(&self, column: &str, is_result_shown: bool) -> Result<Vec<Group>, Failure> {
         let options = self.reading.options();
         let values = Log::values(&self.files, column, &options, reading::progress(is_result_shown));
@@ -171,7 +171,7 @@ fn written(
         let mut out = BufWriter::new(io::stdout());
         let written = motion_file::write(logs, manner, &ProgressBar::hidden(), &mut out);
         match written.and_then(|states| out.flush().map(|()| states).map_err(Stopped::Unwritable)) {
-            // `rne log … -o - | head` has read enough
+            // not an error: the reader, as in `rne log … -o - | head`, has read enough
             Err(Stopped::Unwritable(error)) if error.kind() == io::ErrorKind::BrokenPipe => 1,
             Err(Stopped::Unwritable(error)) => {
                 return Err(input_error!("the output cannot be written: {error}"));
@@ -195,7 +195,7 @@ fn written(
     Ok(Outcome { text, remark, ..Outcome::default() })
 }
 
-/// Notes on the columns of a file that was written, which the file itself does not contain.
+/// Returns notes on the columns of a written file that the file itself does not contain.
 fn about(logs: &[Written<'_>], manner: Manner<'_>) -> String {
     let mut notes = Vec::new();
     let Some(layout) = logs.first().map(|written| written.log.layout()) else { return String::new() };

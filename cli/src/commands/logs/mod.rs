@@ -1,4 +1,4 @@
-//! The commands about logs of an arm.
+//! The commands that read or write logs of an arm.
 
 pub(super) mod excite;
 mod gravity_load;

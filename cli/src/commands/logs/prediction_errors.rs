@@ -1,4 +1,4 @@
-//! How far the torques of a robot are from those of a log, by joint and by speed.
+//! Computes how much the torques of a robot differ from those of a log, by joint and by speed.
 
 use std::fmt::Write as _;
 
@@ -13,14 +13,14 @@ use crate::render::layout::{Align, PAGE, columns, shortened, wrap};
 use crate::render::verdict::tenths;
 use crate::values::numbers::rounded;
 
-/// How far the torques of a robot are from those of a part of a log, by joint.
+/// Computes how much the torques of a robot differ from those of a part of a log, for each joint.
 pub(crate) fn prediction(robot: &Robot, log: &MotionLog, part: Part) -> Result<Vec<JointError>, Failure> {
     let mut prediction = Prediction::new(robot, Some(log.cutoff()));
     log.pass(part, &mut |motion| prediction.absorb(motion))?;
     Ok(prediction.errors())
 }
 
-/// Errors by joint and by speed.
+/// Writes the errors by joint and by speed as a table.
 pub(crate) fn errors_table(
     robot: &Robot,
     log: &MotionLog,

@@ -1,4 +1,4 @@
-//! Measured, predicted and residual torques of a log, state by state, as a table.
+//! Writes measured, predicted and residual torques of a log as a table, one row for each state.
 
 use std::fmt::Write as _;
 use std::io::{self, BufWriter, Write};
@@ -14,9 +14,9 @@ use crate::outcome::Failure;
 use crate::palette::GOOD;
 use crate::render::layout::cell;
 
-/// Writes the torques of a robot and of parts of a log, both after the low-pass, as CSV. Each part of the log is
-/// marked as held out, or as not. The rows are the states of the picture; the picture has every n-th state of a long
-/// log. Returns the remark on the file.
+/// Writes the torques of a robot and of parts of a log, both low-pass filtered, as CSV. A column says whether a part
+/// was held out. The rows are the states of the picture, which are every n-th state of a long log. Returns a remark on
+/// the file.
 pub(crate) fn write(path: &Path, robot: &Robot, log: &MotionLog, parts: &[(Part, bool)]) -> Result<String, Failure> {
     let failure = |error: io::Error| unwritable(path, &error);
     let replacement = Replacement::begin(path).map_err(failure)?;
@@ -43,7 +43,7 @@ pub(crate) fn write(path: &Path, robot: &Robot, log: &MotionLog, parts: &[(Part,
     Ok(format!("{GOOD}wrote{GOOD:#} {}, {states} states\n", path.display()))
 }
 
-/// The names of the columns.
+/// Returns the names of the columns.
 fn header(robot: &Robot) -> String {
     let mut header = "t".to_owned();
     for joint in &robot.joints {

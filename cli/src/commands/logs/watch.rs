@@ -1,4 +1,4 @@
-//! `rne watch`: what has changed about an arm, by its logs.
+//! `rne watch`: finds from logs what has changed about an arm.
 
 mod trend;
 
@@ -82,13 +82,13 @@ pub(crate) struct Arguments {
     reading: LogArguments,
 }
 
-/// Whether a file is a log by the end of its name: a baseline file is YAML.
+/// Returns whether a file is a log, by its extension; a baseline file is YAML.
 fn is_log(path: &Path) -> bool {
     let end = path.extension().map(|end| end.to_string_lossy().to_lowercase());
     end.is_some_and(|end| ["csv", "db3", "mcap", "npy", "parquet"].contains(&end.as_str()))
 }
 
-/// Whether two paths lead to one log: the same file, or a folder and what is inside.
+/// Returns whether two paths mean the same log: the same file, or a folder and a file in it.
 fn is_within(a: &Path, b: &Path) -> bool {
     let (Ok(a), Ok(b)) = (a.canonicalize(), b.canonicalize()) else { return false };
     a.starts_with(&b) || b.starts_with(&a)
@@ -111,24 +111,24 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 /// A robot file and logs of the arm, with the remarks on them.
 struct Task<'a> {
     arguments: &'a Arguments,
-    /// The files that are read, so no result is written there.
+    /// Files that the command reads, so that no result may overwrite them.
     sources: &'a [&'a Path],
     robot: &'a Robot,
     settings: &'a Settings,
     remark: String,
 }
 
-/// A baseline, with the words for where it comes from.
+/// A baseline, and words that say where it is from.
 struct Known {
     baseline: Baseline,
     words: String,
     name: LogName,
-    /// Remarks that were printed already.
+    /// Remarks that have been printed already.
     remarks: Vec<ArmLogRemark>,
 }
 
 impl Task<'_> {
-    /// The baseline of quiet logs, or of a file.
+    /// Makes the baseline from quiet logs, or reads it from a file.
     fn known(&mut self) -> Result<Option<Known>, Failure> {
         let Self { arguments, robot, .. } = *self;
         if let Some(path) = &arguments.baseline {
@@ -169,13 +169,13 @@ impl Task<'_> {
         Ok(Some(Known { baseline, words: quiet.words(), name, remarks: quiet.log().remarks().to_vec() }))
     }
 
-    /// Writes a file that is no source.
+    /// Writes a file, but never over a file that the command reads.
     fn write(&mut self, path: &Path, text: &str) -> Result<(), Failure> {
         self.remark += &output_file::write_new(path, text, self.sources, self.arguments.force)?;
         Ok(())
     }
 
-    /// The changes of the logs, joined to one, as text, as JSON or as CSV.
+    /// Finds the changes in all logs, joined to one, and prints them as text, JSON or CSV.
     fn events(mut self, known: Option<Known>) -> Result<Outcome, Failure> {
         let Self { arguments, robot, settings, .. } = self;
         let log = match &known {
@@ -219,7 +219,7 @@ impl Task<'_> {
         Ok(Outcome { text, remark: self.remark, at_fault, remark_last: true })
     }
 
-    /// Warns of what makes events doubtful.
+    /// Warns of reasons to doubt the events.
     fn warn(&mut self, report: &Report, unexplained: &[usize]) {
         let Self { arguments, robot, .. } = *self;
         let ratio = report.changes.effort_ratio;
@@ -243,7 +243,7 @@ impl Task<'_> {
         }
     }
 
-    /// The events below a heading.
+    /// Lists the events below a heading.
     fn account(&self, Known { baseline, words, name, .. }: &Known, log: &MotionLog, report: &Report) -> String {
         let robot = self.robot;
         let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), baseline.cutoff);
@@ -254,7 +254,7 @@ impl Task<'_> {
     }
 }
 
-/// The baseline of a log against the robot file, where nothing else is known.
+/// Makes a baseline from the log itself and the robot file, if no other baseline is given.
 fn of_robot_file(robot: &Robot, log: &MotionLog) -> Result<Known, Failure> {
     let baseline = Baseline::of_file(robot, log.log(), &mut reading::progress(false)).map_err(|error| match error {
         WatchError::ShortBaseline { .. } => input_error!(
@@ -268,7 +268,7 @@ fn of_robot_file(robot: &Robot, log: &MotionLog) -> Result<Known, Failure> {
     Ok(Known { baseline, words: "the robot file".to_owned(), name, remarks: Vec::new() })
 }
 
-/// Whether what is written can be, before any log is read.
+/// Checks, before any log is read, that all output files can be written.
 fn check_places(arguments: &Arguments, sources: &[&Path]) -> Result<(), Failure> {
     let quiet = arguments.quiet.iter();
     if let Some(both) = quiet.clone().find(|quiet| arguments.logs.iter().any(|log| is_within(log, quiet))) {
@@ -293,10 +293,11 @@ fn check_places(arguments: &Arguments, sources: &[&Path]) -> Result<(), Failure>
     Ok(())
 }
 
-/// The efforts of a log over those of the quiet log, where both have one unit: loads differ, and motions.
+/// Range of the ratio between efforts of a log and of the quiet log in which both have probably the same unit: loads
+/// and motions may differ.
 const UNIT: std::ops::Range<f64> = 0.2..5.0;
 
-/// Why a robot file explains nothing: a file of the geometry alone predicts no torques.
+/// Returns why a robot file does not explain the torques: a file with geometry only predicts none.
 fn doubt(robot: &Robot, question: &'static str) -> &'static str {
     if robot.joints.iter().all(|joint| joint.row.link.mass == 0.0) {
         "FILE contains no masses; `rne identify` computes them from a log"
@@ -305,27 +306,28 @@ fn doubt(robot: &Robot, question: &'static str) -> &'static str {
     }
 }
 
-/// The largest residual, N m or N, of an effort that the model reproduces up to rounding.
+/// A residual up to this, N m or N, is a rounding error: the model reproduces the effort.
 const ROUNDING: f64 = 1e-9;
 
-/// Whether an event says already that a channel of a joint is wrong, so that the model cannot explain its torques.
+/// Returns whether an event already reports a wrong channel of a joint, which is then the reason why the model does not
+/// fit.
 fn has_faulty_channel(report: &Report, joint: usize) -> bool {
     report.events.iter().any(|event| match event.parameter {
         "frozen" => event.joint == Some(joint),
         "exchanged" => event.joint == Some(joint) || event.others.contains(&joint),
-        // the model needs it for every joint
+        // the model needs the position of every joint
         "frozen_position" => true,
         _ => false,
     })
 }
 
-/// The joints whose torques are no better predicted than by their mean, or not at all; but those of which the file says
-/// that nothing is known.
+/// Returns the joints whose torques the model predicts no better than their mean does, or not at all; without joints of
+/// which the file says that nothing is known.
 fn unexplained(robot: &Robot, errors: &[rne_identify::JointError]) -> Vec<usize> {
     let each = errors.iter().zip(Identification::not_excited(robot)).enumerate();
-    // what is no number is no prediction
+    // an error that is not a number means that there is no prediction
     let found = each.filter(|(_, (error, unknown))| {
-        // an effort that does not change, and is what the model says, is explained
+        // a constant effort that the model reproduces is explained
         let is_reproduced = error.deviation == 0.0 && error.residual <= ROUNDING;
         !unknown && !is_reproduced && (error.error >= 1.0 || error.error.is_nan())
     });

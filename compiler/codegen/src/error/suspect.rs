@@ -8,7 +8,7 @@ use rne_model::Robot;
 #[derive(Clone, Debug, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Suspect {
-    /// The plan of a plan file was used.
+    /// Whether the plan of a plan file was used.
     pub planned: bool,
     /// A number of the robot whose products leave the range of double precision.
     pub number: Option<Extreme>,
@@ -23,8 +23,8 @@ pub struct Extreme {
 }
 
 impl Extreme {
-    /// The number of a robot that is farthest from one, if its powers leave the range of double precision or the
-    /// precision of twice that, in which constants are computed.
+    /// Returns the number of a robot that is farthest from one, if its powers can leave the range of double precision,
+    /// or exceed the 106 bits in which constants are computed.
     #[must_use]
     pub fn of(robot: &Robot) -> Option<Self> {
         const LARGEST: f64 = 1e75;
@@ -61,7 +61,8 @@ impl fmt::Display for Extreme {
 }
 
 impl Suspect {
-    /// Writes what helps: about the number, if one is the cause, else by who made the plan.
+    /// Writes advice: about the number if one is suspected, else the text for a plan file or the text for a plan of the
+    /// build.
     pub(super) fn advise(&self, f: &mut fmt::Formatter<'_>, of_plan_file: &str, of_build: &str) -> fmt::Result {
         match &self.number {
             Some(number) => write!(f, "{number}"),

@@ -17,7 +17,7 @@ use crate::formulate::{
     floating_derivatives, floating_forward_dynamics, floating_mass_matrix, forward_dynamics, integrator, kinematics,
     mass_matrix, momentum, on_base, pose_of_base, regressor, seven_steps, square,
 };
-use crate::function::{Argument, Function};
+use crate::function::Argument;
 use crate::ir::{Axis, Builder, Cause, Name, Quantity, Symbol, Vector, WithRespectTo};
 
 /// The state of one derivation: the robot's constants, the arguments and the builder.

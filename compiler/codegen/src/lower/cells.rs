@@ -1,7 +1,8 @@
-//! The cells of statements: a listing that goes by joints and steps defines each value before it is used.
+//! Assigns statements to cells, one per joint and step, so that a listing by joints and steps defines each value before
+//! it is used.
 //!
-//! A value that two joints share stands at the first of them that asked for it. Where joints follow others or rotors
-//! turn with several joints, that is not always the first cell that uses it.
+//! A value that two joints share is placed at the joint that asked for it first. If joints follow others or rotors turn
+//! with several joints, this is not always the first cell that uses it.
 
 use rustc_hash::FxHashMap;
 
@@ -18,9 +19,9 @@ fn order(place: &Place) -> Order {
     (is_inward, if is_inward { -joint } else { joint }, place.step as usize)
 }
 
-/// Moves statements to other cells, where they would stand behind a cell that uses them: one that depends on arguments
-/// alone to the first such cell, another one's users to its own. `statements` are in an order in which each stands
-/// before its users.
+/// Moves statements to other cells if another cell would use them too early. A statement that depends on arguments
+/// alone moves to the first cell that uses it; for any other statement, the statements that use it move to its cell. In
+/// `statements`, each one comes before its users.
 pub(super) fn settle(values: &Values, statements: &mut [Statement], turns: &[SineCosine]) {
     let index: FxHashMap<Name, usize> =
         statements.iter().enumerate().map(|(index, statement)| (statement.name, index)).collect();
@@ -34,9 +35,9 @@ pub(super) fn settle(values: &Values, statements: &mut [Statement], turns: &[Sin
         let is = names.iter().all(is_known);
         is_early.push(is);
     }
-    // a term of several joints has no cell of its own: that of its first user is
+    // a term of several joints has no cell of its own and takes that of its first user
     let is_homeless: Vec<bool> = statements.iter().map(|statement| statement.place.joint == 0).collect();
-    // users stand behind, so that what they use follows them
+    // in reverse order, so that users are placed before the statements that they use
     for user in (0..statements.len()).rev() {
         let place = statements[user].place;
         for at in used[user].iter().filter_map(|name| index.get(name)).copied() {

@@ -1,4 +1,4 @@
-//! The formulas before folding, beside the code that is left of them.
+//! The formulas before folding, with how each term was folded.
 
 use rustc_hash::FxHashSet;
 
@@ -7,7 +7,7 @@ use crate::equation::{Equation, Operation, Term};
 use crate::ir::{Causes, CausesId, Fold, Number, Op, Operator, Outcome, Ref, TermId, Written};
 
 impl Lowering<'_> {
-    /// The formula of every component, in the order in which they are computed; none where formulas are not kept.
+    /// Returns the formula of every component, in the order in which they are computed; none if formulas are not kept.
     pub(super) fn equations(&self) -> Vec<Equation> {
         if self.written.trace.terms.is_none() {
             return Vec::new();
@@ -24,7 +24,8 @@ impl Lowering<'_> {
         definitions.map(equation).collect()
     }
 
-    /// A term of a formula; of one that belongs to a step, what the table is made into beforehand is a number.
+    /// Builds a term of a formula. With `in_step`, a constant that is computed from the table beforehand becomes a
+    /// number.
     fn term(&self, id: TermId, in_step: bool) -> Term {
         let inner = |id: TermId| self.term(id, in_step);
         let written = self.written.trace.terms.as_ref().and_then(|terms| terms.get(id));
@@ -51,7 +52,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// The fate of an operation, and its causes.
+    /// Returns how an operation was folded, and the causes.
     fn fold(&self, at: Ref, outcome: Outcome, reason: CausesId) -> (Fold, Option<Causes>) {
         let causes = self.causes(reason);
         match outcome {
@@ -69,7 +70,7 @@ impl Lowering<'_> {
         self.written.trace.causes.get(id).clone()
     }
 
-    /// The term of a node that was written on the graph alone.
+    /// Builds the term of a node that has no stored formula.
     fn of_node(&self, at: Ref, causes: &Causes) -> Term {
         let negative = at.is_negative();
         let at = at.magnitude();

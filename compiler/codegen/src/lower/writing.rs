@@ -1,4 +1,4 @@
-//! The values of a program, statement by statement, with signs where they cost nothing.
+//! Writes the values of a program, statement by statement, with signs where they cost nothing.
 
 use rustc_hash::FxHashMap;
 
@@ -70,13 +70,14 @@ impl Writing<'_> {
         turns
     }
 
-    /// A term: the name of its node, or what the node computes.
+    /// Writes a term: as the name of its node, or as the expression that computes the node.
     fn value(&mut self, term: Ref) -> ValueId {
         let (negative, value) = self.operand(None, term.magnitude());
         self.signed(negative != term.is_negative(), value)
     }
 
-    /// A node, as `user` uses it, as a sign and a value. Signs are carried outwards, to where they cost nothing.
+    /// Returns a node, as `user` uses it, as a sign and a value. Signs move outwards in an expression, to where they
+    /// cost nothing.
     fn operand(&mut self, user: Option<Ref>, id: Ref) -> (bool, ValueId) {
         let lowering = self.lowering;
         if lowering.is_zero(id) {
@@ -110,13 +111,13 @@ impl Writing<'_> {
                 let operands = operands.map(operand).map(|(negative, value)| self.signed(negative, value));
                 (false, Value::BySign(operands))
             }
-            // leaves always have a name, but for the zero that no operation keeps
+            // leaves always have a name, except the constant 0, which no operation keeps
             Op::Constant(_) | Op::Input(_) | Op::Sine(_) | Op::Cosine(_) => (false, Value::Constant(0.0)),
         };
         (negative, self.values.push(None, value))
     }
 
-    /// A value with a sign, which is carried inwards where it costs nothing: -(a - b) is b - a.
+    /// Applies a sign to a value. The sign moves inwards if it costs nothing there: -(a - b) is b - a.
     fn signed(&mut self, negative: bool, value: ValueId) -> ValueId {
         if !negative {
             return value;
@@ -124,8 +125,8 @@ impl Writing<'_> {
         if let Some(value) = self.negated(value) { value } else { self.values.push(None, Value::Negative(value)) }
     }
 
-    /// The negative of a value without a minus sign in front, if there is one. Rounding is symmetric, so it is exact.
-    /// What has no name is used here alone, so it is computed otherwise.
+    /// Returns the negative of a value without a minus sign in front, if there is one. It is exact, because rounding is
+    /// symmetric. A value without a name is used only here, so it is changed in place.
     fn negated(&mut self, id: ValueId) -> Option<ValueId> {
         if self.values.name(id).is_some() {
             return None;

@@ -1,4 +1,4 @@
-//! The functions of a file by CasADi's external interface, with Jacobians and directional derivatives.
+//! Functions of a C file for CasADi's external interface, with Jacobians and directional derivatives.
 //!
 //! `casadi.external("inverse_dynamics", "arm.so")` finds a function by its name, and its derivatives by theirs:
 //! `jac_inverse_dynamics`, `fwd1_inverse_dynamics`, `adj1_inverse_dynamics`, and the second derivatives
@@ -13,7 +13,7 @@ use super::signature::{inputs, wrapped};
 use super::{File, Prefix};
 use crate::parameters;
 
-/// The part that is the same for all functions; PREFIX, DOF and LONGEST are replaced.
+/// The code that all functions share; PREFIX, DOF and LONGEST are replaced.
 const INTERFACE: &str = include_str!("casadi.c");
 
 /// The operations on matrices that the derivatives need.
@@ -22,13 +22,13 @@ const MATRICES: &str = include_str!("casadi_matrices.c");
 /// The bodies of the functions for acados, in the order of [`Writer::of_acados`].
 const ACADOS: &str = include_str!("acados.c");
 
-/// The second derivatives of weighted torques, where the file has them.
+/// Returns the program of the second derivatives of weighted torques, if the file has it.
 pub(super) fn hessian<'a>(file: &File<'a>) -> Option<&'a Program> {
     file.programs.iter().find(|program| program.function == Function::TorqueHessian)
 }
 
-/// Whether CasADi can call a program: all that it takes are vectors, and it returns a number, a vector or a matrix, or
-/// the state after a step.
+/// Whether CasADi can call a program: all its arguments must be vectors, and it must return a number, a vector, a
+/// matrix, or the state after a step.
 #[must_use]
 pub fn is_for_casadi(program: &Program) -> bool {
     let are_vectors = || inputs(program).iter().all(|array| array.lengths().len() == 1);
@@ -36,8 +36,8 @@ pub fn is_for_casadi(program: &Program) -> bool {
     is_shaped && !parameters::are_used(program)
 }
 
-/// The name that a function for CasADi and a function of C with this prefix would both have, if there is one: a robot
-/// may be called `jac`.
+/// Returns a name that both a function for CasADi and a function of C with this prefix would have, if there is one:
+/// this happens if a robot is called `jac`, for example.
 #[must_use]
 pub fn casadi_collision(programs: &[Program], prefix: &Prefix) -> Option<String> {
     let of_casadi: Vec<String> = programs
@@ -47,7 +47,7 @@ pub fn casadi_collision(programs: &[Program], prefix: &Prefix) -> Option<String>
     programs.iter().map(|program| format!("{prefix}_{}", program.name)).find(|name| of_casadi.contains(name))
 }
 
-/// Rows and columns.
+/// Returns the number of rows and columns of a result; `None` if it is no number, vector or matrix.
 fn shape(layout: &Layout) -> Option<(usize, usize)> {
     match layout {
         Layout::Number => Some((1, 1)),
@@ -60,13 +60,13 @@ fn shape(layout: &Layout) -> Option<(usize, usize)> {
     }
 }
 
-/// Whether an element of a matrix, whose elements stand row by row after the first `skipped` outputs, is not zero in
-/// every state.
+/// Whether an element of a matrix can differ from zero. The matrix begins after the first `skipped` outputs and is
+/// stored row by row.
 pub(super) fn is_there(program: &Program, skipped: usize, row: usize, column: usize) -> bool {
     program.values.get(program.outputs[skipped + row * program.dof + column].value) != Value::Constant(0.0)
 }
 
-/// The functions for CasADi.
+/// Writes the functions for CasADi.
 pub(super) fn definitions(file: &File) -> String {
     if !file.additions.casadi {
         return String::new();
@@ -109,17 +109,18 @@ pub(super) fn definitions(file: &File) -> String {
 
 pub(super) struct Writer<'a> {
     pub(super) file: &'a File<'a>,
-    /// The compressed columns, each once.
+    /// The sparsity patterns, as compressed columns, without duplicates.
     pub(super) patterns: Vec<Vec<usize>>,
 }
 
 impl Writer<'_> {
-    /// Text with the numbers and names of the file. The prefix comes last: it may be any word.
+    /// Replaces the placeholders in a text by the numbers and names of the file. The prefix is replaced last, because
+    /// it may contain a placeholder.
     pub(super) fn filled(&self, text: &str) -> String {
         text.replace("DOF", &self.file.robot.dof().to_string()).replace("PREFIX", self.file.prefix)
     }
 
-    /// The name of compressed columns.
+    /// Returns the name of a sparsity pattern in the code.
     pub(super) fn pattern(&mut self, pattern: Vec<usize>) -> String {
         let index = self.patterns.iter().position(|other| *other == pattern).unwrap_or_else(|| {
             self.patterns.push(pattern);
@@ -136,13 +137,13 @@ impl Writer<'_> {
         self.pattern(vec![rows, columns, 1])
     }
 
-    /// A square matrix of zeros.
+    /// Returns the pattern of a square matrix of zeros.
     pub(super) fn nothing(&mut self) -> String {
         let dof = self.file.robot.dof();
         self.pattern([vec![dof, dof], vec![0; dof + 1]].concat())
     }
 
-    /// The compressed columns of a square matrix with these elements.
+    /// Returns the pattern of a square matrix with the elements for which `is_there` is true.
     pub(super) fn square(&mut self, size: usize, is_there: impl Fn(usize, usize) -> bool) -> String {
         let (mut starts, mut rows) = (vec![0], Vec::new());
         for column in 0..size {
@@ -159,7 +160,7 @@ impl Writer<'_> {
         self.file.programs.iter().find(|program| program.function == function)
     }
 
-    /// A function, and its derivatives if it has any.
+    /// Returns a function, and its derivatives if it has any.
     fn interfaces(&mut self, program: &Program) -> Vec<Interface> {
         let arrays = inputs(program);
         let given: Vec<(String, String)> =
@@ -196,9 +197,10 @@ impl Writer<'_> {
         [value, jacobian, forward, reverse].into_iter().chain(second).collect()
     }
 
-    /// The functions of an explicit differential equation as acados has CasADi generate them: x = (q, qd), u = tau, and
-    /// no parameters p. The derivatives of x by where it began, Sx and Su, are in columns. The Hessian is that of λᵀ ẋ
-    /// by where it began and by u, its lower triangle column by column.
+    /// Returns the functions of an explicit differential equation in the form that acados generates with CasADi: x =
+    /// (q, qd), u = tau, and no parameters p. Sx and Su are the derivatives of x with respect to the initial state and
+    /// to u, as matrices by columns. The Hessian is that of λᵀ ẋ with respect to the initial state and u; its lower
+    /// triangle is stored column by column.
     fn of_acados(&mut self) -> Vec<Interface> {
         let (prefix, dof) = (self.file.prefix, self.file.robot.dof());
         let functions: [(&str, &[&str], &[&str]); 4] = [
@@ -230,7 +232,7 @@ impl Writer<'_> {
         functions.into_iter().zip(bodies).map(interface).collect()
     }
 
-    /// A call of a function of the file: what the function for CasADi has no input for is zero.
+    /// Returns a call of a function of the file; an argument for which the CasADi function has no input is zero.
     pub(super) fn call(&self, function: Function, arrays: &[ArgumentArray], last: &[String]) -> String {
         let prefix = self.file.prefix;
         let Some(program) = self.find(function) else { return String::new() };
@@ -244,7 +246,7 @@ impl Writer<'_> {
     }
 
     fn value(&self, program: &Program, arrays: &[ArgumentArray], columns: usize) -> String {
-        // a frame's function has its function's name only in the trait
+        // the name of a function at a frame differs from that of the function in Rust's trait
         let prefix = self.file.prefix;
         let mut arguments: Vec<String> =
             (0..arrays.len()).map(|index| format!("{prefix}_given(arg[{index}])")).collect();

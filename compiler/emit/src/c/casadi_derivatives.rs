@@ -1,4 +1,4 @@
-//! Derivatives of functions for CasADi: what they are made of, and the bodies that compute them.
+//! Derivatives of functions for CasADi: from which functions they are computed, and the code that computes them.
 
 use std::fmt::Write;
 
@@ -8,21 +8,24 @@ use super::casadi::{Writer, hessian, is_there};
 use super::casadi_interface::Interface;
 use super::signature::{record_type, wrapped};
 
-/// Matrices that one call of a function of the file gives: the field of the result, and the input by which the result
-/// of the CasADi function is derived. No matrix of a function stands where derivatives combine several.
+/// Matrices that one call of a function of the file returns. Each has the field of the result, and the number of the
+/// CasADi input with respect to which it is the derivative. `blocks` is empty if the derivatives are combined from
+/// several functions.
 pub(super) struct Source {
     function: Function,
     pub(super) blocks: &'static [(&'static str, usize)],
 }
 
-/// The derivatives of a function by all of its inputs.
+/// The derivatives of a function with respect to all of its inputs.
 pub(super) struct Derivatives {
     pub(super) sources: &'static [Source],
-    /// The function with the product of a row of multipliers with them, with the fields of its result.
+    /// The function that returns the product of a row of multipliers with these derivatives, and the fields of its
+    /// result.
     pub(super) gradient: Option<(Function, &'static [&'static str])>,
 }
 
-/// The functions beside `function` that its derivatives for CasADi are computed by; none if it has no derivatives.
+/// Returns the functions from which the derivatives of `function` for CasADi are computed; none if it has no
+/// derivatives.
 #[must_use]
 pub fn casadi_derivatives(function: Function) -> Vec<Function> {
     let derivatives = derivatives(function);
@@ -59,13 +62,13 @@ fn derivatives(function: Function) -> Option<Derivatives> {
 }
 
 impl Writer<'_> {
-    /// The derivatives of a program, if the file has the functions that they are computed by.
+    /// Returns the derivatives of a program, if the file has all functions from which they are computed.
     pub(super) fn sources(&self, program: &Program) -> Option<Derivatives> {
         let needed = casadi_derivatives(program.function);
         derivatives(program.function).filter(|_| needed.iter().all(|function| self.find(*function).is_some()))
     }
 
-    /// The compressed columns of the derivatives by each input, or of their transposes.
+    /// Returns the patterns of the derivatives with respect to each input, or those of their transposes.
     pub(super) fn blocks(&mut self, derivatives: &Derivatives, is_transposed: bool) -> Vec<String> {
         let mut blocks = Vec::new();
         for source in derivatives.sources {
@@ -80,8 +83,8 @@ impl Writer<'_> {
         blocks
     }
 
-    /// The compressed columns of a square matrix of a program, or of its transpose, whose elements, row by row, stand
-    /// after the first `skipped` outputs.
+    /// Returns the pattern of a square matrix of a program, or of its transpose. The matrix begins after the first
+    /// `skipped` outputs and is stored row by row.
     fn block(&mut self, program: &Program, skipped: usize, is_transposed: bool) -> String {
         self.square(program.dof, |row, column| {
             let (row, column) = if is_transposed { (column, row) } else { (row, column) };
@@ -89,7 +92,8 @@ impl Writer<'_> {
         })
     }
 
-    /// Statements on the matrices of each call, where `condition` holds for one of the inputs.
+    /// Returns code that calls each function and executes `statement` for each of its matrices, if `condition` is true
+    /// for one of its inputs.
     fn with_matrices(
         &self,
         arrays: &[ArgumentArray],
@@ -148,7 +152,8 @@ impl Writer<'_> {
         text
     }
 
-    /// The Jacobian of the reverse derivatives by all that these take, where the file has the Hessian.
+    /// Returns the Jacobian of the reverse derivatives with respect to all of their inputs, if the file has the
+    /// Hessian.
     pub(super) fn second(
         &mut self,
         reverse: &Interface,
@@ -160,7 +165,7 @@ impl Writer<'_> {
         let Layout::Record(record, _) = hessian.layout() else { return None };
         let call = self.call(Function::TorqueHessian, arrays, &["&by".to_owned()]);
         let columns = count + 2;
-        // by q, q̇ and q̈: the rows of the Hessian, of which those of a function of fewer arguments are the first
+        // block rows and columns for q, q̇ and q̈; a function with fewer arguments uses the first ones only
         let places = [(0, 0, 0, false), (0, 1, 1, false), (0, 2, 3, false)];
         let places = [&places[..], &[(1, 0, 1, true), (1, 1, 2, false), (2, 0, 3, true)]].concat();
         let places: Vec<_> = places.into_iter().filter(|(row, column, ..)| (*row).max(*column) < count).collect();

@@ -1,9 +1,9 @@
-//! A function as CasADi sees it, with the names of its derivatives, and its code.
+//! A function in the form that CasADi expects, with the names of its derivatives, and its code.
 
 use super::casadi::Writer;
 use super::comment;
 
-/// A function as CasADi sees it: names and compressed columns of inputs and outputs.
+/// A function in the form that CasADi expects: the names and patterns of its inputs and outputs.
 #[derive(Default)]
 pub(super) struct Interface {
     pub(super) name: String,
@@ -12,7 +12,7 @@ pub(super) struct Interface {
     pub(super) body: String,
 }
 
-/// The bodies of a function, of its Jacobians and of its directional derivatives.
+/// The code of a function, of its Jacobians and of its directional derivatives.
 pub(super) struct Bodies {
     pub(super) value: String,
     pub(super) jacobian: String,
@@ -21,7 +21,7 @@ pub(super) struct Bodies {
 }
 
 impl Writer<'_> {
-    /// A function, its Jacobians with these compressed columns, and its directional derivatives.
+    /// Returns a function, its Jacobians with the patterns `blocks`, and its forward and reverse derivatives.
     pub(super) fn family(
         &mut self,
         name: &str,
@@ -52,7 +52,7 @@ impl Writer<'_> {
         [value, jacobian, forward, reverse]
     }
 
-    /// The Jacobians of a function: those of an output stand together.
+    /// Returns the Jacobians of a function; those of one output follow each other.
     pub(super) fn jacobian_of(&mut self, of: &Interface, blocks: &[String], body: String) -> Interface {
         let mut inputs = of.inputs.clone();
         for (name, pattern) in &of.outputs {
@@ -65,13 +65,13 @@ impl Writer<'_> {
         Interface { name: format!("jac_{}", of.name), inputs, outputs, body }
     }
 
-    /// The rows of the compressed columns with a name.
+    /// Returns the number of rows of the pattern with a name.
     fn rows(&self, name: &str) -> usize {
         let named = self.patterns.iter().enumerate().find(|(index, _)| self.pattern_name(*index) == name);
         named.and_then(|(_, pattern)| pattern.first().copied()).unwrap_or(0)
     }
 
-    /// The tables and the code of a function.
+    /// Returns the tables and the code of a function.
     pub(super) fn definition(&self, interface: &Interface) -> String {
         let Interface { name, inputs, outputs, body } = interface;
         let prefix = self.file.prefix;

@@ -1,4 +1,4 @@
-//! The second derivatives of accelerations for CasADi: those of a step and of acados are computed by them, too.
+//! The second derivatives of accelerations for CasADi, from which those of a step and of acados are also computed.
 
 use std::fmt::Write;
 
@@ -7,15 +7,15 @@ use rne_codegen::{Function, Program};
 use super::casadi::{Writer, hessian, is_there};
 use super::casadi_interface::Interface;
 
-/// The helper, and the beginning of the derivatives of `adj1_forward_dynamics`.
+/// The helper function, and the beginning of the derivatives of `adj1_forward_dynamics`.
 const MOTION: &str = include_str!("casadi_motion.c");
 
-/// The elements of a square matrix that are not zero in every state.
+/// For each element of a square matrix, whether it can differ from zero.
 #[derive(Clone)]
 pub(super) struct Presence(Vec<Vec<bool>>);
 
 impl Presence {
-    /// The block of a program's outputs with this number.
+    /// Reads one block of a program's outputs; `block` counts the blocks from 0.
     fn of(program: &Program, block: usize) -> Self {
         let dof = program.dof;
         let skipped = block * dof * dof;
@@ -41,22 +41,22 @@ impl Presence {
     }
 }
 
-/// Where the derivatives of the accelerations are not zero in every state.
+/// For the derivatives of the accelerations, which elements can differ from zero.
 pub(super) struct Motion {
-    /// By q, by q̇ and by τ.
+    /// First derivatives with respect to q, q̇ and τ.
     pub(super) first: [Presence; 3],
-    /// Second derivatives of λᵀ q̈ by (q, q), (q, q̇), (q, τ) and (q̇, q̇). Accelerations are linear in τ, by M⁻¹,
-    /// which q alone changes.
+    /// Second derivatives of λᵀ q̈ with respect to (q, q), (q, q̇), (q, τ) and (q̇, q̇). There are no others, because
+    /// accelerations are linear in τ with the factor M⁻¹, which depends only on q.
     second: [Presence; 4],
 }
 
 impl Writer<'_> {
-    /// The helper that computes the second derivatives.
+    /// Returns the helper function that computes the second derivatives.
     pub(super) fn helper_of_motion(&self) -> String {
         self.filled(MOTION.split("// next function\n").next().unwrap_or_default())
     }
 
-    /// Where the derivatives of the accelerations are not zero, if the file has them.
+    /// Returns which derivatives of the accelerations can differ from zero, if the file has the functions for them.
     pub(super) fn motion(&self) -> Option<Motion> {
         let of_motion = self.find(Function::ForwardDynamicsDerivatives)?;
         let of_torques = hessian(self.file)?;
@@ -74,10 +74,11 @@ impl Writer<'_> {
         Some(Motion { first: first.clone(), second })
     }
 
-    /// The Jacobian of the reverse derivatives of the accelerations, if the file has what it is computed by.
+    /// Returns the Jacobian of the reverse derivatives of the accelerations, if the file has the functions for it.
     pub(super) fn second_of_motion(&mut self, reverse: &Interface) -> Option<Interface> {
         let motion = self.motion()?;
-        // by q, qd, tau, by the result, which it does not take, and by the multipliers
+        // for each derivative one column for q, qd and tau, one for the result, which is no argument, and one for the
+        // multipliers
         let columns = 5;
         let mut patterns = vec![self.nothing(); 3 * columns];
         let mut body = self.filled(MOTION.split("// next function\n").nth(1).unwrap_or_default());
@@ -89,8 +90,7 @@ impl Writer<'_> {
         Some(self.jacobian_of(reverse, &patterns, body))
     }
 
-    /// Writes the calls that put the second derivatives into a table of `columns` columns, and notes where they are not
-    /// zero.
+    /// Writes the calls that copy the second derivatives into a table of `columns` columns, and stores their patterns.
     pub(super) fn put_second(&mut self, text: &mut String, motion: &Motion, columns: usize, patterns: &mut [String]) {
         let places =
             [(0, 0, 0, false), (0, 1, 1, false), (0, 2, 2, false), (1, 1, 3, false), (1, 0, 1, true), (2, 0, 2, true)];
@@ -100,7 +100,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Writes a call that puts a matrix or its transpose, and returns the compressed columns.
+    /// Writes a call that copies a matrix or its transpose, and returns the pattern.
     pub(super) fn put(
         &mut self,
         text: &mut String,

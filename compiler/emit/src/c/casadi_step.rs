@@ -1,4 +1,5 @@
-//! A step of semi-implicit Euler for CasADi, with its Jacobians, its directional derivatives and its Hessian.
+//! A step of the semi-implicit Euler method for CasADi, with its Jacobians, its directional derivatives and its
+//! Hessian.
 
 use std::fmt::Write;
 
@@ -7,19 +8,19 @@ use rne_codegen::{Function, Program};
 use super::casadi::Writer;
 use super::casadi_interface::{Bodies, Interface};
 
-/// The helper of the bodies, and these, in the order of [`Writer::of_step`].
+/// The helper function, then the function bodies, in the order of [`Writer::of_step`].
 const STEP: &str = include_str!("casadi_step.c");
 
 /// The results of the step.
 const NEXT: [&str; 2] = ["next_q", "next_qd"];
 
 impl Writer<'_> {
-    /// The helper of the step's derivatives.
+    /// Returns the helper function of the step's derivatives.
     pub(super) fn helper_of_step(&self) -> String {
         self.filled(STEP.split("// next function\n").next().unwrap_or_default())
     }
 
-    /// The step, with its derivatives if the file has the functions that they are computed by.
+    /// Returns the step, with its derivatives if the file has the functions from which they are computed.
     pub(super) fn of_step(&mut self, program: &Program, given: &[(String, String)]) -> Vec<Interface> {
         let mut bodies = STEP.split("// next function\n").skip(1).map(|body| self.filled(body));
         let [value, common, forward, reverse, second] = std::array::from_fn(|_| bodies.next().unwrap_or_default());
@@ -54,7 +55,7 @@ impl Writer<'_> {
         };
         let [value, jacobian, forward, reverse] = self.family(&program.name, given, &returned, &blocks, bodies);
 
-        // by q, qd, tau and step, by what the file does not take, and by the multipliers
+        // columns for q, qd, tau and step, for results of the step, which are no arguments, and for the multipliers
         let columns = given.len() + 2 * returned.len();
         let nothing = self.nothing();
         let (column, row, number) = (self.dense(dof, 1), self.dense(1, dof), self.dense(1, 1));

@@ -1,4 +1,4 @@
-//! The header: the robot, what holds for all functions, and what each of them does.
+//! The C header: the robot, the properties that all functions share, and what each function does.
 
 use std::fmt::Write;
 
@@ -15,7 +15,7 @@ use crate::text::about_frame;
 use crate::wrap::{TIED, WIDTH, fill};
 use crate::{inert, table};
 
-/// How both files begin.
+/// Returns the beginning of the header and of the source.
 pub(crate) fn title(file: &File) -> String {
     let title = comment("//", &Heading::opening(&inert::title(file.robot)));
     let by = concat!("rne ", env!("CARGO_PKG_VERSION"));
@@ -69,8 +69,8 @@ pub(super) fn header(file: &File) -> Result<String, ConstantTooLarge> {
     Ok(text)
 }
 
-/// The functions to which the words on a function refer and which the header does not have. In headers of chains, the
-/// bytes stay what they were.
+/// Returns the functions that the description of a function mentions but the header does not have. For chains none is
+/// returned, so that their headers keep the same bytes.
 fn referred(file: &File, function: Function) -> Vec<Function> {
     if file.robot.is_serial() && file.robot.floating_base.is_none() {
         return Vec::new();
@@ -91,7 +91,7 @@ fn referred(file: &File, function: Function) -> Vec<Function> {
     referred
 }
 
-/// The struct of the run-time parameters, and an initialiser with the values of the file.
+/// Writes the struct of the run-time parameters, and an initialiser with the values of the robot file.
 fn parameters(file: &File, upper: &str) -> Result<String, ConstantTooLarge> {
     let Some(program) = file.programs.iter().find(|program| parameters::are_used(program)) else {
         return Ok(String::new());
@@ -118,7 +118,7 @@ fn parameters(file: &File, upper: &str) -> Result<String, ConstantTooLarge> {
     Ok(text)
 }
 
-/// Numbers that an array or a struct is initialised with.
+/// Returns a macro with the numbers that initialise an array or a struct.
 fn initialiser(name: &str, numbers: &[String]) -> String {
     let start = format!("#define {name} {{");
     let numbers = numbers.join(", ");
@@ -130,7 +130,7 @@ fn initialiser(name: &str, numbers: &[String]) -> String {
     format!("{start} \\\n{lines}}}\n")
 }
 
-/// The index of each joint by its name, and that of each dependent joint of closed loops.
+/// Writes an enum with the index of each joint, and one for the dependent joints of closed loops.
 fn joints(file: &File, upper: &str) -> String {
     let robot = file.robot;
     let indices = |about: &str, kind: &str, joints: &mut dyn Iterator<Item = &Joint>| {
@@ -153,7 +153,7 @@ fn joints(file: &File, upper: &str) -> String {
     text + &passive.unwrap_or_default() + "\n"
 }
 
-/// The index of each tip by its name, where a function takes or returns something for each.
+/// Writes an enum with the index of each tip, if a function takes or returns something for each tip.
 fn tips(file: &File, upper: &str) -> String {
     if !file.programs.iter().any(|program| program.function.has_tips()) {
         return String::new();
@@ -166,14 +166,14 @@ fn tips(file: &File, upper: &str) -> String {
         let JointIdentifier { upper_case, .. } = JointIdentifier::of(name, index);
         let link = frame.on.and_then(|on| file.robot.joints.get(on));
         let link = link.map_or("the base".to_owned(), |joint| format!("the link of {}", inert::c_comment(&joint.name)));
-        // without the list, the bytes stay what they were
+        // without the list `tips`, the bytes of the header stay as they were before it existed
         let on = if file.robot.tips.is_empty() { String::new() } else { format!(", on {link}") };
         let _ = writeln!(text, "    /// {name}{on}\n    {upper}_TIP_{upper_case} = {index},");
     }
     text + "};\n\n"
 }
 
-/// The limits of the joints as initialisers of arrays; a limit that no joint has is left out.
+/// Writes the limits of the joints as initialisers of arrays; a kind of limit that no joint has is left out.
 fn limits(file: &File, upper: &str) -> String {
     let precision = file.precision;
     let largest = match precision {
@@ -224,7 +224,7 @@ fn limits(file: &File, upper: &str) -> String {
     text
 }
 
-/// Conventions and table, and why the code can be trusted.
+/// Writes the conventions and the table of the robot, and why the code can be trusted.
 pub(crate) fn robot(file: &File) -> String {
     let Heading { frames, table, .. } = Heading::of(file.robot);
     let mut text = "//\n".to_owned();
@@ -244,14 +244,14 @@ pub(crate) fn robot(file: &File) -> String {
     for lines in evidence.into_iter().chain(others) {
         text.push_str("//\n");
         for line in lines {
-            // a number stays on its line
+            // a number and its minus sign stay on one line
             text.push_str(&comment("//", &line.replace(" - ", &format!("{TIED}-{TIED}"))));
         }
     }
     text
 }
 
-/// The contract of all functions.
+/// Writes the properties that all functions share: units, order of arrays, and what they do not do.
 fn contract(file: &File) -> String {
     let real = file.precision.c_type();
     let mut text = "//\n".to_owned();
@@ -289,14 +289,14 @@ fn contract(file: &File) -> String {
     text
 }
 
-/// Operations of every function, in columns.
+/// Returns the operation counts of every function, in columns.
 pub(crate) fn counts(programs: &[Program]) -> String {
     let titles = ["function", "products", "sums", "divisions", "angles"].map(str::to_owned);
     let lines: Vec<[String; 5]> = std::iter::once(titles).chain(programs.iter().map(table::counts)).collect();
     "//\n// Operations of one call, of the recursion -> of the code:\n//\n".to_owned() + &columns(&lines)
 }
 
-/// Cells below each other, as lines of a comment.
+/// Returns a table of cells as lines of a comment.
 pub(super) fn columns<const N: usize>(lines: &[[String; N]]) -> String {
     let mut text = String::new();
     for line in table::columns(lines) {

@@ -1,33 +1,33 @@
-//! Friction of a joint as a function of its speed.
+//! The friction of a joint as a function of its speed.
 
 use std::fmt;
 
 use rne_codegen::Real;
 use rne_model::{Entry, Joint, Robot};
 
-/// Friction at a joint: viscous q̇ + odd s + even s², with s = q̇ / √(q̇² + width²).
+/// Friction of a joint: viscous q̇ + odd s + even s², with s = q̇ / √(q̇² + width²).
 ///
-/// It is that of `actuator_torques_smooth` of the runtime: |G| (½ (Tc⁺ - Tc⁻) s + ½ (Tc⁺ + Tc⁻) s²) + G² B q̇.
+/// It is the friction of `actuator_torques_smooth` of the runtime: |G| (½ (Tc⁺ - Tc⁻) s + ½ (Tc⁺ + Tc⁻) s²) + G² B q̇.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointFriction {
-    /// N m s/rad or N s/m.
+    /// Viscous friction, N m s/rad or N s/m.
     pub(super) viscous: f64,
-    /// N m or N: half of the difference of Coulomb friction forward and backward.
+    /// N m or N: half of the difference of forward and backward Coulomb friction.
     pub(super) odd: f64,
-    /// N m or N: half of their sum.
+    /// N m or N: half of the sum of both.
     pub(super) even: f64,
     /// The speed at which s is 0.7, rad/s or m/s.
     pub(super) width: f64,
 }
 
-/// Why the friction of a robot is no function of the speeds.
+/// Why the friction of a robot cannot be computed from the speeds of its joints.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoFriction {
-    /// No joint has any.
+    /// No joint has friction.
     Nowhere,
-    /// The joint has Coulomb friction, and no speed about which it changes its sign.
+    /// The joint has Coulomb friction, but no width of speeds in which it changes its sign.
     NoWidth(String),
-    /// The width of the joint is too small to be squared in single precision.
+    /// The width of the joint is so small that its square is zero in single precision.
     NarrowWidth(String, f64),
     /// The friction of the joint changes its sign over a displacement, so it is no function of the speed.
     Displacement(String),
@@ -39,10 +39,10 @@ impl JointFriction {
     /// The smallest width, rad/s or m/s.
     pub const NARROWEST: f64 = 1e-9;
 
-    /// The friction of the joints from base to tip.
+    /// Returns the friction of the joints from base to tip.
     ///
     /// # Errors
-    /// When no joint has friction, or that of one cannot be computed from its speed alone.
+    /// When no joint has friction, or when the friction of a joint cannot be computed from its speed alone.
     pub fn of(robot: &Robot) -> Result<Vec<Self>, NoFriction> {
         let frictions = Self::about(robot, None)?;
         if frictions.iter().all(|friction| friction.viscous == 0.0 && friction.odd == 0.0) {
@@ -51,9 +51,9 @@ impl JointFriction {
         Ok(frictions)
     }
 
-    /// The friction of the joints from base to tip, zero at a joint that has none. Coulomb friction changes its sign
-    /// about the speed `width`, rad/s or m/s, or about the `coulomb_width` of each joint. A `width` is at least
-    /// [`NARROWEST`](Self::NARROWEST).
+    /// Returns the friction of the joints from base to tip, zero for a joint that has none. Coulomb friction changes
+    /// its sign within `width`, rad/s or m/s, around zero speed; without `width`, within the `coulomb_width` of each
+    /// joint. A `width` must be at least [`NARROWEST`](Self::NARROWEST).
     ///
     /// # Errors
     /// When the friction of a joint cannot be computed from its speed alone.
@@ -61,20 +61,20 @@ impl JointFriction {
         robot.coordinates().map(|index| Self::of_joint(robot, index, &robot.joints[index], width)).collect()
     }
 
-    /// The numbers viscous, odd, even and width of the law.
+    /// Returns the numbers viscous, odd, even and width of the formula.
     #[must_use]
     pub fn numbers(&self) -> [f64; 4] {
         [self.viscous, self.odd, self.even, self.width]
     }
 
-    /// The friction at a speed, N m or N.
+    /// Returns the friction at a speed, N m or N.
     #[must_use]
     pub fn torque(&self, qd: f64) -> f64 {
         self.torque_in(qd, |number| number, |x| 1.0 / x.sqrt())
     }
 
-    /// The friction at a speed in another type of numbers, with the operations of the emitted code in their order.
-    /// `number` makes numbers of this type, and `inverse_root` is 1/√x.
+    /// Returns the friction at a speed in another number type, with the same operations as the emitted code in the same
+    /// order. `number` converts to this type, and `inverse_root` returns 1/√x.
     pub fn torque_in<T: Real>(&self, qd: T, number: impl Fn(f64) -> T, inverse_root: impl Fn(T) -> T) -> T {
         let viscous = (self.viscous != 0.0).then(|| number(self.viscous) * qd);
         let coulomb = (self.odd != 0.0).then(|| {
@@ -88,14 +88,14 @@ impl JointFriction {
         }
     }
 
-    /// The derivative of the friction by the speed, N m s/rad or N s/m.
+    /// Returns the derivative of the friction with respect to the speed, N m s/rad or N s/m.
     #[must_use]
     pub fn derivative(&self, qd: f64) -> f64 {
         self.derivative_in(qd, |number| number, |x| 1.0 / x.sqrt())
     }
 
-    /// The derivative of the friction by the speed, viscous + (odd + 2 even s) width² r³ with r = 1/√(q̇² + width²), in
-    /// another type of numbers, as [`torque_in`](Self::torque_in).
+    /// Returns the derivative of the friction with respect to the speed, viscous + (odd + 2 even s) width² r³ with r =
+    /// 1/√(q̇² + width²), in another number type, as [`torque_in`](Self::torque_in) does for the friction.
     pub fn derivative_in<T: Real>(&self, qd: T, number: impl Fn(f64) -> T, inverse_root: impl Fn(T) -> T) -> T {
         let viscous = (self.viscous != 0.0).then(|| number(self.viscous));
         let coulomb = (self.odd != 0.0).then(|| {

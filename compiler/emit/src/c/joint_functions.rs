@@ -1,5 +1,5 @@
-//! Friction of the joints and limits of their torques: functions beside the programs, which are the same for every
-//! arm but for their numbers.
+//! Functions for the friction of the joints and the limits of their torques. They are not programs: they are the same
+//! for every arm except for their numbers.
 
 use std::fmt::Write;
 
@@ -10,7 +10,7 @@ use super::signature::wrapped;
 use super::{ConstantTooLarge, File, comment};
 use crate::syntax::Precision;
 
-/// Whether a function needs the bits of a number.
+/// Whether a function of the file reads the bits of a number.
 pub(super) fn needs_bits(file: &File) -> bool {
     has_coulomb(file) || file.additions.limits
 }
@@ -19,7 +19,7 @@ fn has_coulomb(file: &File) -> bool {
     file.additions.friction.is_some_and(|frictions| frictions.iter().any(|friction| friction.odd != 0.0))
 }
 
-/// The declarations for the header.
+/// Returns the declarations of these functions for the header.
 pub(super) fn declarations(file: &File) -> String {
     let mut text = String::new();
     if file.additions.friction.is_some() {
@@ -57,7 +57,7 @@ pub(super) fn declarations(file: &File) -> String {
     text
 }
 
-/// The functions.
+/// Returns the definitions of these functions.
 pub(super) fn definitions(file: &File) -> Result<String, ConstantTooLarge> {
     let mut text = String::new();
     if needs_bits(file) {
@@ -88,7 +88,7 @@ fn bits_type(file: &File) -> &'static str {
     }
 }
 
-/// The head of a function of a number per joint.
+/// Returns the head of a function that takes and returns one number per joint.
 fn head(file: &File, function: &str, input: &str, output: &str) -> String {
     let (real, dof) = (file.precision.c_type(), file.robot.dof());
     let arguments = [format!("const {real} {input}[{dof}]"), format!("{real} {output}[{dof}]")];
@@ -107,10 +107,11 @@ fn limits_head(file: &File) -> String {
     head(file, "limit_torques", "tau", "limited")
 }
 
-/// 1/√x from the bits of x: half of the exponent, then Newton's steps, each of which doubles the digits.
+/// Returns a function for 1/√x: its first guess halves the exponent in the bits of x, then each Newton step doubles the
+/// number of correct digits.
 fn inverse_root(file: &File) -> String {
     let (real, prefix) = (file.precision.c_type(), file.prefix);
-    // the relative error after the bits is 0.035; it is 1.8e-3, 4.7e-6, 3.3e-11, 1.7e-21 after the steps
+    // the relative error of the first guess is 0.035; after the steps it is 1.8e-3, 4.7e-6, 3.3e-11, 1.7e-21
     let (magic, steps) = match file.precision {
         Precision::Single => ("0x5f375a86u", 3),
         Precision::Double => ("0x5fe6eb50c7b537a9u", 4),
@@ -129,7 +130,7 @@ fn inverse_root(file: &File) -> String {
     text + "    return y;\n}\n"
 }
 
-/// A number of a joint's friction as the code has it.
+/// Returns a number of a joint's friction as a literal of the code.
 fn constant(file: &File, quantity: Quantity, joint: usize, value: f64) -> Result<String, ConstantTooLarge> {
     let too_large =
         ConstantTooLarge { name: Name::scalar(quantity, joint), value, function: Function::ActuatorTorques };
@@ -174,7 +175,7 @@ fn friction(file: &File, frictions: &[JointFriction]) -> Result<String, Constant
     Ok(text + "}\n")
 }
 
-/// The derivatives of the friction by the speeds.
+/// Writes the function for the derivatives of the friction with respect to the speeds.
 fn derivatives(file: &File, frictions: &[JointFriction]) -> Result<String, ConstantTooLarge> {
     let (real, prefix) = (file.precision.c_type(), file.prefix);
     let mut text = format!("{}\n{{\n", derivatives_head(file));
@@ -212,7 +213,8 @@ fn derivatives(file: &File, frictions: &[JointFriction]) -> Result<String, Const
     Ok(text + "}\n")
 }
 
-/// Limits by the bits of the numbers: of a comparison, compilers make a branch.
+/// Writes the function for the limits. It works on the bits of the numbers, because compilers make a branch of a
+/// comparison.
 fn limits(file: &File) -> String {
     let (real, prefix, bits) = (file.precision.c_type(), file.prefix, bits_type(file));
     let (sign, infinity, shift) = match file.precision {
@@ -223,7 +225,7 @@ fn limits(file: &File) -> String {
     for (index, joint) in file.robot.independent_joints().enumerate() {
         let tau = format!("tau{}", index + 1);
         let _ = writeln!(arguments, "    const {real} {tau} = tau[{index}];");
-        // a limit that the type cannot hold limits no number of it
+        // a limit that is too large for the number type limits none of its numbers
         let limit = joint.limits.effort.and_then(|limit| file.precision.literal(limit));
         let value = limit.map_or(tau.clone(), |limit| format!("{prefix}_limited({tau}, {limit})"));
         let _ = writeln!(results, "    limited[{index}] = {value};");

@@ -1,4 +1,4 @@
-//! Programs as C99 without a library: a header that documents the functions, and the source.
+//! Writes programs as C99 that needs no library: a header that documents the functions, and the source.
 
 mod casadi;
 mod casadi_derivatives;
@@ -33,7 +33,7 @@ pub(super) use signature::{array_name, element_type, elements_of, inputs, layout
 pub use signature::{record_name, result_elements};
 pub(crate) use source::{SIN_COS, UNUSED};
 
-/// The code of one robot.
+/// The header and the source of one robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CCode {
     title: String,
@@ -42,39 +42,39 @@ pub struct CCode {
 }
 
 impl CCode {
-    /// The code with tests at the end of the source, as [`c_tests`](super::c_tests) writes them.
+    /// Returns the code with tests at the end of the source, which [`c_tests`](super::c_tests) writes.
     #[must_use]
     pub fn with_tests(self, tests: &str) -> Self {
         Self { body: self.body + tests, ..self }
     }
 
-    /// The code with comments in ASCII.
+    /// Returns the code with comments in ASCII.
     #[must_use]
     pub fn in_ascii(self) -> Self {
         let [title, header, body] = [self.title, self.header, self.body].map(|text| ascii(&text));
         Self { title, header, body }
     }
 
-    /// The header.
+    /// Returns the header.
     #[must_use]
     pub fn header(&self) -> &str {
         &self.header
     }
 
-    /// The source, which includes the header by the name of its file.
+    /// Returns the source, which includes the header by the name of its file.
     #[must_use]
     pub fn source(&self, header: &str) -> String {
         format!("{}\n#include \"{header}\"\n\n{}", self.title, self.body)
     }
 
-    /// Both as one file that includes neither.
+    /// Returns header and source as one file that includes no other file of this code.
     #[must_use]
     pub fn one_file(&self) -> String {
         format!("{}\n{}", self.header, self.body)
     }
 }
 
-/// The given programs of one robot as functions of C.
+/// Writes the programs of one robot as functions of C.
 ///
 /// # Errors
 /// When a constant is too large for the number type.
@@ -87,7 +87,7 @@ pub fn c_code(
     c_code_with(robot, programs, precision, prefix, &Additions::default())
 }
 
-/// The parts of a file of C beside the programs.
+/// Optional parts of the C code, in addition to the programs.
 #[derive(Clone, Copy, Debug, Default)]
 #[allow(clippy::struct_excessive_bools)] // each is an option
 pub struct Additions<'a> {
@@ -97,25 +97,25 @@ pub struct Additions<'a> {
     pub friction: Option<&'a [JointFriction]>,
     /// Whether there is a function `limit_torques`, which keeps torques within the effort limits.
     pub limits: bool,
-    /// Whether the header has a constant for the index of each joint: [`JointIdentifier`](rne_model::JointIdentifier)
-    /// says its name. Two joints with one identifier give a header that does not compile;
-    /// [`Checked::identifiers`](rne_model::Checked::identifiers) is the error then.
+    /// Whether the header has a constant for the index of each joint, named by
+    /// [`JointIdentifier`](rne_model::JointIdentifier). If two joints have one identifier, the header does not compile;
+    /// [`Checked::identifiers`](rne_model::Checked::identifiers) returns the error in this case.
     pub names: bool,
-    /// Whether CasADi can call the programs for which [`is_for_casadi`] is true, with derivatives where the functions
-    /// of [`casadi_derivatives`] are among the programs. Needs [`Precision::Double`].
+    /// Whether CasADi can call the programs for which [`is_for_casadi`] is true; with derivatives if the functions of
+    /// [`casadi_derivatives`] are among the programs. Needs [`Precision::Double`].
     pub casadi: bool,
-    /// Whether acados can integrate the robot, too: the functions of an explicit differential equation. Needs `casadi`,
-    /// and among the programs `forward_dynamics` and `forward_dynamics_derivatives`.
+    /// Whether acados can integrate the robot: this adds the functions of an explicit differential equation. Needs
+    /// `casadi`, and among the programs `forward_dynamics` and `forward_dynamics_derivatives`.
     pub acados: bool,
-    /// Whether there is a function `runge_kutta_step`, and one for its derivatives where `forward_dynamics_derivatives`
+    /// Whether there is a function `runge_kutta_step`; with one for its derivatives if `forward_dynamics_derivatives`
     /// is among the programs. Needs `forward_dynamics`.
     pub runge_kutta: bool,
-    /// Whether [`ptx`](crate::ptx) also writes kernels of rollouts, for the programs for whose functions
+    /// Whether [`ptx`](crate::ptx) also writes rollout kernels, for the programs of functions for which
     /// [`is_for_rollouts`](crate::is_for_rollouts) is true.
     pub rollout: bool,
 }
 
-/// The code of [`c_code`], with additions.
+/// Writes the code of [`c_code`], with additional parts.
 ///
 /// # Errors
 /// When a constant is too large for the number type.
@@ -130,7 +130,7 @@ pub fn c_code_with(
     Ok(CCode { title: header::title(&file), header: header::header(&file)?, body: source::body(&file)? })
 }
 
-/// The programs that are written, and how.
+/// The programs of a file, and how they are written.
 pub(crate) struct File<'a> {
     pub(crate) robot: &'a Robot,
     pub(crate) programs: &'a [Program],
@@ -139,7 +139,7 @@ pub(crate) struct File<'a> {
     pub(crate) additions: &'a Additions<'a>,
 }
 
-/// The robot file of the code: its name without folders, and a hash of its contents.
+/// The robot file from which the code was generated: its name without folders, and a hash of its contents.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin {
     file: String,
@@ -147,7 +147,7 @@ pub struct Origin {
 }
 
 impl Origin {
-    /// The origin of code that is made of a file with this SHA-256, in hexadecimal.
+    /// Returns the origin of code that was generated from a file with this SHA-256, in hexadecimal.
     #[must_use]
     pub fn new(file: &str, sha256: &str) -> Self {
         Self { file: file.to_owned(), sha256: sha256.to_owned() }
@@ -165,7 +165,7 @@ impl<'a> File<'a> {
         Syntax::C { precision: self.precision, prefix: self.prefix }
     }
 
-    /// Whether sines and cosines are needed.
+    /// Whether some program needs sines and cosines.
     pub(crate) fn turns(&self) -> bool {
         self.programs.iter().any(|program| !program.sines_and_cosines.is_empty())
     }
@@ -175,7 +175,7 @@ impl<'a> File<'a> {
     }
 }
 
-/// A constant that the number type cannot hold.
+/// The error of a constant that is too large for the number type.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConstantTooLarge {
     /// The name of the constant in the code.
@@ -204,7 +204,7 @@ impl fmt::Display for ConstantTooLarge {
 
 impl std::error::Error for ConstantTooLarge {}
 
-/// Words as a comment, in which each line begins with `start`; an empty comment if there are no words.
+/// Returns words as a comment whose lines begin with `start`; an empty comment if there are no words.
 pub(crate) fn comment(start: &str, text: &str) -> String {
     let blank = format!("{start} ");
     let lines = if text.is_empty() { start.to_owned() } else { fill(&c_comment(text), WIDTH, &blank, &blank) };

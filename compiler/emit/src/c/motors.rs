@@ -1,4 +1,4 @@
-//! The maps between the joints and the motors of the list `motors`: functions beside the programs.
+//! Functions that convert between the joints and the motors of the list `motors`.
 
 use std::fmt::Write;
 
@@ -7,17 +7,17 @@ use rne_codegen::{Function, Name, Quantity};
 use super::signature::wrapped;
 use super::{ConstantTooLarge, File, comment};
 
-/// One of the maps: y = A x.
+/// A linear map between joints and motors, y = A x.
 struct Map {
     name: &'static str,
     about: &'static str,
-    /// The argument and the result, with the number of their elements.
+    /// The name of the argument x, with its number of elements.
     argument: (&'static str, usize),
     result: (&'static str, usize),
     rows: Vec<Vec<f64>>,
 }
 
-/// The maps of a robot; none without the list `motors`.
+/// Returns the maps of a robot; none without the list `motors`.
 fn maps(file: &File) -> Vec<Map> {
     let (dof, motors) = (file.robot.dof(), file.robot.drives.len());
     if motors == 0 {
@@ -58,7 +58,7 @@ fn head(file: &File, map: &Map) -> String {
     wrapped(&format!("void {}_{}(", file.prefix, map.name), &arguments)
 }
 
-/// The declarations for the header.
+/// Returns the declarations of these functions for the header.
 pub(super) fn declarations(file: &File) -> String {
     let mut text = String::new();
     for map in maps(file) {
@@ -67,7 +67,7 @@ pub(super) fn declarations(file: &File) -> String {
     text
 }
 
-/// The functions.
+/// Returns the definitions of these functions.
 pub(super) fn definitions(file: &File) -> Result<String, ConstantTooLarge> {
     let mut text = String::new();
     let real = file.precision.c_type();

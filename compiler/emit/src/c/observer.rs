@@ -1,7 +1,7 @@
-//! The momentum observer between two ticks: a struct with what it knows, its beginning and its update.
+//! The momentum observer in C: a struct for its state between two control cycles, its initialisation and its update.
 //!
-//! As `ObserverState` of the runtime, with the same operations in the same order, joint by joint; only the weight of
-//! the low-pass is computed in the number type of the file.
+//! It does the same operations as `ObserverState` of the runtime in the same order, joint by joint. Only the weight of
+//! the low-pass filter is computed in the number type of the file.
 
 use std::fmt::Write;
 
@@ -11,12 +11,12 @@ use super::signature::{parameters_type, record_type, wrapped};
 use super::{File, comment};
 use crate::parameters;
 
-/// The program that the observer calls, if it is among the programs.
+/// Returns the program that the observer calls, if the file has it.
 fn program<'a>(file: &'a File) -> Option<&'a Program> {
     file.programs.iter().find(|program| program.function == Function::MomentumAndRate)
 }
 
-/// Struct and declarations for the header.
+/// Returns the struct and the declarations for the header.
 pub(super) fn declarations(file: &File) -> String {
     let Some(program) = program(file) else { return String::new() };
     let (real, prefix, dof) = (file.precision.c_type(), file.prefix, program.dof);
@@ -52,7 +52,7 @@ pub(super) fn declarations(file: &File) -> String {
     text
 }
 
-/// The functions.
+/// Returns the definitions of the functions.
 pub(super) fn definitions(file: &File) -> String {
     let Some(program) = program(file) else { return String::new() };
     let (real, prefix, dof) = (file.precision.c_type(), file.prefix, program.dof);
@@ -108,10 +108,10 @@ pub(super) fn definitions(file: &File) -> String {
     text
 }
 
-/// The shortest period, s, as that of the runtime.
+/// The shortest control period, s, as in the runtime.
 const SHORTEST_PERIOD: f64 = 1e-30;
 
-/// Terms of the series: the next one is below a unit in the last place of a double, at 1/2.
+/// Number of terms of the series: at 1/2, the next term is below one unit in the last place of a double.
 const TERMS: u32 = 14;
 
 fn begin_head(file: &File) -> String {

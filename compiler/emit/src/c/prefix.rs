@@ -1,22 +1,22 @@
-//! Prefix of the names of a robot's functions.
+//! The prefix of the names of a robot's functions in C.
 
 use std::fmt;
 use std::str::FromStr;
 
 use rne_model::Robot;
 
-/// The beginning of every name that a header declares: C has no modules.
+/// The prefix of every name that a header declares, which replaces the modules that C does not have.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Prefix(String);
 
 impl Prefix {
-    /// The robot's name, which is an identifier of C as well.
+    /// Returns the robot's name as prefix; it is an identifier of C.
     #[must_use]
     pub fn of(robot: &Robot) -> Self {
         Self(robot.name.clone())
     }
 
-    /// The prefix as text.
+    /// Returns the prefix as text.
     #[must_use]
     pub fn as_str(&self) -> &str {
         &self.0
@@ -32,8 +32,8 @@ impl fmt::Display for Prefix {
 impl FromStr for Prefix {
     type Err = BadPrefix;
 
-    /// A letter, then letters, digits and underscores: names that begin with an underscore are the compiler's, and so
-    /// are those with two in C++.
+    /// Parses a prefix: a letter, then letters, digits and single underscores. Names that begin with an underscore are
+    /// reserved for the compiler, in C++ also names with two underscores in sequence.
     fn from_str(text: &str) -> Result<Self, BadPrefix> {
         let mut characters = text.chars();
         let starts = characters.next().is_some_and(|first| first.is_ascii_alphabetic());
@@ -43,7 +43,7 @@ impl FromStr for Prefix {
     }
 }
 
-/// A prefix with which no name can begin.
+/// The error of a text that cannot be a prefix of names in C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BadPrefix;
 

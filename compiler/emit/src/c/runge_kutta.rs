@@ -1,8 +1,8 @@
-//! The step of the classical Runge-Kutta method and its derivatives, which call the accelerations and their derivatives
-//! of the same file four times.
+//! The step of the classical Runge-Kutta method and its derivatives, as functions that call the accelerations and their
+//! derivatives in the same file four times.
 //!
-//! As `RungeKuttaStep` and `RungeKuttaStepDerivatives` of the runtime, with the same operations in the same order. Four
-//! copies of the accelerations in one function would be four times the code.
+//! They do the same operations as `RungeKuttaStep` and `RungeKuttaStepDerivatives` of the runtime in the same order. A
+//! function that contained the accelerations four times would have four times the code.
 
 use std::fmt::Write;
 
@@ -12,27 +12,27 @@ use super::signature::{parameters_type, record_type, wrapped};
 use super::{File, comment};
 use crate::parameters;
 
-/// The functions in C after the programs, with words in capitals for what differs from file to file.
+/// The C code of both functions, with words in capitals that are replaced in each file.
 const TEMPLATE: &str = include_str!("runge_kutta.c");
 
-/// The line between the step and its derivatives.
+/// The line of the template between the step and its derivatives.
 const DERIVATIVES: &str = "// the derivatives\n";
 
-/// The program of the accelerations, where the file is to have the step.
+/// Returns the program of the accelerations, if the file is to have the step.
 fn accelerations<'a>(file: &'a File) -> Option<&'a Program> {
     file.programs.iter().find(|program| file.additions.runge_kutta && program.function == Function::ForwardDynamics)
 }
 
-/// Whether the file has the derivatives of the step, too.
+/// Whether the file has the derivatives of the step.
 fn has_derivatives(file: &File) -> bool {
     file.programs.iter().any(|program| program.function == Function::ForwardDynamicsDerivatives)
 }
 
-/// The steps, and the functions whose arguments and results they have.
+/// The two functions, each with the function that has the same arguments and results.
 pub(crate) const STEPS: [(&str, Function); 2] =
     [("runge_kutta_step", Function::EulerStep), ("runge_kutta_step_derivatives", Function::EulerStepDerivatives)];
 
-/// The layouts of the results.
+/// Returns the layouts of the results of the functions that the file has.
 pub(super) fn layouts(file: &File) -> Vec<Layout> {
     let sizes = rne_codegen::sizes_of(file.robot);
     let is_there = accelerations(file).is_some();
@@ -40,7 +40,7 @@ pub(super) fn layouts(file: &File) -> Vec<Layout> {
     STEPS[..count].iter().map(|(_, function)| function.layout(sizes)).collect()
 }
 
-/// The head of a function whose result is that of a step of another method.
+/// Returns the head of a function; its result has the type of the Euler step function `of`.
 fn head(file: &File, program: &Program, name: &str, of: Function) -> String {
     let (real, dof) = (file.precision.c_type(), program.dof);
     let mut arguments: Vec<_> = ["q", "qd", "tau"].map(|name| format!("const {real} {name}[{dof}]")).into();
@@ -54,12 +54,12 @@ fn head(file: &File, program: &Program, name: &str, of: Function) -> String {
     wrapped(&format!("void {}_{name}(", file.prefix), &arguments)
 }
 
-/// The heads of the step and of its derivatives.
+/// Returns the heads of the step and of its derivatives.
 fn heads(file: &File, program: &Program) -> [String; 2] {
     STEPS.map(|(name, of)| head(file, program, name, of))
 }
 
-/// The declarations for the header.
+/// Returns the declarations for the header.
 pub(super) fn declarations(file: &File) -> String {
     let Some(program) = accelerations(file) else { return String::new() };
     let [step, derivatives] = heads(file, program);
@@ -84,7 +84,7 @@ pub(super) fn declarations(file: &File) -> String {
     text
 }
 
-/// The functions.
+/// Returns the definitions of the functions.
 pub(super) fn definitions(file: &File) -> String {
     let Some(program) = accelerations(file) else { return String::new() };
     let (step, derivatives) = TEMPLATE.split_once(DERIVATIVES).unwrap_or((TEMPLATE, ""));
@@ -106,7 +106,7 @@ pub(super) fn definitions(file: &File) -> String {
         ("SIX", &number(6.0)),
         ("REAL", file.precision.c_type()),
         ("DOF", &dof),
-        // what has the prefix in it comes last
+        // the words below whose values contain the prefix are replaced after it
         ("PREFIX", file.prefix),
         ("TAKEN", &taken),
         ("HEAD_OF_STEP", &of_step),

@@ -1,4 +1,4 @@
-//! The functions as C declares them: first the arrays of arguments, then the results.
+//! Declares functions in C: first the arrays of arguments, then the results.
 
 use std::fmt::Write;
 
@@ -9,7 +9,7 @@ use crate::parameters;
 use crate::syntax::Precision;
 use crate::wrap::{TIED, WIDTH, fill};
 
-/// The argument arrays of a function, by names that are no functions of the C library.
+/// Returns the argument arrays of a function; none of them has the name of a function of the C library.
 pub(crate) fn inputs(program: &Program) -> Vec<ArgumentArray> {
     let mut arrays = program.arrays_without_parameters();
     for array in &mut arrays {
@@ -18,12 +18,12 @@ pub(crate) fn inputs(program: &Program) -> Vec<ArgumentArray> {
     arrays
 }
 
-/// Lengths or places in square brackets.
+/// Returns lengths or indices in square brackets.
 pub(crate) fn subscript(numbers: &[usize]) -> String {
     numbers.iter().fold(String::new(), |text, number| text + &format!("[{number}]"))
 }
 
-/// The name of an argument array in C, whose library has functions `sin` and `cos`.
+/// Returns the name of an argument array in C, whose library has functions `sin` and `cos`.
 pub(crate) fn array_name(name: &'static str) -> &'static str {
     match name {
         "sin" => "sine",
@@ -32,7 +32,7 @@ pub(crate) fn array_name(name: &'static str) -> &'static str {
     }
 }
 
-/// A function's head, without what follows its parentheses.
+/// Returns a function's head up to its closing parenthesis.
 pub(super) fn head(file: &File, program: &Program) -> String {
     let real = file.precision.c_type();
     let layout = program.layout();
@@ -50,10 +50,10 @@ pub(super) fn head(file: &File, program: &Program) -> String {
     wrapped(&format!("{returned} {}_{}(", file.prefix, program.name), &arguments)
 }
 
-/// A head with its arguments, in several lines where it is too long for one.
+/// Returns a head with its arguments, in several lines if it is too long for one.
 pub(super) fn wrapped(start: &str, arguments: &[String]) -> String {
     let line = format!("{start}{})", arguments.join(", "));
-    // one column is for the semicolon
+    // one column is left for the semicolon
     if line.len() < WIDTH {
         return line;
     }
@@ -61,7 +61,7 @@ pub(super) fn wrapped(start: &str, arguments: &[String]) -> String {
     format!("{start}\n{}", fill(&(arguments.join(", ") + ")"), WIDTH, "    ", "    "))
 }
 
-/// The lengths of arrays in arrays as C declares them, and their elements.
+/// Returns the lengths of nested arrays as C declares them, and the layout of their elements.
 pub(crate) fn elements_of(layout: &Layout) -> (String, &Layout) {
     let (mut lengths, mut of) = (String::new(), layout);
     while let Layout::Array(length, element) = of {
@@ -71,7 +71,7 @@ pub(crate) fn elements_of(layout: &Layout) -> (String, &Layout) {
     (lengths, of)
 }
 
-/// The type of an element.
+/// Returns the type of an element.
 pub(crate) fn element_type(prefix: &str, precision: Precision, element: &Layout) -> String {
     match element {
         Layout::Record(record, _) => record_name(prefix, *record),
@@ -79,7 +79,7 @@ pub(crate) fn element_type(prefix: &str, precision: Precision, element: &Layout)
     }
 }
 
-/// A parameter for a result: the address of a record, or an array.
+/// Returns the declaration of a parameter for a result: the address of a record, or an array.
 fn declared(file: &File, layout: &Layout, name: &str) -> String {
     let star = if matches!(layout, Layout::Record(..)) { "*" } else { "" };
     variable(file, layout, &format!("{star}{name}"))
@@ -90,28 +90,29 @@ fn variable(file: &File, layout: &Layout, name: &str) -> String {
     format!("{} {name}{lengths}", element_type(file.prefix, file.precision, of))
 }
 
-/// The name of a record's type.
+/// Returns the name of a record's type.
 pub(super) fn record_type(file: &File, record: Record) -> String {
     record_name(file.prefix, record)
 }
 
-/// The name of a record's type, of a file with this prefix.
+/// Returns the name of a record's type in a file with this prefix.
 #[must_use]
 pub fn record_name(prefix: &str, record: Record) -> String {
     format!("{prefix}_{}", record.c_name())
 }
 
-/// The type of the run-time parameters.
+/// Returns the name of the type of the run-time parameters.
 pub(super) fn parameters_type(file: &File) -> String {
     format!("{}_parameters", file.prefix)
 }
 
-/// The fields of a record as they are declared.
+/// Returns the declarations of the fields of a record.
 pub(super) fn fields(file: &File, record: Record, parts: &[Layout]) -> Vec<String> {
     record.fields().iter().zip(parts).map(|(name, part)| variable(file, part, name)).collect()
 }
 
-/// Every record that the functions return, once; one that is part of another stands before it.
+/// Returns every record that the functions return, without duplicates; a record that is part of another one comes
+/// before it.
 pub(super) fn records(file: &File) -> Vec<(Record, Vec<Layout>)> {
     fn put(layout: &Layout, records: &mut Vec<(Record, Vec<Layout>)>) {
         let (_, Layout::Record(record, parts)) = elements_of(layout) else { return };
@@ -129,21 +130,21 @@ pub(super) fn records(file: &File) -> Vec<(Record, Vec<Layout>)> {
     records
 }
 
-/// The variables for the numbers of a result, in their order.
+/// Returns the variables to which the numbers of a result are written, in order.
 pub(super) fn places(program: &Program) -> Vec<String> {
     let mut places = Vec::new();
-    // a record is written by its address
+    // the parameter for a record is its address
     elements(&program.layout(), program.function.entry().output, "->", &mut places);
     places
 }
 
-/// The numbers of a result that is a variable.
+/// Returns expressions for the numbers of a result that is stored in a variable.
 #[must_use]
 pub fn result_elements(program: &Program, variable: &str) -> Vec<String> {
     layout_elements(&program.layout(), variable)
 }
 
-/// The numbers of a variable with this layout, in order.
+/// Returns expressions for the numbers of a variable with this layout, in order.
 pub(crate) fn layout_elements(layout: &Layout, variable: &str) -> Vec<String> {
     let mut places = Vec::new();
     elements(layout, variable, ".", &mut places);

@@ -1,4 +1,4 @@
-//! The source: sine and cosine, and every function.
+//! The C source: sine and cosine, and every function.
 
 use std::fmt::Write;
 
@@ -17,7 +17,7 @@ use crate::text::legend;
 /// Sine and cosine in C; PREFIX is replaced by the prefix.
 pub(crate) const SIN_COS: [&str; 2] = [include_str!("sin_cos_float.c"), include_str!("sin_cos_double.c")];
 
-/// The source after the inclusion of the header.
+/// Returns the source after the line that includes the header.
 pub(super) fn body(file: &File) -> Result<String, ConstantTooLarge> {
     let mut text = String::new();
     if file.turns() {
@@ -98,11 +98,11 @@ fn function(file: &File, program: &Program) -> Result<String, ConstantTooLarge> 
     Ok(text)
 }
 
-/// The statements, each result stored as soon as it is known: then it is alive no longer. The arguments were read
-/// before, so a result may take the place of one.
+/// Returns the statements, with each result stored as soon as it is known, so that its register becomes free. Arguments
+/// are read before, so a result array may be the same memory as an argument.
 fn stored_at_once(file: &File, program: &Program) -> String {
     let mut results = result(file, program).into_iter().zip(statements_of_outputs(program)).collect::<Vec<_>>();
-    // stable: the results of one statement keep their order
+    // the sort is stable, so the results of one statement keep their order
     results.sort_by_key(|(_, after)| *after);
     let mut results = results.into_iter().peekable();
     let mut text = String::new();
@@ -119,7 +119,7 @@ fn stored_at_once(file: &File, program: &Program) -> String {
     text
 }
 
-/// The elements that are used, by their names.
+/// Returns declarations for the elements of arguments that the program uses, with their names.
 fn arguments(file: &File, program: &Program) -> String {
     let declaration = file.syntax().declaration();
     let mut text = String::new();
@@ -142,10 +142,10 @@ fn arguments(file: &File, program: &Program) -> String {
     text
 }
 
-/// The place for a sine or cosine that nothing needs.
+/// The variable for a sine or cosine that is not needed.
 pub(crate) const UNUSED: &str = "unused";
 
-/// One call for each angle. Results that nobody needs go to one shared variable.
+/// Returns one call of sine and cosine for each angle. Results that are not needed go to one shared variable.
 fn turns(file: &File, program: &Program) -> String {
     let (real, prefix) = (file.precision.c_type(), file.prefix);
     let (mut places, mut calls) = (String::new(), String::new());
@@ -167,7 +167,7 @@ fn turns(file: &File, program: &Program) -> String {
     places + &calls
 }
 
-/// The lines that return the results, in the order of these.
+/// Returns the lines that return the results, in the order of the results.
 fn result(file: &File, program: &Program) -> Vec<String> {
     let syntax = file.syntax();
     let values = program.outputs.iter().map(|output| program.values.used(output.value));

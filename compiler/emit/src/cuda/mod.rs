@@ -1,4 +1,4 @@
-//! Programs as a header of functions for CUDA and C++, templates over the number type.
+//! Writes programs as a header of functions for CUDA and C++: templates over the number type.
 
 use std::fmt::Write as _;
 
@@ -14,7 +14,7 @@ use crate::ptx::heading;
 use crate::syntax::{Precision, Syntax};
 use crate::wrap::{WIDTH, fill};
 
-/// The contract of all functions, in the heading.
+/// The properties that all functions share, as text for the heading.
 const CONTRACT: [&str; 3] = [
     "Functions for one state, for the host and for the device, over float, double or any other number type with +, -, \
      *, /, comparisons and a function PREFIX_sin_cos. All arrays are flat, in the order of the comments; the results \
@@ -34,7 +34,7 @@ const BEGIN: &str = "\
 #endif
 ";
 
-/// The given programs of one robot as one header, which any compiler of C++ reads as well.
+/// Writes the programs of one robot as one header, which any C++ compiler accepts as well.
 ///
 /// # Errors
 /// When a constant is not finite.

@@ -1,4 +1,4 @@
-//! modelDescription.xml and buildDescription.xml.
+//! Writes modelDescription.xml and buildDescription.xml.
 
 use std::fmt::Write;
 
@@ -6,10 +6,10 @@ use super::variables::{Role, Variable};
 use super::{FmiVersion, Fmu, FmuCausality, units};
 use crate::inert;
 
-/// Whether a variable belongs to a list of the structure.
+/// Whether a variable belongs to one of the lists of the model structure.
 type IsListed = fn(&Variable) -> bool;
 
-/// Text in an attribute of XML.
+/// Escapes a text for an attribute of XML.
 pub(super) fn escaped(text: &str) -> String {
     let mut escaped = String::new();
     for c in text.chars() {
@@ -18,7 +18,7 @@ pub(super) fn escaped(text: &str) -> String {
             '<' => escaped.push_str("&lt;"),
             '>' => escaped.push_str("&gt;"),
             '"' => escaped.push_str("&quot;"),
-            // XML has no such characters
+            // characters that XML does not allow
             c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => escaped.push(' '),
             c => escaped.push(c),
         }
@@ -26,7 +26,7 @@ pub(super) fn escaped(text: &str) -> String {
     escaped
 }
 
-/// Whether a name is one of the structured names of FMI: identifiers with points between them.
+/// Whether a name is a structured name of FMI: identifiers with points between them.
 fn is_structured(name: &str) -> bool {
     name.split('.').all(|part| {
         let starts = part.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
@@ -74,7 +74,7 @@ impl Fmu<'_> {
         text
     }
 
-    /// The element of an interface, with the sources in FMI 2.0.
+    /// Writes the element of an interface type; in FMI 2.0 it lists the sources.
     fn interface(&self, text: &mut String, kind: &str) {
         let name = escaped(&self.robot.name);
         let steps = if kind == "CoSimulation" { " canHandleVariableCommunicationStepSize=\"true\"" } else { "" };
@@ -151,7 +151,8 @@ impl Fmu<'_> {
         };
     }
 
-    /// How a variable refers to another: by its value reference, in FMI 2.0 by its place counted from 1.
+    /// Returns the number by which another variable is referred to: its value reference, in FMI 2.0 its place counted
+    /// from 1.
     fn reference(&self, variable: usize) -> usize {
         if self.version == FmiVersion::Two { variable + 1 } else { variable }
     }
@@ -159,7 +160,7 @@ impl Fmu<'_> {
     fn structure(&self, text: &mut String, variables: &[Variable]) {
         let (dof, is_forward) = (self.robot.dof(), self.causality == FmuCausality::Forward);
         let is_second = self.version == FmiVersion::Two;
-        // a state depends on itself alone; a result depends on the three arrays of arguments
+        // a state depends only on itself; a result depends on the three arrays of arguments
         let (result, arguments): (usize, Vec<usize>) = if is_forward {
             (2 * dof + 1, (1..=2 * dof).chain(3 * dof + 1..=4 * dof).collect())
         } else {
@@ -175,7 +176,7 @@ impl Fmu<'_> {
             let mut lines = String::new();
             for index in (0..variables.len()).filter(|&index| is_listed(&variables[index])) {
                 let _ = write!(lines, "    <{tag} {by}=\"{}\"", self.reference(index));
-                // without a list, an initial value depends on everything, also on parameters
+                // without a list of dependencies, an initial value depends on all variables, also on parameters
                 if list != "InitialUnknowns" {
                     let known = if index < result { &[index][..] } else { &arguments };
                     let known: Vec<String> = known.iter().map(|&known| self.reference(known).to_string()).collect();

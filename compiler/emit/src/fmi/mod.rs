@@ -1,7 +1,7 @@
-//! FMUs of FMI 2.0 and 3.0: the texts of a robot for model exchange and co-simulation.
+//! Writes FMUs of FMI 2.0 and 3.0: the files of a robot for model exchange and co-simulation.
 //!
-//! The C code of [`c_code_with`](crate::c_code_with) computes; a wrapper has the functions of FMI. The types of FMI are
-//! declared in our own words, so an FMU compiles without the headers of the standard.
+//! The C code of [`c_code_with`](crate::c_code_with) does the computation; a wrapper has the functions of FMI. The
+//! wrapper declares the types of FMI itself, so an FMU compiles without the headers of the standard.
 
 mod description;
 mod parameters;
@@ -20,7 +20,7 @@ use variables::{PAYLOAD, Variable};
 
 pub use parameters::with_inertial_parameters;
 
-/// A version of the standard.
+/// A version of the FMI standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FmiVersion {
     /// FMI 2.0.
@@ -29,17 +29,17 @@ pub enum FmiVersion {
     Three,
 }
 
-/// The direction of an FMU: its inputs and outputs.
+/// The inputs and outputs of an FMU.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FmuCausality {
-    /// Torques in, motion out: forward dynamics, whose states are q and q̇.
+    /// Torques are inputs and the motion is the output: forward dynamics, whose states are q and q̇.
     Forward,
-    /// Motion in, torques out: inverse dynamics without states.
+    /// The motion is the input and torques are outputs: inverse dynamics without states.
     Inverse,
 }
 
 impl FmuCausality {
-    /// The functions that the C code of an FMU needs.
+    /// Returns the functions that the C code of an FMU needs.
     #[must_use]
     pub const fn functions(self) -> &'static [Function] {
         match self {
@@ -56,7 +56,7 @@ impl FmuCausality {
 /// A robot as an FMU, without its binaries.
 #[derive(Clone, Copy, Debug)]
 pub struct Fmu<'a> {
-    /// The robot; its run-time parameters that the programs use are parameters of the FMU.
+    /// The robot; those of its run-time parameters that the programs use become parameters of the FMU.
     pub robot: &'a Robot,
     /// The programs of [`FmuCausality::functions`].
     pub programs: &'a [Program],
@@ -66,15 +66,15 @@ pub struct Fmu<'a> {
     pub version: FmiVersion,
     /// Forward or inverse dynamics.
     pub causality: FmuCausality,
-    /// A text that no FMU with other variables has.
+    /// A text that is different for FMUs with different variables.
     pub token: &'a str,
 }
 
-/// The default of the longest step of the integrator, s.
+/// Default of the longest step of the integrator, s.
 const STEP: f64 = 0.001;
 
 impl Fmu<'_> {
-    /// The files of the FMU: paths with `/`, and texts.
+    /// Returns the files of the FMU: their paths with `/`, and their texts.
     #[must_use]
     pub fn files(&self) -> Vec<(String, String)> {
         let name = &self.robot.name;
@@ -92,7 +92,7 @@ impl Fmu<'_> {
             (format!("sources/{name}.c"), self.code.source(&header)),
             (format!("sources/{header}"), self.code.header().to_owned()),
             ("sources/fmi-functions.c".to_owned(), self.wrapper(&variables)),
-            // no robot has a name with a hyphen
+            // the name of a robot has no hyphen, so this file has no name in common with its files
             ("sources/fmi-types.h".to_owned(), types.to_owned()),
             ("sources/CMakeLists.txt".to_owned(), cmake),
             ("documentation/index.html".to_owned(), self.documentation()),
@@ -103,19 +103,19 @@ impl Fmu<'_> {
         files
     }
 
-    /// The names of the sources in the folder `sources` that a compiler is given.
+    /// Returns the names of the files in the folder `sources` that must be compiled.
     #[must_use]
     pub fn sources(&self) -> [String; 2] {
         [format!("{}.c", self.robot.name), "fmi-functions.c".to_owned()]
     }
 
-    /// The parameters that some program uses.
+    /// Returns the parameters that some program uses.
     fn parameters(&self) -> Vec<FmuParameter> {
         let is_used = |index| self.programs.iter().any(|program| used(program).any(|(used, _)| used == index));
         parameters::of(self.robot, is_used)
     }
 
-    /// The source with the functions of FMI.
+    /// Returns the source with the functions of FMI.
     fn wrapper(&self, variables: &[Variable]) -> String {
         let (name, parameters) = (&self.robot.name, self.parameters());
         let equations = match self.causality {
@@ -158,7 +158,7 @@ impl Fmu<'_> {
         for (place, is_used) in ["VALUE_ARGUMENT", "DERIVATIVES_ARGUMENT", "MASS_ARGUMENT"].into_iter().zip(&used) {
             equations = equations.replace(place, if *is_used { ", &parameters" } else { "" });
         }
-        // a function that uses no parameter needs no struct
+        // a function that uses no parameter does not fill the struct of the parameters
         let mut parts = equations.split("FILLED").map(str::to_owned).collect::<Vec<_>>();
         for (part, is_used) in parts.iter_mut().skip(1).zip([used[0], used[1..].contains(&true)]) {
             part.insert_str(0, if is_used { &filled } else { "" });
@@ -184,7 +184,7 @@ impl Fmu<'_> {
     }
 }
 
-/// A template with the name of the robot. It comes last: it may be any word.
+/// Inserts the name of the robot into a template. This comes last, because the name may contain another placeholder.
 fn with_name(text: &str, name: &str) -> String {
     text.replace("PREFIX", name)
 }

@@ -1,4 +1,4 @@
-//! The numbers of a robot that an FMU has as parameters.
+//! The numbers of a robot that become parameters of an FMU.
 
 use rne_model::{Entry, Formula, InertiaElement, Robot};
 
@@ -7,11 +7,11 @@ use crate::parameters::{OF_C, Parameter};
 /// The names of the axes.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// A robot whose gravity, masses, centres of mass and inertias are known at run time only, beside the run-time
-/// parameters that it has.
+/// Returns a robot whose gravity, masses, centres of mass and inertias are also run-time parameters, in addition to
+/// those that it has.
 ///
-/// A number that is zero stays constant, and so does one that a run-time parameter of the file gives already. The new
-/// parameters come after those of the file.
+/// A number that is zero stays constant, and a number that already depends on a run-time parameter of the file does not
+/// change. The new parameters come after those of the file.
 #[must_use]
 pub fn with_inertial_parameters(mut robot: Robot) -> Robot {
     let links = 0..robot.joints.len();
@@ -38,7 +38,7 @@ pub fn with_inertial_parameters(mut robot: Robot) -> Robot {
     robot
 }
 
-/// The name of a number in C.
+/// Returns the name of a number in C.
 fn identifier(entry: Entry) -> String {
     match entry {
         Entry::Gravity(axis) => format!("gravity_{}", AXES[axis]),
@@ -57,11 +57,11 @@ pub(super) struct FmuParameter {
     /// The unit by its name in the model description, if it is known.
     pub(super) unit: Option<&'static str>,
     pub(super) value: f64,
-    /// The member of the struct in C.
+    /// The name of the member in the C struct.
     pub(super) member: String,
 }
 
-/// The run-time parameters with these indices, as variables.
+/// Returns the run-time parameters for whose index `is_used` is true, as variables.
 pub(super) fn of(robot: &Robot, is_used: impl Fn(usize) -> bool) -> Vec<FmuParameter> {
     let all = Parameter::of(robot, OF_C).into_iter().enumerate();
     let used = all.filter(|(index, _)| is_used(*index));
@@ -71,7 +71,7 @@ pub(super) fn of(robot: &Robot, is_used: impl Fn(usize) -> bool) -> Vec<FmuParam
         });
         let (name, description) = match added {
             Some((entry, _)) => variable(robot, *entry),
-            // a variable of the FMU itself has this name
+            // the FMU has a variable of its own with this name
             None if ["time", "step"].contains(&&*parameter.name) => {
                 (format!("parameter.{}", parameter.name), parameter.about())
             }
@@ -83,7 +83,7 @@ pub(super) fn of(robot: &Robot, is_used: impl Fn(usize) -> bool) -> Vec<FmuParam
     .collect()
 }
 
-/// The name and the description of a number of the robot file.
+/// Returns the name and the description of a number of the robot file.
 fn variable(robot: &Robot, entry: Entry) -> (String, String) {
     let link = |link: usize| &robot.joints[link].name;
     match entry {

@@ -3,7 +3,7 @@
 /// A unit: its name, and the exponents of kg, m, s and rad.
 pub(super) type Unit = (&'static str, [i8; 4]);
 
-/// All units, of angles first.
+/// All units; those of angles come first.
 pub(super) const ALL: [Unit; 12] = [
     ("rad", [0, 0, 0, 1]),
     ("rad/s", [0, 0, -1, 1]),
@@ -19,7 +19,7 @@ pub(super) const ALL: [Unit; 12] = [
     ("s", [0, 0, 1, 0]),
 ];
 
-/// The unit of a number of a robot file as FMI writes it; none where it is not in the list.
+/// Returns the unit of a number of a robot file in the spelling of FMI; `None` if it is not in the list.
 pub(super) fn of_file(unit: &str) -> Option<&'static str> {
     let name = unit.replace('²', "2").replace(' ', ".");
     ALL.iter().find(|(known, _)| *known == name).map(|(known, _)| *known)

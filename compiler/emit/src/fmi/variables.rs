@@ -1,4 +1,4 @@
-//! The variables of an FMU; the place of a variable in the list is its value reference.
+//! The variables of an FMU; the index of a variable in the list is its value reference.
 
 use rne_model::JointKind;
 
@@ -10,7 +10,7 @@ pub(super) enum Role {
     Time,
     Input,
     Output,
-    /// An output that is a state too.
+    /// An output that is also a state.
     State,
     /// A parameter that may change between two steps.
     Tunable,
@@ -18,7 +18,7 @@ pub(super) enum Role {
     Fixed,
 }
 
-/// A variable; all are real numbers.
+/// A variable of the FMU, which is a real number.
 pub(super) struct Variable {
     pub(super) name: String,
     pub(super) description: String,
@@ -26,11 +26,11 @@ pub(super) struct Variable {
     pub(super) role: Role,
     pub(super) start: f64,
     pub(super) range: Option<(f64, f64)>,
-    /// The variable of which it is the derivative.
+    /// The index of the variable whose time derivative this one is.
     pub(super) derivative_of: Option<usize>,
 }
 
-/// The numbers of a payload, in the order of the argument in C: their names and units.
+/// The numbers of a payload, in the order of the argument in C, with their names and units.
 pub(super) const PAYLOAD: [(&str, &str); 10] = [
     ("mass", "kg"),
     ("com.x", "m"),
@@ -45,7 +45,7 @@ pub(super) const PAYLOAD: [(&str, &str); 10] = [
 ];
 
 impl Variable {
-    /// A variable of any value.
+    /// Returns a variable without a range.
     fn new(name: &str, description: &str, unit: Option<&'static str>, role: Role, start: f64) -> Self {
         let (name, description) = (name.to_owned(), description.to_owned());
         Self { name, description, unit, role, start, range: None, derivative_of: None }
@@ -53,8 +53,8 @@ impl Variable {
 }
 
 impl Fmu<'_> {
-    /// Time; q, q̇, q̈ and τ of all joints; the step of the integrator; the parameters; the payload. The C code knows
-    /// this order.
+    /// Returns the variables in the order that the C code expects: time; q, q̇, q̈ and τ of all joints; the step of the
+    /// integrator; the parameters; the payload.
     pub(super) fn variables(&self) -> Vec<Variable> {
         let mut variables = vec![Variable::new("time", "Simulation time", Some("s"), Role::Time, 0.0)];
         variables.extend(self.variables_of_joints());
@@ -77,11 +77,11 @@ impl Fmu<'_> {
         variables
     }
 
-    /// q, q̇, q̈ and τ of all joints, behind the time.
+    /// Returns q, q̇, q̈ and τ of all joints, which come after the time.
     fn variables_of_joints(&self) -> Vec<Variable> {
         let is_forward = self.causality == FmuCausality::Forward;
         let dof = self.robot.dof();
-        // narrowed by those of joints that follow
+        // the limits of a joint that others follow also respect the limits of these joints
         let coordinate_limits = self.robot.coordinate_limits();
         let mut variables = Vec::new();
         for (order, kind) in ["q", "qd", "qdd", "tau"].into_iter().enumerate() {
@@ -107,7 +107,7 @@ impl Fmu<'_> {
                     description: format!("{what} of joint {}", index + 1),
                     unit: Some(units[order]),
                     role,
-                    // 0, or the limit that is nearest to it
+                    // 0, or the limit that is nearest to 0
                     start: range.map_or(0.0, |(least, most)| 0.0_f64.max(least).min(most)),
                     range: range.filter(|(least, most)| least <= most),
                     derivative_of: (is_forward && matches!(order, 1 | 2)).then(|| 1 + (order - 1) * dof + index),

@@ -1,4 +1,5 @@
-//! Tests that deep expressions are laid out in linear time, and that a broken statement is the one of a single line.
+//! Tests that deeply nested expressions are laid out in linear time, and that a broken statement has the same words as
+//! that on a single line.
 
 use fastrand::Rng;
 use rne_codegen::{
@@ -14,11 +15,11 @@ use crate::wrap::WIDTH;
 
 const LANGUAGES: [Syntax<'_>; 2] = [Syntax::Rust, Syntax::C { precision: Precision::Double, prefix: "arm" }];
 
-/// Parts that may be looked at for each node of an expression: when it is measured, when it is laid out in two or three
-/// rooms, and when it is written.
+/// Largest number of visits for each part of an expression: one when it is measured, those when it is laid out in two
+/// or three rooms, and one when it is written.
 const VISITS: usize = 6;
 
-/// Writes a statement, compares it with its one line, and counts the parts that were looked at.
+/// Writes a statement, compares it with the same statement on one line, and returns the number of visited parts.
 fn visits(syntax: Syntax, expression: Expression<'_>) -> usize {
     let mut breaks = LineBreaks::new(syntax, expression);
     let text = breaks.statement("    ", Annotated::from("let x ="));
@@ -52,7 +53,7 @@ fn deeply_nested_code_of_arms_is_written_in_linear_time() {
             }
         }
     }
-    // else the test shows nothing
+    // otherwise the test does not test deep expressions
     assert!(deepest > 20, "{deepest} levels");
     println!("{deepest} levels, {most} visits of a node");
 }
@@ -67,7 +68,7 @@ fn depth(expression: Expression<'_>) -> usize {
     }
 }
 
-/// A random expression of `levels` levels, of which one operand of each goes deeper and the others are small.
+/// Returns a random expression of `levels` levels; at each level, one operand goes deeper and the others are small.
 fn random(rng: &mut Rng, levels: usize, values: &mut Values) -> ValueId {
     let name = |rng: &mut Rng, values: &mut Values| {
         let quantity = [Quantity::Mass, Quantity::Position, Quantity::Omega, Quantity::JointMoment][rng.usize(..4)];
@@ -124,7 +125,7 @@ fn the_lines_of_a_statement_are_as_wide_as_code_may_be() {
         for syntax in LANGUAGES {
             let text = LineBreaks::new(syntax, expression).statement("    ", Annotated::from("let x ="));
             broken += usize::from(text.as_str().contains('\n'));
-            // a call stays on its line
+            // a call is never broken, so its line may be too long
             let widest = text
                 .as_str()
                 .lines()

@@ -30,7 +30,7 @@ pub(super) fn resolutions<'a>(robot: &Robot, program: &Program, joint: usize, st
 
 fn became(robot: &Robot, name: Name, found: &ResolvedAs) -> Option<Annotated> {
     let words = match found {
-        // the statement shows it
+        // the statement itself shows it
         ResolvedAs::Computed => return None,
         ResolvedAs::Same(..) if matches!(name.quantity, Quantity::Torque | Quantity::AxisTorque) => return None,
         ResolvedAs::Same(other, sign) => {
@@ -53,7 +53,7 @@ fn became(robot: &Robot, name: Name, found: &ResolvedAs) -> Option<Annotated> {
     Some(words.into())
 }
 
-/// How many operations are left at the places that pass, and why the others are not there.
+/// Returns how many operations are left at the places for which `here` is true, and why the others were removed.
 pub(super) fn folds(
     robot: &Robot,
     fold_report: &FoldReport,
@@ -77,14 +77,14 @@ pub(super) fn folds(
     }
     let mut reasons: Vec<(usize, String)> = reasons.into_iter().map(|(reason, count)| (count, reason)).collect();
     reasons.sort_by_key(|&(count, _)| std::cmp::Reverse(count));
-    // naming the last one takes no more room than counting it
+    // if only one reason would be left, it is named instead of counted
     let named = most.filter(|&most| most + 1 < reasons.len()).unwrap_or(reasons.len());
     let others = reasons.split_off(named).into_iter().map(|(count, _)| count).sum();
     (before != (0, 0)).then_some(Folds { before, left, reasons, others })
 }
 
-/// Causes in the words of the table; `magnitude` is what they made of a number, 0 or 1. Likes are told in one breath:
-/// d1_x = d1_y = 0.
+/// Returns causes in words; `magnitude`, 0 or 1, is the absolute value that they give a number. Causes with the same
+/// words are combined: d1_x = d1_y = 0.
 #[must_use]
 pub fn reason(robot: &Robot, causes: &Causes, magnitude: u8) -> String {
     let mut words: Vec<String> = causes.iter().map(|cause| one_cause(robot, cause, magnitude)).collect();
@@ -115,7 +115,7 @@ fn one_cause(robot: &Robot, cause: Cause, magnitude: u8) -> String {
         (Quantity::ThetaSine | Quantity::ThetaCosine, Some(dh)) => {
             format!("theta{} = {}", name.joint, angle(&dh.theta))
         }
-        // a factor of -1 is folded like 1
+        // a factor of -1 is removed as a factor of 1 is
         _ if magnitude == 1 && name.quantity != Quantity::TipRotation => format!("{name} is 1 or -1"),
         _ => Cause::Table(name).to_string(),
     }

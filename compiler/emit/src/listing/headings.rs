@@ -6,7 +6,7 @@ use rne_model::{Joint, JointKind, Robot, one_line};
 use super::Line;
 use crate::formula::{Numbers, formulas, payload_formulas, reduced_formulas};
 
-/// The heading of derivatives, and of what one joint accelerates.
+/// Returns the heading of derivatives, or of the terms for a unit acceleration of one joint.
 pub(super) fn by_title(robot: &Robot, program: &Program, joint: usize, step: Step, by: WithRespectTo) -> String {
     let what = match step {
         Step::Beyond => joint_title(robot, joint),
@@ -21,7 +21,8 @@ pub(super) fn by_title(robot: &Robot, program: &Program, joint: usize, step: Ste
     }
 }
 
-/// The heading of a formula beyond the seven steps: the function's own, or what several functions share.
+/// Returns the heading of a quantity that is not of the seven steps: that of the function, or one that several
+/// functions share.
 pub(super) fn beyond_title(program: &Program, quantity: Quantity, joint: usize) -> String {
     if let Some(own) = rne_codegen::own(program.function, quantity) {
         return (own.heading)(joint);
@@ -39,17 +40,17 @@ pub(super) fn beyond_title(program: &Program, quantity: Quantity, joint: usize) 
     }
 }
 
-/// Whether the link of a joint, counted from 1, has a first moment and no mass.
+/// Whether the link of a joint, counted from 1, has a first moment in addition to its mass.
 pub(super) fn has_first_moment(robot: &Robot, joint: usize) -> bool {
     robot.joints.get(joint.wrapping_sub(1)).is_some_and(|joint| joint.row.link.has_first_moment())
 }
 
-/// The heading of a step of one joint, and its formulas.
+/// Returns the heading of a step of one joint, and its formulas.
 pub(super) fn heading<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -> Vec<Line<'a>> {
     let kind = robot.joints.get(joint.wrapping_sub(1)).map_or(JointKind::Revolute, |joint| joint.row.kind);
     let numbers = Numbers::of(robot, joint, program.function);
     let formulas = match recursion(program) {
-        // the lecture's base is at rest
+        // in the lecture the base is at rest, so there are no formulas for it
         _ if joint == 0 => Vec::new(),
         Form::SevenSteps if joint > program.joints => payload_formulas(step, &numbers),
         Form::SevenSteps => formulas(step, kind, &numbers, has_first_moment(robot, joint)),
@@ -60,15 +61,15 @@ pub(super) fn heading<'a>(robot: &Robot, program: &Program, joint: usize, step: 
     std::iter::once(title).chain(formulas.into_iter().map(Line::Formula)).collect()
 }
 
-/// The recursion of which a program is made: the regressor and what is made of the reduced recursion know origins of
-/// frames, not centres of mass.
+/// Returns the recursion from which a program is derived. The regressor and programs of the reduced form use origins of
+/// frames instead of centres of mass.
 pub(in super::super) fn recursion(program: &Program) -> Form {
     let is_reduced = program.form != Form::SevenSteps
         && (Function::TORQUES.contains(&program.function) || !program.choices.is_empty());
     if is_reduced || program.function == Function::Regressor { Form::Reduced } else { Form::SevenSteps }
 }
 
-/// A joint by its number; on a tree, where the number alone does not say the branch, with its name.
+/// Returns a joint by its number; for a tree with its name as well, because the number does not tell the branch.
 fn joint_title(robot: &Robot, joint: usize) -> String {
     match robot.joints.get(joint.wrapping_sub(1)).filter(|_| !robot.is_serial()) {
         Some(Joint { name, .. }) => format!("joint {joint} ({})", one_line(name)),

@@ -11,17 +11,16 @@ use super::{Line, Section, Selection};
 use crate::formula::{Numbers, base_formulas};
 use crate::text::returned;
 
-/// A program whose statements keep to joints and steps.
+/// Returns the sections of a program whose statements are listed by joints and steps.
 pub(super) fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Section<'a>> {
-    // out with steps 1 to 5, back with 6 and 7
-    // a payload is one link more
+    // the outward pass has steps 1 to 5, the inward pass 6 and 7; a payload is one more link
     let last = program.joints + usize::from(program.function.takes(Argument::Payload));
     let floats = program.function.is_of_floating_base();
     let first = usize::from(!(floats && robot.floating_base.is_some()));
     let outward = (first..=last).flat_map(|joint| Step::ALL[..5].iter().map(move |&step| (joint, step)));
     let inward = (first..=last).rev().flat_map(|joint| Step::ALL[5..].iter().map(move |&step| (joint, step)));
     let mut sections = Vec::new();
-    // several steps use them, and not the first one first
+    // several steps use these statements, in any order, so they come first
     let of_parameters = of_parameters(program);
     if what.joint.is_none() && what.step.is_none() && !of_parameters.is_empty() {
         let heading = Line::Heading("numbers of the table, from the parameters".to_owned());
@@ -31,7 +30,7 @@ pub(super) fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection)
         sections.push(Section { place: None, lines });
     }
     let is_of_links = |joint, step| match step {
-        // nobody gives the velocity of a floating base
+        // the velocity of a floating base is no argument
         Step::Velocity if floats => false,
         Step::Acceleration | Step::Wrenches => true,
         // the joint of a payload does not move
@@ -64,7 +63,7 @@ pub(super) fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection)
     sections
 }
 
-/// The statements that depend on run-time parameters alone.
+/// Returns the names of the statements that depend on run-time parameters only.
 fn of_parameters(program: &Program) -> HashSet<Name> {
     let constants: HashSet<Name> = program.constants().map(|constant| constant.name).collect();
     let mut found: HashSet<Name> = HashSet::new();
@@ -79,7 +78,7 @@ fn of_parameters(program: &Program) -> HashSet<Name> {
     found
 }
 
-/// A program whose statements do not keep to joints and steps, in the order in which they are computed.
+/// Returns the sections of a program whose statements are listed in the order in which they are computed.
 pub(super) fn in_order<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Section<'a>> {
     let mut sections = Vec::new();
     if what.is_everything() {
@@ -117,13 +116,13 @@ pub(super) fn in_order<'a>(robot: &Robot, program: &'a Program, what: Selection)
     sections
 }
 
-/// The place under which a statement is listed: that of its name, where it has a step. A value that two formulas share
-/// stands at the first of them, whose joint and step may be others.
+/// Returns the place under which a statement is listed: that of its name, if its quantity belongs to a step. A value
+/// that two formulas share is listed at the first of them, which may have another joint and step.
 fn shown_place(program: &Program, statement: &Statement) -> Place {
     let Statement { name, place, .. } = statement;
     let has_own_form = program.form != Form::SevenSteps && Function::TORQUES.contains(&program.function);
     match name.quantity.step() {
-        // the last row of the solution is the result
+        // the last statement of the solution for a joint is the result itself
         _ if name.quantity == Quantity::RateDot => {
             Place { joint: name.joint, step: Step::Beyond, quantity: Quantity::Scaled, by: None }
         }

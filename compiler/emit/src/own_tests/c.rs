@@ -1,4 +1,4 @@
-//! Tests of emitted C: a program for the end of its source, behind `#ifdef RNE_TEST`.
+//! Tests of emitted C: a program for the end of its source, inside `#ifdef RNE_TEST`.
 
 use std::fmt::Write;
 
@@ -14,18 +14,18 @@ use crate::c::{
 use crate::parameters::{self};
 use crate::wrap::{WIDTH, fill};
 
-/// The line above the tests.
+/// The line with which the tests begin.
 const GUARD: &str = "\n#ifdef RNE_TEST\n";
 
-/// A source of C without its tests.
+/// Returns a source of C without its tests.
 #[must_use]
 pub fn without_c_tests(source: &str) -> &str {
     source.split_once(GUARD).map_or(source, |(code, _)| code)
 }
 
-/// A function `main` for the end of a source of [`c_code`](crate::c_code), behind `#ifdef RNE_TEST`: it compares
-/// what the programs return at the given states, and tries laws of mechanics. It prints what is wrong, and returns 0
-/// where nothing is. The states are numbers of the number type.
+/// Returns a function `main` for the end of a source of [`c_code`](crate::c_code), inside `#ifdef RNE_TEST`: it
+/// compares the results of the programs at the given states with expected values, and tests laws of mechanics. It
+/// prints all errors, and returns 0 if there are none. The numbers of the states are of the number type.
 #[must_use]
 pub fn c_tests(
     robot: &Robot,
@@ -55,7 +55,7 @@ pub fn c_tests(
     } else {
         String::new()
     };
-    // a function that nothing calls is a warning
+    // a helper that no test calls is left out, because compilers warn about it
     let helpers = [
         ("test_largest(", largest(real)),
         ("test_compare(", COMPARE.to_owned()),
@@ -81,7 +81,7 @@ pub fn c_tests(
     )
 }
 
-/// The function that returns the largest magnitude among numbers of a type.
+/// Returns a function of C that finds the largest magnitude among numbers of a type.
 fn largest(real: &str) -> String {
     format!(
         "static double test_largest(const {real} *numbers, unsigned count, double largest)\n{{\n    \
@@ -91,7 +91,7 @@ fn largest(real: &str) -> String {
     )
 }
 
-/// The function that compares a number with another.
+/// A function of C that compares a number with the expected one.
 const COMPARE: &str = "\
 // Compares a number with the expected one: the difference may be `allowed` at most. NaN is always wrong.
 static void test_compare(const char *what, unsigned state, unsigned number, double found, double expected,
@@ -106,7 +106,7 @@ static void test_compare(const char *what, unsigned state, unsigned number, doub
 
 ";
 
-/// The body of the test of each law but the last.
+/// The body of the test of each law except the last.
 const LAWS: &str = include_str!("c_laws.txt");
 
 struct Tests<'a> {
@@ -118,7 +118,8 @@ struct Tests<'a> {
 }
 
 impl Tests<'_> {
-    /// The rounding errors of the number type, its constants, and sums of hundreds of terms.
+    /// Returns the tolerance for the rounding errors of the number type, of its constants, and of sums of hundreds of
+    /// terms.
     const fn tolerance(&self) -> &'static str {
         match self.precision {
             Precision::Single => "1e-4",
@@ -127,12 +128,12 @@ impl Tests<'_> {
     }
 
     fn numbers(&self, numbers: &[f64]) -> String {
-        // a number that is too large for the type becomes infinite, and the test fails
+        // a number that is too large for the type is written as infinity, so that the test fails
         let numbers = numbers.iter().map(|&number| self.precision.literal(number).unwrap_or("(1.0f / 0.0f)".into()));
         numbers.collect::<Vec<_>>().join(", ")
     }
 
-    /// A table with a line per state.
+    /// Returns a table with one line per state.
     fn table(&self, start: &str, rows: &[&[f64]]) -> String {
         let mut text = format!("{start} = {{\n");
         for row in rows {
@@ -142,7 +143,7 @@ impl Tests<'_> {
         text + "};\n"
     }
 
-    /// The arguments at all states that the tests name.
+    /// Returns those arguments at all states that occur in the text `tests`.
     fn states(&self, tests: &str) -> String {
         let real = self.precision.c_type();
         let Some(first) = self.golden.first() else { return String::new() };
@@ -162,8 +163,8 @@ impl Tests<'_> {
         text
     }
 
-    /// Statements that call a function at a state and name the numbers that it returns, one after the other: what they
-    /// are, then the statements. An argument may be another.
+    /// Returns statements that call a function at a state and store the numbers of its result in an array `name`.
+    /// `others` replaces some arguments by other expressions.
     fn call(&self, program: &Program, others: &[(&str, &str)], name: &str) -> String {
         let real = self.precision.c_type();
         let mut given: Vec<String> = inputs(program)
@@ -197,12 +198,12 @@ impl Tests<'_> {
         )
     }
 
-    /// A call of the program of a function.
+    /// Returns a call of the program of a function; `None` if the file does not have it.
     fn call_of(&self, function: Function, others: &[(&str, &str)], name: &str) -> Option<String> {
         Some(self.call(program(self.programs, function)?, others, name))
     }
 
-    /// A variable for what a function writes, and how it is passed.
+    /// Returns the declaration of a variable for the result of a function, and the expression that passes it.
     fn declared(&self, program: &Program, name: &str) -> (String, String) {
         let layout = program.layout();
         let (lengths, of) = elements_of(&layout);
@@ -211,11 +212,11 @@ impl Tests<'_> {
         (format!("{kind} {name}{lengths}"), address)
     }
 
-    /// The function that holds a program against values: its name and its text.
+    /// Returns the function that compares a program with expected values: its name and its text.
     fn values(&self, index: usize) -> Option<(String, String)> {
         let (program, expected) = (self.programs.get(index)?, results(self.golden, index)?);
         let (real, function, count) = (self.precision.c_type(), program.function, expected.first()?.len());
-        // accelerations are as far off as the mass matrix is from a singular one
+        // the closer the mass matrix is to a singular one, the larger are the errors of accelerations
         let parts = if function.divides().is_some() && self.precision == Precision::Single {
             "100.0 * test_tolerance"
         } else {
@@ -240,8 +241,8 @@ impl Tests<'_> {
         Some((name, text))
     }
 
-    /// The functions that compare friction and its derivatives with their laws in double precision, at the speeds of
-    /// the states.
+    /// Returns the functions that compare friction and its derivatives with their formulas in double precision, at the
+    /// speeds of the states.
     fn friction(&self, frictions: &[JointFriction]) -> [(String, String); 2] {
         let speeds: Vec<&[f64]> = self.golden.iter().map(|state| state.argument("qd")).collect();
         let laws = [
@@ -257,7 +258,7 @@ impl Tests<'_> {
         })
     }
 
-    /// The function that compares limited torques: above, below and within the limits of each joint.
+    /// Returns the function that compares limited torques: above, below and within the limits of each joint.
     fn limits(&self) -> (String, String) {
         let efforts = || self.robot.independent_joints().map(|joint| joint.limits.effort);
         let parts = [2.0, -2.0, 0.5];
@@ -272,7 +273,7 @@ impl Tests<'_> {
         let rows: Vec<&[f64]> = given.iter().map(Vec::as_slice).collect();
         let table = self.table(&format!("    static const {real} given[{}][{dof}]", rows.len()), &rows);
         let call = format!("{}_limit_torques(given[state], found);", self.prefix);
-        // the limits are the same constants here and there
+        // the code and this test have the same constants for the limits, so no tolerance is needed
         self.joints("limit_torques", &call, &table.replace("\n};", "\n    };"), &expected, "0.0")
     }
 
@@ -280,9 +281,9 @@ impl Tests<'_> {
         program(self.programs, function).is_some()
     }
 
-    /// The function that compares a step of the Runge-Kutta method, or its derivatives, with values: its name and its
-    /// text. The result is that of a step of another method. Of positions and velocities, the test compares what the
-    /// step changes, because the step is short.
+    /// Returns the function that compares a step of the Runge-Kutta method, or its derivatives, with expected values:
+    /// its name and its text. The result has the type of the Euler step function `of`. For positions and velocities,
+    /// the test compares their changes during the step, because the step is short.
     fn step(&self, at: usize, (what, of): (&str, Function)) -> Option<(String, String)> {
         let accelerations = program(self.programs, Function::ForwardDynamics)?;
         let expected: Vec<&[f64]> = self.golden.iter().map(|state| state.steps[at].as_slice()).collect();
@@ -298,13 +299,13 @@ impl Tests<'_> {
             let start = start.map_or_else(String::new, |start| format!(" - test_{}", start.replace('[', "[state][")));
             let _ = writeln!(copies, "        found[{index}] = {element}{start};");
         }
-        // positions and velocities, or the blocks of derivatives, each with a scale of its own
+        // positions and velocities, or the blocks of derivatives, are compared with separate scales
         let blocks = if at == 0 { 2 } else { 6 };
         let size = count / blocks;
-        // rounding of terms that cancel, in parts of the tolerance
+        // scale for numbers that are only rounding errors of terms that cancel
         let floors = vec![format!("{:?}", 1e-2 * Golden::STEP); blocks].join(", ");
         let parameters = if parameters::are_used(accelerations) { ", &test_parameters[state]" } else { "" };
-        // as those of accelerations
+        // the tolerance is that of the accelerations
         let parts = if self.precision == Precision::Single { "100.0 * test_tolerance" } else { "test_tolerance" };
         let text = format!(
             "static void test_{what}(void)\n{{\n{}    unsigned state;\n    \
@@ -327,7 +328,8 @@ impl Tests<'_> {
         Some((format!("test_{what}"), text))
     }
 
-    /// A function that compares what `call` writes into `found`, a number per joint, with a row for each state.
+    /// Returns a function that compares `found`, one number per joint that `call` writes, with a row of `expected` for
+    /// each state.
     fn joints(&self, what: &str, call: &str, tables: &str, expected: &[Vec<f64>], allowed: &str) -> (String, String) {
         let (real, dof, states) = (self.precision.c_type(), self.robot.dof(), expected.len());
         let rows: Vec<&[f64]> = expected.iter().map(Vec::as_slice).collect();
@@ -345,7 +347,7 @@ impl Tests<'_> {
 
     fn law(&self, law: Law) -> Option<(String, String)> {
         let states = self.golden.len();
-        // it needs differences of energies, which single precision cannot represent
+        // this law needs differences of energies, for which single precision is not accurate enough
         if law == Law::Power {
             return None;
         }
@@ -370,7 +372,7 @@ impl Tests<'_> {
     }
 }
 
-/// The table of an argument at all states.
+/// Returns the name of the table of an argument at all states.
 fn array(name: &'static str) -> String {
     format!("test_{}", array_name(name))
 }

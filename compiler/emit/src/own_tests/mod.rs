@@ -1,6 +1,6 @@
-//! Tests that are emitted beside the code: values that another program has computed, and laws of mechanics.
+//! Tests that are emitted with the code: values that another program has computed, and laws of mechanics.
 //!
-//! This module decides which functions have which tests; a module for each language writes them.
+//! This module decides which functions have which tests; a module for each language writes these tests.
 
 mod c;
 mod rust;
@@ -13,26 +13,26 @@ pub use rust::rust_tests;
 /// A state at which emitted code is tested.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Golden {
-    /// The numbers of every argument array, by the name that it has in emitted Rust, and `parameters`, where the robot
-    /// has some at run time.
+    /// The numbers of every argument array, by the name that it has in emitted Rust; and `parameters`, if the robot has
+    /// parameters at run time.
     pub arguments: Vec<(&'static str, Vec<f64>)>,
-    /// The results of each program, in the order of its layout, as computed by who knows nothing of the compiler. Empty
-    /// where there is nothing to compare with: accelerations of a singular mass matrix are not finite.
+    /// The results of each program, in the order of its layout, computed by code that is independent of the compiler.
+    /// Empty if there is nothing to compare with: accelerations for a singular mass matrix are not finite.
     pub results: Vec<Vec<f64>>,
-    /// How large the terms are of which each program makes its numbers, about: what vanishes for this arm is rounding
-    /// of them.
+    /// The approximate size of the terms from which each program computes its results: a result that is zero for this
+    /// arm may differ from zero by rounding errors of these terms.
     pub sizes: Vec<f64>,
     /// The changes of the positions and of the velocities by a step of the Runge-Kutta method of the duration
-    /// [`STEP`](Self::STEP), and the derivatives of the step, in the order of their layouts. Empty where the file
-    /// has no `forward_dynamics`, or where there is nothing to compare with.
+    /// [`STEP`](Self::STEP), and the derivatives of the step, in the order of their layouts. Empty if the file has no
+    /// `forward_dynamics`, or if there is nothing to compare with.
     pub steps: [Vec<f64>; 2],
 }
 
 impl Golden {
-    /// The duration of a step, s, which every number type represents.
+    /// The duration of a step, s; it is exact in every number type.
     pub const STEP: f64 = 1.0 / 256.0;
 
-    /// The numbers of an argument array, by its name.
+    /// Returns the numbers of an argument array, by its name.
     fn argument(&self, name: &str) -> &[f64] {
         self.arguments.iter().find(|(known, _)| *known == name).map_or(&[], |(_, numbers)| numbers)
     }
@@ -41,7 +41,7 @@ impl Golden {
 /// The arguments that all functions share; the tests of physical laws use them.
 const MOTION: [&str; 4] = ["q", "qd", "qdd", "tau"];
 
-/// A law that functions obey together.
+/// A law of mechanics that the results of functions must obey.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Law {
     /// M = Mᵀ, to the last bit.
@@ -60,18 +60,18 @@ enum Law {
 
 /// A call of a function in the test of a law.
 struct Call<'a> {
-    /// The name of its result.
+    /// The variable for the result.
     result: &'static str,
     function: Function,
-    /// Arguments that are not those of the state.
+    /// Arguments that replace those of the state.
     others: Vec<(&'static str, &'a str)>,
 }
 
 impl Law {
     const ALL: [Self; 6] = [Self::Symmetry, Self::Linearity, Self::Gravity, Self::Bias, Self::Kinetic, Self::Power];
 
-    /// The calls whose results its test compares. The arguments are expressions of the language: accelerations `sum`,
-    /// `a` and `b`, where `sum` is a + b, and `zero`, an array of zeros.
+    /// Returns the calls whose results the test compares. The arguments are expressions of the language: accelerations
+    /// `sum`, `a` and `b`, where `sum` is a + b, and `zero`, an array of zeros.
     fn calls(self, [sum, a, b, zero]: [&str; 4]) -> Vec<Call<'_>> {
         let call = |result, function| Call { result, function, others: Vec::new() };
         let torques_at = |result, qdd| Call { others: vec![("qdd", qdd)], ..call(result, Function::InverseDynamics) };
@@ -85,7 +85,7 @@ impl Law {
                     torques_at("at_zero", zero),
                 ]
             }
-            // torques that vanish but for rounding are measured by those of the motion
+            // torques that are zero but for rounding errors are compared on the scale of the torques of the motion
             Self::Gravity => vec![
                 call("found", Function::GravityTorques),
                 Call { others: vec![("qd", zero), ("qdd", zero)], ..call("expected", Function::InverseDynamics) },
@@ -105,7 +105,7 @@ impl Law {
         }
     }
 
-    /// Its part of a text with a part for each law; gravity and bias share one.
+    /// Returns the part for this law of a text with one part for each law; gravity and bias share a part.
     fn part_of(self, laws: &str) -> &str {
         let index = match self {
             Self::Symmetry => 0,
@@ -117,7 +117,7 @@ impl Law {
         laws.split("// next law\n").nth(index).unwrap_or_default()
     }
 
-    /// The name of its test.
+    /// Returns the name of the law's test.
     const fn name(self) -> &'static str {
         match self {
             Self::Symmetry => "mass_matrix_is_symmetric",
@@ -129,33 +129,33 @@ impl Law {
         }
     }
 
-    /// The laws whose functions are all in the file.
+    /// Returns the laws whose functions are all in the file.
     fn of(programs: &[Program]) -> impl Iterator<Item = Self> {
         let is_there = |function| program(programs, function).is_some();
         Self::ALL.into_iter().filter(move |law| law.calls([""; 4]).iter().all(|call| is_there(call.function)))
     }
 }
 
-/// A text with values in the places of their names, which are between `@`.
+/// Replaces names between `@` in a text by their values.
 fn filled(text: &str, values: &[(&str, String)]) -> String {
     let value = |name| values.iter().find(|(known, _)| *known == name).map_or("", |(_, value)| value);
     text.split('@').enumerate().map(|(index, part)| if index % 2 == 0 { part } else { value(part) }).collect()
 }
 
-/// The results of a program at each state; `None` where a state has nothing to compare with.
+/// Returns the results of a program at each state; `None` if a state has nothing to compare with.
 fn results(golden: &[Golden], program: usize) -> Option<Vec<&[f64]>> {
     let results = golden.iter().map(|state| state.results.get(program).map_or(&[][..], Vec::as_slice));
     results.map(|numbers| (!numbers.is_empty()).then_some(numbers)).collect()
 }
 
-/// The size that counts as nothing in the numbers of a program, in parts of their tolerance: rounding of terms that
-/// cancel.
+/// Returns the size below which a number of a program counts as zero, as `part` of the size of its terms: rounding
+/// errors of terms that cancel.
 fn floor(golden: &[Golden], program: usize, part: f64) -> f64 {
     let sizes = golden.iter().filter_map(|state| state.sizes.get(program));
     part * sizes.fold(0.0, |largest: f64, size| largest.max(*size))
 }
 
-/// The program of a function, not at a frame.
+/// Returns the program of a function that is not compiled for a frame.
 fn program(programs: &[Program], function: Function) -> Option<&Program> {
     programs.iter().find(|program| program.function == function && program.frame.is_none())
 }

@@ -9,8 +9,8 @@ use super::{Call, Golden, Law, MOTION, filled, floor, program, results};
 use crate::parameters::{self, OF_RUST, Parameter};
 use crate::wrap::{WIDTH, fill};
 
-/// A module `tests` for the end of a file of [`rust_file`](crate::rust_file): what the programs return at the
-/// given states, in `f64` and to nine digits, and laws of mechanics. It needs `std`, which tests have.
+/// Returns a module `tests` for the end of a file of [`rust_file`](crate::rust_file): it compares the results of the
+/// programs at the given states in `f64` to nine digits, and tests laws of mechanics. It needs `std`, which tests have.
 #[must_use]
 pub fn rust_tests(robot: &Robot, programs: &[Program], golden: &[Golden]) -> String {
     let tests = Tests { robot, programs, golden };
@@ -131,7 +131,7 @@ struct Tests<'a> {
 }
 
 impl Tests<'_> {
-    /// The states, with every argument that is used.
+    /// Returns the states, with every argument that is used.
     fn states(&self) -> String {
         let mut names: Vec<&str> = MOTION.into();
         for array in self.programs.iter().flat_map(Program::arrays_without_parameters) {
@@ -165,7 +165,7 @@ impl Tests<'_> {
         text + "    ];\n"
     }
 
-    /// A call at `state`; an argument may be another array of `f64`.
+    /// Returns a call at `state`; `others` replaces some arguments by other arrays of `f64`.
     fn call(&self, program: &Program, others: &[(&str, &str)]) -> String {
         let mut given: Vec<String> = program
             .arrays_without_parameters()
@@ -193,12 +193,12 @@ impl Tests<'_> {
         format!("super::{}({}).flat()", program.name, given.join(", "))
     }
 
-    /// A call of the program of a function.
+    /// Returns a call of the program of a function; `None` if the file does not have it.
     fn call_of(&self, function: Function, others: &[(&str, &str)]) -> Option<String> {
         Some(self.call(program(self.programs, function)?, others))
     }
 
-    /// The test that holds a program against values.
+    /// Returns the test that compares a program with expected values.
     fn values(&self, index: usize) -> Option<String> {
         let (program, expected) = (self.programs.get(index)?, results(self.golden, index)?);
         let name = &program.name;
@@ -235,7 +235,7 @@ impl Tests<'_> {
     }
 }
 
-/// Numbers as an array, in lines.
+/// Returns numbers as an array, broken into lines.
 fn list(numbers: &[f64], indent: usize) -> String {
     let numbers = numbers.iter().map(|number| format!("{number:?}")).collect::<Vec<_>>().join(", ");
     let blank = " ".repeat(indent + 4);

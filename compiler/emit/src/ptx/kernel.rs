@@ -1,4 +1,4 @@
-//! One function as a kernel.
+//! Writes one function as a kernel.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -13,17 +13,18 @@ use crate::c::{ConstantTooLarge, comment, elements_of};
 use crate::syntax::Precision;
 use crate::wrap::{WIDTH, fill};
 
-/// Threads of a block whose rows go through shared memory, and the bytes of it that every processor has for a block.
+/// Number of threads of a block whose rows are copied through shared memory, then the largest number of bytes of shared
+/// memory that every GPU has for a block.
 const BLOCK: usize = 64;
 const MOST_SHARED: usize = 48 * 1024;
-/// Results of a state beyond which they go through shared memory. With it, an H200 computed mass matrices of the
-/// Panda, 49 numbers each, about ten times as fast (12.4 instead of 1.2 · 10⁹ states/s in `f32`), and its torques, 7
-/// numbers each, about three times as slowly (10.2 instead of 32.7 · 10⁹ states/s).
+/// If a state has more results than this, its rows are copied through shared memory. With this, an H200 computed mass
+/// matrices of the Panda, 49 numbers each, about ten times as fast (12.4 instead of 1.2 · 10⁹ states/s in `f32`), but
+/// its torques, 7 numbers each, about three times as slowly (10.2 instead of 32.7 · 10⁹ states/s).
 const WIDE: usize = 32;
 
 macro_rules! abouts {
     ($($name:ident: $argument:ident, $owner:ident [$($quantity:ident * $count:literal),*], $about:literal;)*) => {
-        /// The meaning of an argument array, with its unit.
+        /// Returns the meaning of an argument array, with its unit.
         fn about(array: &str) -> &'static str {
             match array {
                 $(stringify!($name) => $about,)*
@@ -35,18 +36,18 @@ macro_rules! abouts {
 
 argument_parts!(abouts);
 
-/// A program as its kernels compute it, and its arrays.
+/// A program in the form that its kernels compute, with its arrays.
 pub(super) struct Kernel<'p> {
     pub(super) program: Cow<'p, Program>,
     pub(super) precision: Precision,
     pub(super) arrays: Vec<ArgumentArray>,
-    /// The literals of constants, by their values.
+    /// The literals of the constants.
     pub(super) literals: HashMap<ValueId, String>,
 }
 
 impl<'p> Kernel<'p> {
-    /// As the machine does it: in the reduced form a product that is added is rounded with its sum; in the seven steps
-    /// it is rounded by itself.
+    /// Prepares a program as the machine does: in the reduced form a product and the sum to which it is added are
+    /// rounded once; in the seven steps the product is rounded by itself.
     pub(super) fn of(program: &'p Program, precision: Precision) -> Result<Self, ConstantTooLarge> {
         let arrays = program.argument_arrays();
         let program = match program.form {
@@ -67,12 +68,12 @@ impl<'p> Kernel<'p> {
         Ok(Self { program, precision, arrays, literals })
     }
 
-    /// The number type, and the bytes of a number.
+    /// Returns the number type, and the number of bytes of a number.
     pub(super) fn number(&self) -> (&'static str, usize) {
         if self.precision == Precision::Double { ("f64", 8) } else { ("f32", 4) }
     }
 
-    /// The text of the kernel of this name.
+    /// Returns the text of the kernel with this name.
     pub(super) fn text(&self, name: &str, arrangement: Arrangement) -> String {
         let (real, bytes) = self.number();
         let arrays = self.arrays.iter().map(|array| (format!("in_{}", array.name), array.elements.len()));
@@ -121,7 +122,7 @@ impl<'p> Kernel<'p> {
     }
 }
 
-/// The function, its form, its operations and its arrays, as a comment.
+/// Returns a comment with the function, its form, its operations and its arrays.
 pub(crate) fn heading(program: &Program) -> String {
     let mut text = comment("//", &format!("{}: {}", program.name, program.function.summary()));
     if !program.function.details().is_empty() {
@@ -148,7 +149,7 @@ pub(crate) fn heading(program: &Program) -> String {
     text + &comment("//", &format!("Results, {elements}: {of}."))
 }
 
-/// An exact number of a type, in hexadecimal.
+/// Returns a number as an exact literal of its type, in hexadecimal.
 fn literal(precision: Precision, value: f64) -> Option<String> {
     match precision {
         Precision::Double => value.is_finite().then(|| format!("0d{:016X}", value.to_bits())),
@@ -160,7 +161,7 @@ fn literal(precision: Precision, value: f64) -> Option<String> {
     }
 }
 
-/// The parts of a result in their order, with their lengths.
+/// Returns the parts of a result in their order, with their lengths.
 fn shape(name: &str, layout: &Layout) -> String {
     let (lengths, of) = elements_of(layout);
     match of {
@@ -172,8 +173,8 @@ fn shape(name: &str, layout: &Layout) -> String {
     }
 }
 
-/// Rows go through the memory that the threads of a block share: the block reads and writes its rows as they lie, one
-/// number after the other, and each thread finds its own row there.
+/// Copies rows through the memory that the threads of a block share: the threads together read and write the rows of
+/// the block number after number, and each thread reads its own row in shared memory.
 struct Staging {
     /// The name and the length of each argument, and whether it is used.
     arrays: Vec<(String, usize, bool)>,
@@ -183,8 +184,8 @@ struct Staging {
 }
 
 impl Staging {
-    /// The rows of the block in shared memory, and the places of a thread's own. Threads beyond the last state compute
-    /// what nobody reads.
+    /// Returns code that copies the rows of the block to shared memory, and computes the addresses of a thread's own
+    /// rows. The results of threads beyond the last state are not used.
     fn before(&self, size: usize) -> String {
         let Self { arrays, outputs, real, bytes } = self;
         let mut text = format!(
@@ -223,7 +224,7 @@ impl Staging {
         text
     }
 
-    /// The results of the block as they lie in shared memory.
+    /// Returns code that copies the results of the block from shared memory.
     fn after(&self) -> String {
         let Self { arrays, outputs, real, bytes } = self;
         let start: usize = arrays.iter().filter(|(.., is_used)| *is_used).map(|(_, length, _)| length).sum();
@@ -241,7 +242,8 @@ impl Staging {
         text
     }
 
-    /// The address of the first number that a thread moves of an array, and how many lie from there to the end.
+    /// Returns code for the address of the first number of an array that a thread copies, and for how many numbers are
+    /// left from there to the end.
     fn chunk(&self, array: &str, length: usize) -> String {
         let bytes = self.bytes;
         format!(

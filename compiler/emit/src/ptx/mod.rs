@@ -1,7 +1,7 @@
-//! Programs as PTX, the assembly language of NVIDIA's processors: kernels for batches, one thread per state.
+//! Writes programs as PTX, the assembly language of NVIDIA's GPUs: kernels for many states, with one thread per state.
 //!
-//! The driver of the graphics card translates the text, so neither a toolkit nor a library is needed. Each operation
-//! says how it rounds (`.rn`), so that the assembler fuses and reorders nothing: a kernel computes the bits of the
+//! The driver of the graphics card compiles the text, so neither a toolkit nor a library is needed. Each operation says
+//! how it rounds (`.rn`), so the assembler does not fuse or reorder them: a kernel computes the same bits as the
 //! machine of `rne-machine` on a vector unit with fused multiply-add.
 
 mod kernel;
@@ -21,7 +21,7 @@ use kernel::Kernel;
 pub(crate) use kernel::heading;
 pub use rollout::is_for_rollouts;
 
-/// How the numbers of a batch lie in memory.
+/// The order of the numbers of many states in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Arrangement {
     /// Element e of state i is at e · states + i: neighbouring threads read neighbouring numbers.
@@ -30,7 +30,7 @@ enum Arrangement {
     Rows,
 }
 
-/// The contract of all kernels, in the heading.
+/// The properties that all kernels share, as text for the heading.
 const CONTRACT: [&str; 4] = [
     "Every kernel computes one state per thread, in a grid of one dimension; threads beyond the last state write \
      nothing. Launch it with 64 threads per block, kernels with .maxntid with up to 256. Its parameters are the \
@@ -43,7 +43,7 @@ const CONTRACT: [&str; 4] = [
      parallel joints included; beyond that results mean nothing.",
 ];
 
-/// The given programs of one robot as kernels of PTX: two for each, by columns and by rows. Programs for
+/// Writes the programs of one robot as PTX kernels: two for each, one for columns and one for rows. Programs for
 /// [`Target::Throughput`](rne_codegen::Target) have the fewest instructions.
 ///
 /// # Errors

@@ -1,14 +1,15 @@
-//! The order in which a kernel computes its values: a thread has 255 registers at most, and the fewer it needs, the
-//! more threads run at once.
+//! The order in which a kernel computes its values. A thread has at most 255 registers, and the fewer it needs, the
+//! more threads run at the same time.
 //!
-//! The assembler orders instructions anew, but it does not leave the neighbourhood of where they stand. Programs go
-//! through the robot from the base to the tips and back, so that a tree has values of all its branches in registers at
-//! once. Computed from the results, it goes through one branch after the other. The elements of a matrix share many
-//! values, which the order from the results has in registers for long: there the order for registers needs fewer.
+//! The assembler reorders instructions, but only over short distances. The statements of a program go from the base to
+//! the tips and back, so a tree would have values of all its branches in registers at the same time. In the order in
+//! which the results need them, one branch is computed after the other. The elements of a matrix share many values,
+//! which that order keeps in registers for long: for them the order of `order_for_registers` needs fewer registers.
 
 use rne_codegen::{Program, Value, ValueId, order_for_registers};
 
-/// The order from the results or the one for registers, whichever has fewer values in registers at once.
+/// Returns the order in which the results need the values, or that of `order_for_registers`, whichever needs fewer
+/// registers.
 pub(super) fn of(program: &Program) -> Vec<ValueId> {
     let results = || program.outputs.iter().map(|output| output.value);
     let statements = order_for_registers(program).into_iter().map(|index| program.statements[index].value);
@@ -17,12 +18,12 @@ pub(super) fn of(program: &Program) -> Vec<ValueId> {
     if is_less { for_registers } else { from_results }
 }
 
-/// Values in the order in which they are computed, each behind what it is computed from.
+/// Returns the values in the order in which they are computed; each comes after its operands.
 fn computed(program: &Program, values: impl Iterator<Item = ValueId>) -> Vec<ValueId> {
     let mut order = Vec::with_capacity(program.values.len());
     let mut is_known = vec![false; program.values.len()];
     for value in values {
-        // a value, and whether its operands have been looked at
+        // a value, and whether its operands were already added
         let mut open = vec![(value, false)];
         while let Some((id, has_operands)) = open.pop() {
             if has_operands {
@@ -36,8 +37,8 @@ fn computed(program: &Program, values: impl Iterator<Item = ValueId>) -> Vec<Val
     order
 }
 
-/// How many values there are in registers at once: from where they are computed, or arguments first used, to their last
-/// use. Constants are part of instructions.
+/// Returns the largest number of values that are in registers at the same time: from their computation, or for
+/// arguments from their first use, to their last use. Constants are parts of instructions.
 fn most_at_once(program: &Program, order: &[ValueId]) -> usize {
     let is_constant = |id: &ValueId| matches!(program.values.get(*id), Value::Constant(_));
     let operands = |id: ValueId| program.values.get(id).operands().filter(|operand| !is_constant(operand));

@@ -1,4 +1,4 @@
-//! Kernels that roll samples out: a thread keeps the state of its sample in registers over all steps.
+//! Kernels for rollouts: a thread keeps the state of its sample in registers over all steps.
 
 use std::fmt::Write as _;
 
@@ -23,8 +23,8 @@ const CONTRACT: &str = "\
 // The numbers are those of calls of the function above with a step of Euler after each, bit for bit.
 ";
 
-/// The name of the kernel that rolls samples out by a function, without the prefix; `None` for a function that does
-/// not give the accelerations of all joints.
+/// Returns the name of the rollout kernel for a function, without the prefix; `None` for a function that does not
+/// return the accelerations of all joints.
 fn name(function: Function) -> Option<&'static str> {
     match function {
         Function::ForwardDynamics => Some("rollout"),
@@ -33,13 +33,13 @@ fn name(function: Function) -> Option<&'static str> {
     }
 }
 
-/// Whether `rne emit --lang ptx` can write a rollout by this function.
+/// Whether `rne emit --lang ptx` can write a rollout with this function.
 #[must_use]
 pub fn is_for_rollouts(function: Function) -> bool {
     name(function).is_some()
 }
 
-/// Both rollouts of a program, with a comment; nothing for a function that gives no accelerations.
+/// Returns both rollout kernels of a program, with a comment; empty for a function that returns no accelerations.
 pub(super) fn text(prefix: &str, kernel: &Kernel<'_>) -> String {
     let Some(name) = name(kernel.program.function) else { return String::new() };
     let mut text = format!("\n{}", CONTRACT.replace("ROLLOUT", name));
@@ -49,7 +49,7 @@ pub(super) fn text(prefix: &str, kernel: &Kernel<'_>) -> String {
     text
 }
 
-/// The argument of a program with this name.
+/// Returns the argument of a program that has this name.
 fn argument(program: &Program, name: rne_codegen::Name) -> Option<ValueId> {
     let mut values = program.values.iter();
     let is_it = |&(id, value): &(ValueId, Value)| value == Value::Argument && program.values.name(id) == Some(name);
@@ -79,7 +79,7 @@ impl Kernel<'_> {
                setp.ne.u32 %is_left, %steps, 0;\n    @%is_left bra next_step;\n    ret;\n}\n"
     }
 
-    /// Loads positions and velocities into registers, where the values of a step find them.
+    /// Returns code that loads positions and velocities into registers, where the values of a step read them.
     fn load_state(&self, writing: &mut Writing<'_, '_>) -> String {
         let (real, _) = self.number();
         for array in self.arrays.iter().filter(|array| matches!(array.name, "q" | "qd")) {
@@ -96,7 +96,7 @@ impl Kernel<'_> {
         std::mem::take(&mut writing.body)
     }
 
-    /// Computes the accelerations, and the next velocities and positions from them.
+    /// Returns code that computes the accelerations, and from them the next velocities and positions.
     fn step_of_euler(&self, writing: &mut Writing<'_, '_>) -> String {
         let (real, _) = self.number();
         writing.values(false);
@@ -113,7 +113,7 @@ impl Kernel<'_> {
         std::mem::take(&mut writing.body)
     }
 
-    /// Stores positions and velocities.
+    /// Returns code that stores positions and velocities.
     fn store_state(&self, writing: &mut Writing<'_, '_>) -> String {
         let (real, _) = self.number();
         for array in ["q", "qd"] {
@@ -125,7 +125,8 @@ impl Kernel<'_> {
         std::mem::take(&mut writing.body)
     }
 
-    /// Declares the parameters and the registers of a rollout, and counts its steps; a thread without a sample returns.
+    /// Returns the declarations of the parameters and the registers of a rollout, and code that counts its steps; a
+    /// thread without a sample returns.
     fn head_of_rollout(&self, name: &str, writing: &Writing<'_, '_>, arrays: &[(String, usize)]) -> String {
         let (real, bytes) = self.number();
         let mut text = format!(".visible .entry {name}(\n");
@@ -158,7 +159,7 @@ impl Kernel<'_> {
         text
     }
 
-    /// The addresses of the numbers of a thread at the first step.
+    /// Returns code for the addresses of a thread's numbers at the first step.
     fn first_addresses(&self, arrangement: Arrangement, arrays: &[(String, usize)]) -> String {
         let (_, bytes) = self.number();
         let mut text = String::new();

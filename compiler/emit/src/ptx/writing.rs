@@ -1,4 +1,4 @@
-//! The instructions of a program, as a kernel has them.
+//! Writes the instructions of a program in a kernel.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -16,13 +16,13 @@ const SIN_COS: [&str; 2] = [include_str!("sin_cos_f32.ptx"), include_str!("sin_c
 pub(super) struct Writing<'k, 'p> {
     kernel: &'k Kernel<'p>,
     pub(super) arrangement: Arrangement,
-    /// The memory in which a thread finds its arguments and leaves its results.
+    /// The kind of memory from which a thread reads its arguments and to which it writes its results.
     memory: &'static str,
     real: &'static str,
     bytes: usize,
     pub(super) registers: Vec<String>,
     pub(super) addresses: usize,
-    /// The register or the literal of each value; empty before it is computed.
+    /// The register or the literal of each value; empty as long as it is not computed.
     pub(super) known: Vec<String>,
     pub(super) body: String,
 }
@@ -35,8 +35,8 @@ impl<'k, 'p> Writing<'k, 'p> {
         Self { kernel, arrangement, memory, real, bytes, registers, addresses: 0, known, body }
     }
 
-    /// All values in their order; an argument is read just before its first use, and a result is written as soon as it
-    /// is known, where results are stored, so that few registers are in use at once.
+    /// Writes all values in their order. An argument is read just before its first use, and a result is stored, if
+    /// `are_stored`, as soon as it is known, so that few registers are in use at the same time.
     pub(super) fn values(&mut self, are_stored: bool) {
         let program = &*self.kernel.program;
         let mut results: Vec<Vec<usize>> = vec![Vec::new(); program.values.len()];
@@ -56,7 +56,7 @@ impl<'k, 'p> Writing<'k, 'p> {
             let value = program.values.get(id);
             match value {
                 Value::Sine(angle) | Value::Cosine(angle) => self.turn(angle, [0, 1].map(|of| turns.get(&(angle, of)))),
-                // read where they are used
+                // arguments and constants are read where they are used
                 Value::Argument | Value::Constant(_) => {}
                 _ => self.compute(id, value),
             }
@@ -76,14 +76,14 @@ impl<'k, 'p> Writing<'k, 'p> {
         }
     }
 
-    /// A register that is declared: `$w2_z` for a number with a name, which no word of the language begins with.
+    /// Declares a register: `$w2_z` for a number with this name; no word of PTX begins with `$`.
     fn register(&mut self, name: Option<Name>, id: ValueId) -> String {
         let register = name.map_or_else(|| format!("$_{}", id.index()), |name| format!("${name}"));
         self.registers.push(register.clone());
         register
     }
 
-    /// The address of an element in square brackets.
+    /// Returns the address of an element in square brackets.
     pub(super) fn place(&mut self, array: &str, element: usize) -> String {
         match (self.arrangement, element * self.bytes) {
             (_, 0) => format!("[{array}]"),
@@ -97,7 +97,7 @@ impl<'k, 'p> Writing<'k, 'p> {
         }
     }
 
-    /// The register or the literal of a value.
+    /// Returns the register or the literal of a value.
     pub(super) fn operand(&mut self, id: ValueId) -> String {
         let program = &*self.kernel.program;
         let found = &self.known[id.index()];
@@ -113,7 +113,7 @@ impl<'k, 'p> Writing<'k, 'p> {
         operand
     }
 
-    /// Reads an argument.
+    /// Writes the instruction that reads an argument.
     fn argument(&mut self, id: ValueId) -> String {
         let name = self.kernel.program.values.name(id);
         let arrays = self.kernel.arrays.iter();
@@ -129,7 +129,7 @@ impl<'k, 'p> Writing<'k, 'p> {
         register
     }
 
-    /// Sine and cosine of an angle at once, unless they are known.
+    /// Writes the sine and cosine of an angle together, unless they are already known.
     fn turn(&mut self, angle: ValueId, turned: [Option<&ValueId>; 2]) {
         if turned.iter().flatten().any(|id| !self.known[id.index()].is_empty()) {
             return;
@@ -151,7 +151,7 @@ impl<'k, 'p> Writing<'k, 'p> {
     fn compute(&mut self, id: ValueId, value: Value) {
         let real = self.real;
         let line = match value {
-            // Aliases, and the negative of a literal.
+            // An alias has no instruction of its own.
             Value::Same(of) => {
                 self.known[id.index()] = self.operand(of);
                 return;
@@ -195,7 +195,7 @@ impl<'k, 'p> Writing<'k, 'p> {
         self.known[id.index()] = register;
     }
 
-    /// The negative of an operand of the value `id`; the assembler makes it a part of the instruction that uses it.
+    /// Writes the negative of an operand of the value `id`; the assembler merges it into the instruction that uses it.
     fn negative(&mut self, id: ValueId, operand: &str) -> String {
         let register = format!("%n{}", id.index());
         self.registers.push(register.clone());

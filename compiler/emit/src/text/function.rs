@@ -1,4 +1,4 @@
-//! A program as a function.
+//! Writes a program as a Rust function.
 
 use std::fmt::Write;
 
@@ -15,10 +15,10 @@ use crate::parameters::{self, Parameter};
 use crate::syntax::Syntax;
 use crate::wrap::WIDTH;
 
-/// rustfmt breaks longer patterns of arrays.
+/// The longest array pattern that rustfmt writes in one line.
 const PATTERN: usize = 62;
 
-/// The type of an argument: a number, or a reference to an array.
+/// Returns the type of an argument: a number, or a reference to an array.
 fn argument_type(array: &ArgumentArray) -> String {
     if array.is_number { "T".to_owned() } else { format!("&{}", array_type(&array.lengths())) }
 }
@@ -26,7 +26,7 @@ fn argument_type(array: &ArgumentArray) -> String {
 /// The longest tuple that rustfmt writes in one line.
 const TUPLE: usize = 60;
 
-/// A function of a program.
+/// Returns the function of a program.
 pub(super) fn function(robot: &Robot, program: &Program, sin_cos: SinCos) -> String {
     let mut text = format!("/// {}\n", program.function.summary());
     if let Some(frame) = about_frame(program) {
@@ -67,7 +67,7 @@ pub(super) fn function(robot: &Robot, program: &Program, sin_cos: SinCos) -> Str
     text
 }
 
-/// The name, the arguments and the result.
+/// Returns the head of the function: the name, the arguments and the result.
 fn head(program: &Program, arrays: &[ArgumentArray]) -> String {
     let mut parameters: Vec<String> =
         arrays.iter().map(|array| format!("{}: {}", array.name, argument_type(array))).collect();
@@ -89,7 +89,7 @@ fn head(program: &Program, arrays: &[ArgumentArray]) -> String {
     format!("{start}\n    {},\n{end}\n", parameters.join(",\n    "))
 }
 
-/// The statement that takes an argument apart into its numbers.
+/// Returns the statement that gives names to the elements of an argument.
 fn taken_apart(ArgumentArray { name, elements, row, is_number }: &ArgumentArray) -> String {
     if elements.iter().all(Option::is_none) {
         return format!("    let _ = {name};\n");
@@ -109,17 +109,17 @@ fn taken_apart(ArgumentArray { name, elements, row, is_number }: &ArgumentArray)
     format!("    let [\n        {},\n    ] = *{name};\n", parts.join(",\n        "))
 }
 
-/// The type of arrays in arrays, by their lengths.
+/// Returns the type of nested arrays with these lengths.
 fn array_type(lengths: &[usize]) -> String {
     lengths.iter().rev().fold("T".to_owned(), |of, length| format!("[{of}; {length}]"))
 }
 
-/// The names in a pattern, with `_` for each name that is not used.
+/// Returns the names in a pattern, with `_` for each element that is not used.
 fn names(names: impl Iterator<Item = Option<Name>>) -> String {
     names.map(|name| name.map_or_else(|| "_".to_owned(), |name| name.to_string())).collect::<Vec<_>>().join(", ")
 }
 
-/// The results of a function, for a line that is indented by four.
+/// Returns the results of a function, for a line that is indented by four.
 pub(crate) fn returned(program: &Program) -> Option<Annotated> {
     let mut outputs =
         program.outputs.iter().map(|output| Piece::Number(line(Syntax::Rust, program.values.used(output.value))));
@@ -129,7 +129,7 @@ pub(crate) fn returned(program: &Program) -> Option<Annotated> {
     Some(layout.fold(&mut outputs, &array, &record)?.broken(4))
 }
 
-/// A record is a tuple here.
+/// Returns the type of a result; a record is a tuple in this code.
 fn returned_type(layout: &Layout) -> String {
     match layout {
         Layout::Number => "T".to_owned(),
@@ -141,8 +141,8 @@ fn returned_type(layout: &Layout) -> String {
     }
 }
 
-/// The statements that evaluate all sines and cosines, with the line breaks of rustfmt. Where the file has the sine,
-/// each angle has its own call: compilers leave the calls over an array as a loop from five angles on.
+/// Returns the statements that compute all sines and cosines, with the line breaks of rustfmt. If the file has its own
+/// sine, each angle has its own call, because compilers keep the calls over an array of five or more angles as a loop.
 fn turns(program: &Program, sin_cos: SinCos) -> String {
     let turns = &program.sines_and_cosines[..];
     let groups = turns.chunks(if sin_cos == SinCos::InFile { 1 } else { turns.len() });

@@ -21,8 +21,9 @@ impl Piece {
         }
     }
 
-    /// Broken as rustfmt does: lists of more than 60 columns have a line per element, short numbers fill lines, and the
-    /// brackets of a list in a list of one stand together.
+    /// Returns the text with the line breaks of rustfmt: a list of more than 60 columns has one line per element,
+    /// except that short numbers fill lines. If a list has only one element and this is a list, their brackets are on
+    /// the same line.
     pub(super) fn broken(&self, indent: usize) -> Annotated {
         const LIST: usize = 60;
         const SHORT: usize = 10;
@@ -43,7 +44,7 @@ impl Piece {
         let (mut text, mut column, last) = (start, WIDTH, texts.len() - 1);
         for (index, element) in texts.into_iter().enumerate() {
             let width = element.as_str().len();
-            // rustfmt leaves the last column of a line empty here, but for the last element
+            // here rustfmt leaves the last column of a line empty, except for the last element
             if !fills || column + 1 + width >= WIDTH + usize::from(index == last) {
                 text = text + "\n" + " ".repeat(indent + 4);
                 column = indent + 4 + width;

@@ -1,30 +1,31 @@
-//! A sample, into which every format is read: one message, or one row.
+//! A sample: the form into which a message or row of every format is read.
 
 use crate::LogError;
 use crate::columns::label::Label;
 use crate::columns::unit::FileUnits;
 
-/// One instant of a log: the joints of a message or a row, in its order.
+/// One instant of a log: the joints of a message or a row, in their order there.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Sample {
-    /// When it was measured, by the header of the message or the column of times, ns.
+    /// Time of measurement, from the header of the message or the column of times, ns.
     pub(crate) measured: i64,
-    /// When it was recorded, ns; formats that do not say have `measured` here.
+    /// Time of recording, ns; equal to `measured` in formats without it.
     pub(crate) recorded: i64,
     /// The joints' names.
     pub(crate) names: Vec<String>,
-    /// Positions by joint; empty where the message has none. Units are the file's, or of SI where it says them.
+    /// Positions by joint; empty if the message has none. Units are those of the file, or SI units if the file gives
+    /// its units.
     pub(crate) position: Vec<f64>,
-    /// Velocities by joint; empty where the message has none.
+    /// Velocities by joint; empty if the message has none.
     pub(crate) velocity: Vec<f64>,
-    /// Efforts by joint; empty where the message has none.
+    /// Efforts by joint; empty if the message has none.
     pub(crate) effort: Vec<f64>,
-    /// Accelerations by joint; empty where the message has none.
+    /// Accelerations by joint; empty if the message has none.
     pub(crate) acceleration: Vec<f64>,
 }
 
 impl Sample {
-    /// Bytes that it takes, about.
+    /// Returns the approximate number of bytes of the sample in memory.
     pub(crate) fn size(&self) -> usize {
         let names: usize = self.names.iter().map(|name| name.len() + 32).sum();
         names
@@ -33,55 +34,56 @@ impl Sample {
     }
 }
 
-/// A file that is read from its beginning to its end, in memory that does not grow with it.
+/// A reader of a file from beginning to end, with memory that does not grow with the file.
 pub(crate) trait Source {
-    /// Reads the next sample in the place of the last; false at the end.
+    /// Reads the next sample into `sample`; returns false at the end.
     fn read(&mut self, sample: &mut Sample) -> Result<bool, LogError>;
 
-    /// How much of the file was read, 0 to 1.
+    /// Returns the fraction of the file that was read, 0 to 1.
     fn progress(&self) -> f64;
 
-    /// Remarks on what was found.
+    /// Returns remarks on the content of the file.
     fn notes(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// The names of columns that are not read and may be meant.
+    /// Returns the names of columns that are not read, but which the user may want to read.
     fn unread(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// The units that the file says; its numbers are in SI units there.
+    /// Returns the units that the file gives. Numbers with these units are converted to SI units.
     fn units(&self) -> FileUnits {
         FileUnits::default()
     }
 
-    /// Whether the format, a type, a name or an option says in which unit times are. Where nothing does, they are taken
-    /// for seconds.
+    /// Whether the format, a type, a name or an option gives the unit of the times. Otherwise, they are taken as
+    /// seconds.
     fn is_time_unit_known(&self) -> bool {
         true
     }
 
-    /// The names of columns by whose texts rows can be selected; empty where the format has no columns.
+    /// Returns the names of columns by whose texts rows can be selected; empty if the format has no columns.
     fn label_columns(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// The names of those of these columns that have words and no numbers, once a row was read.
+    /// Returns the names of those [`Source::label_columns`] that have words instead of numbers. It is known after the
+    /// first row.
     fn word_columns(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Holds the texts of a column, by its place among [`Source::label_columns`], from the first row on. Where a text
-    /// is wanted, only the rows that have it are read.
+    /// Watches the texts of a column, given by its index in [`Source::label_columns`], from the first row on. If a text
+    /// is wanted, only rows with this text are read.
     fn hold(&mut self, _column: usize, _wanted: Option<&str>) {}
 
-    /// The columns whose texts are held, with those of the last row.
+    /// Returns the watched columns with the texts of the latest row.
     fn labels(&self) -> &[Label] {
         &[]
     }
 
-    /// The topic that is read, where the format has topics.
+    /// Returns the topic that is read, if the format has topics.
     fn topic(&self) -> Option<&str> {
         None
     }

@@ -1,4 +1,4 @@
-//! The files of a log, read one after another.
+//! Reads the files of a log one after another.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use crate::formats::sample::{Sample, Source};
 use crate::remedy::Setting;
 use crate::{LogError, Options};
 
-/// Files that are read one after another.
+/// The files of a log, which are read one after another.
 pub(crate) struct Chain<'a> {
     path: &'a Path,
     others: VecDeque<&'a PathBuf>,
@@ -20,7 +20,7 @@ pub(crate) struct Chain<'a> {
     pub(crate) format: Format,
     /// Units of the first file.
     pub(crate) units: FileUnits,
-    /// The columns that name arms, with the arm of the first row.
+    /// The columns that name arms, with the name of the arm in the first row.
     arms: Vec<(String, String)>,
 }
 
@@ -53,9 +53,9 @@ impl<'a> Chain<'a> {
         Ok(true)
     }
 
-    /// Refuses a second arm: a log is of one.
+    /// Refuses rows of a second arm, because a log belongs to one arm.
     fn check_arm(&mut self) -> Result<(), LogError> {
-        // a row without a text says nothing of its arm
+        // a row without a text does not name its arm
         let names_one = |label: &&Label| !label.is_selecting() && !label.value.is_empty();
         for label in self.source.labels().iter().filter(names_one) {
             match self.arms.iter().find(|(column, _)| *column == label.name) {

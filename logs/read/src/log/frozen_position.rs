@@ -1,15 +1,16 @@
-//! Positions that keep one value while the measured velocity says that the joint moves.
+//! Finds positions that keep one value although the measured velocity shows that the joint moves.
 
-/// s: a position keeps its value at least as long.
+/// Shortest time for which a frozen position keeps its value, s.
 const SHORTEST: f64 = 1.0;
 
-/// rad or m: the velocity meanwhile moves the joint at least as far in one direction.
+/// Smallest movement of the joint in that time by the integral of its velocity, rad or m.
 const TRAVEL: f64 = 0.1;
 
-/// rad/s or m/s: the mean of the speed meanwhile. The velocity of a joint at rest may have a small constant error.
+/// Smallest mean speed in that time, rad/s or m/s, because the velocity of a joint at rest may have a small constant
+/// error.
 const SPEED: f64 = 0.05;
 
-/// A position that keeps one value while the joint moves: the longest time of a joint.
+/// A position that keeps one value while the joint moves; the longest such interval of a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FrozenPosition {
@@ -17,22 +18,22 @@ pub struct FrozenPosition {
     pub joint: usize,
     /// The value, rad or m.
     pub value: f64,
-    /// The number of its run, from 0.
+    /// The number of the run in which it occurs, from 0.
     pub run: u64,
     /// The times of the first and of the last sample with the value, s.
     pub times: [f64; 2],
-    /// Whether the whole log has this value.
+    /// Whether the position has this value in the whole log.
     pub is_whole: bool,
 }
 
-/// The samples of one joint since its position has changed last.
+/// The samples of one joint since the last change of its position.
 #[derive(Clone, Copy)]
 struct Window {
     value: f64,
     start: f64,
     end: f64,
     velocity: f64,
-    /// ∫ velocity dt, its least and its greatest value, and ∫ |velocity| dt.
+    /// ∫ velocity dt, its smallest and largest value, and ∫ |velocity| dt.
     travel: f64,
     least: f64,
     most: f64,
@@ -62,7 +63,7 @@ impl Window {
     }
 }
 
-/// Looks for frozen positions in the states of a log that has measured velocities.
+/// Searches for frozen positions in the states of a log with measured velocities.
 pub(crate) struct FrozenPositions {
     run: u64,
     windows: Vec<Option<Window>>,
@@ -71,19 +72,19 @@ pub(crate) struct FrozenPositions {
 }
 
 impl FrozenPositions {
-    /// `joints` is 0 for a log without velocities.
+    /// Begins the search; `joints` is 0 for a log without velocities.
     pub(crate) fn new(joints: usize) -> Self {
         Self { run: 0, windows: vec![None; joints], longest: vec![None; joints], changes: vec![false; joints] }
     }
 
-    /// Ends a run, if there was one.
+    /// Begins a run, and ends the previous one, if any.
     pub(crate) fn begin_run(&mut self, is_first: bool) {
         (0..self.windows.len()).for_each(|joint| self.keep(joint));
         self.windows.fill(None);
         self.run += u64::from(!is_first);
     }
 
-    /// Takes a state: positions, then velocities.
+    /// Adds a state; `numbers` are positions, then velocities.
     pub(crate) fn push(&mut self, time: f64, numbers: &[f64]) {
         let joints = self.windows.len();
         for joint in 0..joints {
@@ -123,7 +124,8 @@ impl FrozenPositions {
 mod tests {
     use super::*;
 
-    /// The positions of a joint with this velocity at 100 Hz, kept at one value from some sample on.
+    /// Searches in samples of a joint with this velocity at 100 Hz, whose position keeps one value from sample `from`
+    /// on.
     fn found(samples: u32, velocity: impl Fn(f64) -> f64, from: u32) -> Vec<FrozenPosition> {
         let mut positions = FrozenPositions::new(1);
         positions.begin_run(true);

@@ -1,4 +1,4 @@
-//! Joints of a log by the names that were asked for.
+//! Finds the wanted joints in the samples of a log.
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -9,18 +9,18 @@ use crate::limits::work;
 use crate::remedy::Setting;
 use crate::spelling::{instead, listed};
 
-/// Where the joints stand in samples.
+/// The joints that are read, and their positions in samples.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Joints {
-    /// By the log's names, in the order of what is asked for.
+    /// The names of the joints in the log, in the wanted order.
     pub(crate) names: Vec<String>,
-    /// The names of the last sample, which of the joints it has, and where they stand; no places if it lacks one.
+    /// The names in the last sample, which of the joints it has, and their indices; no indices if it lacks a joint.
     last: Vec<String>,
     presence: Presence,
     places: Option<Vec<usize>>,
 }
 
-/// Whether a sample has the joints.
+/// Whether a sample has all of the joints, some, or none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Presence {
     All,
@@ -30,7 +30,7 @@ pub(crate) enum Presence {
 }
 
 impl Joints {
-    /// The joints of samples, the first of a log: those asked for, or the log's.
+    /// Finds the joints to read by the first samples of a log: the wanted ones, or those of the log.
     pub(crate) fn of(path: &Path, samples: &[Sample], wanted: Option<&[String]>) -> Result<Self, LogError> {
         let has_positions = |sample: &&Sample| !sample.names.is_empty() && sample.position.len() == sample.names.len();
         let Some(wanted) = wanted else {
@@ -69,7 +69,7 @@ impl Joints {
         Err(error.give(Setting::Joints(Vec::new())))
     }
 
-    /// The joints of the log that are not among these.
+    /// Returns the joints of the log that are not read.
     pub(crate) fn others(&self, samples: &[Sample]) -> Vec<String> {
         let own: HashSet<&String> = self.names.iter().collect();
         names(samples).into_iter().filter(|name| !own.contains(name)).collect()
@@ -102,7 +102,7 @@ impl Joints {
         numbers.len() == sample.names.len() && self.places.as_ref().is_some_and(|places| places.iter().all(is_finite))
     }
 
-    /// The numbers of the joints that were found, appended.
+    /// Appends the numbers of the joints that were found to `row`, multiplied by a factor for each joint.
     pub(crate) fn take(&self, numbers: &[f64], factor: impl Fn(usize) -> f64, row: &mut Vec<f64>) {
         for (joint, place) in self.places.iter().flatten().enumerate() {
             row.push(numbers.get(*place).copied().unwrap_or(f64::NAN) * factor(joint));
@@ -110,8 +110,8 @@ impl Joints {
     }
 }
 
-/// Names that are one word and different numbers, in the order of these: what sorts names puts `joint_10` before
-/// `joint_2`. Others as they are.
+/// Sorts names that are one word with different numbers by these numbers, because some programs sort `joint_10` before
+/// `joint_2`. Other names keep their order.
 fn by_number(mut names: Vec<String>) -> Vec<String> {
     fn parts(name: &str) -> Option<(&str, u32)> {
         let word = name.trim_end_matches(|c: char| c.is_ascii_digit());
@@ -130,7 +130,7 @@ fn twice(names: &[String]) -> Option<&String> {
     names.iter().find(|name| !seen.insert(*name))
 }
 
-/// Every joint of samples, in the order of their first mention.
+/// Returns the names of all joints in samples, in the order of their first occurrence.
 fn names(samples: &[Sample]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     let mut seen: HashSet<&str> = HashSet::new();
@@ -154,7 +154,7 @@ fn names(samples: &[Sample]) -> Vec<String> {
 mod tests {
     use super::*;
 
-    /// Seventy messages, each with its own joints beside two that are in all.
+    /// Returns seventy messages, each with two joints that all have and with other joints of its own.
     fn samples(count: usize) -> Vec<Sample> {
         let values = |message: usize| {
             let others = (0..count).map(|joint| format!("other_{message}_{joint}"));
@@ -178,7 +178,7 @@ mod tests {
             let samples = samples(count);
             work::of(|| assert_eq!(survey(&samples), 70 * count))
         });
-        // of each name some few steps, and twice as many of twice as many names
+        // a few steps for each name, and twice as many for twice as many names
         assert!(work[0] > 70 * 200 && work[0] < 70 * 203 * 6, "{work:?}");
         assert!(work[1] < 2 * work[0], "{work:?}");
     }

@@ -6,47 +6,49 @@ use crate::columns::quantity::Quantity;
 use crate::columns::unit::JointUnits;
 use crate::formats::format::Format;
 
-/// Content of a log, from its first thousand messages.
+/// Content of a log, found from its first thousand messages.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 #[expect(clippy::struct_excessive_bools, reason = "each is a quantity that the log has, or not")]
 pub struct Layout {
     /// Format of the first file.
     pub format: Format,
-    /// The topic of a bag.
+    /// The topic that is read, for a bag.
     pub topic: Option<String>,
-    /// The joints that are read, by the log's names.
+    /// The names in the log of the joints that are read.
     pub joints: Vec<String>,
     /// The joints of the log that are not read.
     pub ignored: Vec<String>,
-    /// Times are those of recording: the messages' own are all equal, or the options say so.
+    /// Whether times are those of recording, because all times in the messages are equal, or because the options
+    /// require it.
     pub recorded: bool,
-    /// Whether the log has velocities; states without them are left out then.
+    /// Whether the log has velocities. If so, messages without them are left out.
     pub has_velocities: bool,
-    /// Whether the log has efforts; states without them are left out then.
+    /// Whether the log has efforts. If so, messages without them are left out.
     pub has_efforts: bool,
-    /// Whether the log has accelerations, which only a [`Mapping`](crate::Mapping) names; else they are derived.
+    /// Whether the log has accelerations, which are read only by a [`Mapping`](crate::Mapping). Otherwise, they are
+    /// derived.
     pub has_accelerations: bool,
-    /// Where it has none: the joints none of whose efforts is a number, of the first thousand messages.
+    /// If the log has no efforts: the joints without any effort in the first thousand messages.
     pub without_efforts: Vec<String>,
-    /// The median interval, s.
+    /// The median interval between states, s.
     pub step: f64,
-    /// The time of the log's first state, ns, which times are since; 0 where the log's own times begin near zero.
+    /// The origin of times, ns: the time of the log's first state, or 0 if the times in the log begin near zero.
     pub origin: i64,
-    /// The units that names of columns say, by joint.
+    /// The units in the names of columns, for each joint.
     pub units: Vec<JointUnits>,
-    /// The columns of a table that are not read: those like the columns of joints, and all others where no joint has a
-    /// velocity, or none an effort.
+    /// The columns of a table that are not read: those that resemble columns of joints and, if no joint has a velocity
+    /// or none has an effort, all others.
     pub unread: Vec<String>,
-    /// The columns of a table that have words and no numbers, which may say of which arm or part a row is.
+    /// The columns of a table with words instead of numbers, which may name the arm or the part of the log of a row.
     pub word_columns: Vec<String>,
-    /// Remarks on what the file is.
+    /// Remarks on the content of the file.
     pub notes: Vec<String>,
 }
 
 impl Layout {
-    /// Places of a quantity among the numbers of a state: positions, then velocities, efforts and accelerations as far
-    /// as the log has them.
+    /// Returns the indices of a quantity in the numbers of a state: positions, then velocities, efforts and
+    /// accelerations as far as the log has them.
     pub(crate) fn places(&self, quantity: Quantity) -> Range<usize> {
         let has = |quantity| match quantity {
             Quantity::Position => true,
@@ -59,7 +61,7 @@ impl Layout {
         start..start + if has(quantity) { self.joints.len() } else { 0 }
     }
 
-    /// How many numbers a state has.
+    /// Returns the count of numbers in a state.
     pub(crate) fn width(&self) -> usize {
         self.places(Quantity::Acceleration).end
     }

@@ -1,4 +1,4 @@
-//! A log: its files, what is read of them and by which names.
+//! Opens a log: chooses its files, joints and quantities.
 
 pub(crate) mod chain;
 pub(crate) mod frozen_position;
@@ -28,15 +28,17 @@ use crate::options::{Angles, Options};
 use crate::remedy::Setting;
 use crate::spelling::listed;
 
-/// Messages by which it is decided what a log has: joints, times, velocities, efforts, its step.
+/// Number of first messages that determine the content of a log: joints, times, velocities, efforts and sampling
+/// interval.
 const HEAD: usize = 1024;
 
-/// Stamps this far from zero, ns, are since 1970 or the machine's start, and are shown since the log's first.
+/// Stamps above this value, ns, count from 1970 or from the start of a machine; their times are given from the log's
+/// first stamp on.
 const FAR: i64 = 10_000_000_000_000_000;
 
-/// A log of one or more files, opened; reading it costs memory that does not grow with it.
+/// An open log of one or more files. The memory for reading it does not grow with the log.
 ///
-/// [`Log::survey`] reads it once and says what is there. [`Log::motions`] reads it again and filters.
+/// [`Log::survey`] reads the log once and reports its content. [`Log::motions`] reads it again and filters it.
 #[derive(Debug)]
 pub struct Log {
     pub(crate) files: Vec<PathBuf>,
@@ -59,12 +61,12 @@ impl Log {
         format::check_once(&files)?;
         check(path, &options)?;
         let mut chain = Chain::open(&files, &options)?;
-        // the first messages may be of several files
+        // the first messages may come from several files
         let (topic, unread) = (chain.source.topic().map(str::to_owned), chain.source.unread());
         let mut notes = chain.source.notes();
         let is_time_unit_known = chain.source.is_time_unit_known();
         let head = head(&mut chain)?;
-        // a bag may name its topic with the first message
+        // the topic of a bag may be known only after the first message
         let topic = topic.or_else(|| chain.source.topic().map(str::to_owned));
         let word_columns = chain.source.word_columns();
         if head.is_empty() {
@@ -108,7 +110,7 @@ impl Log {
         Ok(Self { files, options, joints, layout })
     }
 
-    /// The error of a log whose files have no joint states.
+    /// Returns the error for a log whose files have no joint states.
     fn without_states(files: &[PathBuf], options: &Options, topic: Option<String>) -> Result<LogError, LogError> {
         let path = &files[0];
         if let [(column, value)] = options.select.as_slice() {
@@ -127,7 +129,7 @@ impl Log {
         &self.layout
     }
 
-    /// Whether efforts are multiplied: they are currents.
+    /// Whether efforts are currents that are multiplied by torque constants.
     #[must_use]
     pub fn has_torque_constants(&self) -> bool {
         !self.options.torque_constants.is_empty()
@@ -139,13 +141,13 @@ impl Log {
         &self.files
     }
 
-    /// An error of the request, with the name of the first file.
+    /// Makes an error for options that do not fit the log, with the name of the first file.
     pub(crate) fn request(&self, what: impl std::fmt::Display) -> LogError {
         LogError::request(&self.files[0], what)
     }
 
-    /// The joints whose efforts are currents by the names of columns, where there are no torque constants: such a log
-    /// is not filtered.
+    /// Returns the joints whose efforts are currents by the names of columns, if the options have no torque constants.
+    /// Such a log cannot be filtered.
     #[must_use]
     pub fn unsaid_currents(&self) -> Vec<&str> {
         let Layout { joints, units, has_efforts, .. } = &self.layout;
@@ -154,13 +156,14 @@ impl Log {
         joints.iter().zip(units).filter(|(_, units)| is_current(units)).map(|(name, _)| name.as_str()).collect()
     }
 
-    /// Factor of a joint's positions and velocities; `said` is their dimension, if a column's name gives it.
+    /// Returns the factor of a joint's positions and velocities to SI units; `said` is their dimension, if the column's
+    /// name gives it.
     pub(crate) fn of_angle(&self, joint: usize, said: Option<Dimension>) -> f64 {
         let is_degrees = self.options.angles == Angles::Degrees && said.is_none() && !self.options.is_slide(joint);
         if is_degrees { std::f64::consts::PI / 180.0 } else { 1.0 }
     }
 
-    /// Factor of a joint's effort.
+    /// Returns the factor of a joint's effort: its torque constant, or 1.
     pub(crate) fn torque_constant(&self, joint: usize) -> f64 {
         if matches!(self.layout.units[joint].effort, Some(Dimension::Torque | Dimension::Force)) {
             return 1.0;
@@ -173,7 +176,7 @@ impl Log {
     }
 }
 
-/// The first messages.
+/// Reads the first messages, up to a limit.
 fn head(chain: &mut Chain) -> Result<Vec<Sample>, LogError> {
     let mut head: Vec<Sample> = Vec::new();
     let mut sample = Sample::default();
@@ -185,7 +188,8 @@ fn head(chain: &mut Chain) -> Result<Vec<Sample>, LogError> {
     Ok(head)
 }
 
-/// The samples that have all joints, and how many of them have all velocities, efforts and accelerations.
+/// Returns the samples that have all joints, and how many of them have velocities, efforts and accelerations of all
+/// joints.
 fn whole<'s>(
     path: &Path,
     joints: &mut Joints,
@@ -210,7 +214,7 @@ fn whole<'s>(
     Ok((states, others))
 }
 
-/// The joints that have no effort in any of these samples.
+/// Returns the joints that have no effort in any of these samples.
 fn without_efforts(joints: &mut Joints, samples: &[&Sample]) -> Vec<String> {
     let mut is_there = vec![false; joints.names.len()];
     let mut efforts = Vec::new();
@@ -226,7 +230,7 @@ fn without_efforts(joints: &mut Joints, samples: &[&Sample]) -> Vec<String> {
     missing.map(|(name, _)| name.clone()).collect()
 }
 
-/// Note for prismatic joints, whose numbers are not converted from degrees.
+/// Returns a note on prismatic joints, whose numbers are not converted from degrees.
 fn slides_in_metres(options: &Options, names: &[String], units: &[JointUnits]) -> Option<String> {
     let stays = |joint: &usize| {
         let JointUnits { position, velocity, .. } = units[*joint];
@@ -240,7 +244,7 @@ fn slides_in_metres(options: &Options, names: &[String], units: &[JointUnits]) -
     })
 }
 
-/// Numbers that make no sense in any log.
+/// Refuses options with numbers that are wrong for any log.
 fn check(path: &Path, options: &Options) -> Result<(), LogError> {
     let positive = [("rate", options.rate), ("cut-off", options.cutoff)];
     for (name, number) in positive {

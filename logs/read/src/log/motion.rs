@@ -1,4 +1,4 @@
-//! A run of states with accelerations, filtered evenly: the input of identification and watching.
+//! A filtered run of states with accelerations: the input of identification and watching.
 
 /// A filtered run without gaps: the states of a log between two interruptions, with accelerations.
 ///
@@ -6,7 +6,7 @@
 /// `time`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// Seconds, growing.
+    /// Times, s, increasing.
     pub time: Vec<f64>,
     /// Positions, rad or m.
     pub q: Vec<Vec<f64>>,
@@ -14,15 +14,15 @@ pub struct Motion {
     pub qd: Vec<Vec<f64>>,
     /// Accelerations, rad/s² or m/s².
     pub qdd: Vec<Vec<f64>>,
-    /// Torques or forces of the actuators, N m or N. Without any list where the log has no efforts.
+    /// Torques or forces of the actuators, N m or N; empty if the log has no efforts.
     pub tau: Vec<Vec<f64>>,
-    /// The same before the filter of [`Motions`](crate::Motions). Without any list where that is not known, or the
-    /// same.
+    /// Torques or forces before the filter of [`Motions`](crate::Motions), N m or N; empty if they are unknown or equal
+    /// to `tau`.
     pub recorded: Vec<Vec<f64>>,
 }
 
 impl Motion {
-    /// How many states there are.
+    /// Number of states.
     #[must_use]
     pub fn len(&self) -> usize {
         self.time.len()

@@ -1,4 +1,4 @@
-//! The runs of a log, filtered, in pieces.
+//! Reads the filtered runs of a log in pieces.
 
 use crate::columns::quantity::Quantity;
 use crate::limits::MOST_NUMBERS;
@@ -12,55 +12,55 @@ use crate::spelling::listed;
 use crate::{Log, LogError, Motion};
 
 impl Log {
-    /// Reads the log again and hands out its runs, filtered, in pieces of some thousand states.
+    /// Reads the log again and returns its filtered runs in pieces of some thousand states.
     ///
     /// # Errors
     ///
-    /// If positions may be degrees and nobody said, if there is no cut-off, or one that the rate does not allow, or
-    /// that leaves nothing of any run.
+    /// If positions may be in degrees and the unit is not given; if there is no cut-off, or it is too high for the
+    /// sampling rate, or so low that all runs are too short for the filter.
     pub fn motions(&self, survey: &Survey) -> Result<Motions<'_>, LogError> {
         Motions::of(self, survey)
     }
 }
 
-/// States of a piece, of whatever length its run is: some megabytes.
+/// Number of states of a piece, for runs of any length: some megabytes.
 const PIECE: usize = 16_384;
 
 /// A part of a run, or all of it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Piece {
-    /// The run's number, from 0, as [`Survey::runs`] has it.
+    /// The number of the run, from 0, as in [`Survey::runs`].
     pub run: u64,
-    /// Its states: those that follow on the last of the piece before, if that is of the same run.
+    /// The states. They follow those of the previous piece, if that belongs to the same run.
     pub motion: Motion,
 }
 
-/// The runs of a log, filtered, in pieces that follow each other without a gap: joined they are the same numbers, bit
-/// for bit, as a run filtered at once. The ends of a run, where the filter would reach beyond it, are dropped, unless
-/// they are [asked for](Motions::with_ends).
+/// The filtered runs of a log, in pieces that follow each other without a gap. Joined, they have the same numbers, bit
+/// for bit, as a run that is filtered at once. The ends of a run, where the filter would reach beyond it, are dropped,
+/// unless [`with_ends`](Motions::with_ends) keeps them.
 ///
-/// Torques are filtered as positions and velocities are, so that both sides of the equations of motion see the same
-/// filter. Velocities are those of the log, filtered, where it has them: a controller measures them at a higher rate
-/// and with less noise than differences of what it logs. Else they are differences of filtered positions. Accelerations
-/// are differences of the filtered velocities.
+/// Torques are filtered as positions and velocities are, so that both sides of the equations of motion pass the same
+/// filter. Velocities are the filtered ones of the log, if it has them: a controller measures them at a higher rate, so
+/// they have less noise than differences of logged positions. Otherwise, they are differences of filtered positions.
+/// Accelerations are differences of the filtered velocities.
 pub struct Motions<'a> {
     log: &'a Log,
     pass: Pass<'a>,
     kernel: Kernel,
     dropped: usize,
     length: usize,
-    /// How many runs have begun.
+    /// Number of runs that have begun.
     begun: u64,
     grid: Option<Grid>,
-    /// Whether the ends are kept, and whether that of this run's beginning was made.
+    /// Whether the ends of runs are kept, and whether the beginning of this run was extended.
     with_ends: bool,
     has_begun: bool,
-    /// Rows of the run by column, of which `first` have been handed on: those that the filter still reaches stay.
+    /// Rows of the run that the filter still needs, by column; `first` rows before them were removed.
     rows: Vec<Vec<f64>>,
     first: u64,
-    /// ns, of the run's first row.
+    /// Time of the run's first row, ns.
     begin: i64,
-    /// A state that begins the next run.
+    /// The first state of the next run.
     next: Option<(i64, Vec<f64>)>,
     ended: bool,
 }
@@ -117,29 +117,29 @@ impl<'a> Motions<'a> {
         Ok(motions)
     }
 
-    /// States of a piece at most, at least one: memory is this by the number of joints. Pieces of hundreds of joints
-    /// are shorter.
+    /// Sets the largest number of states of a piece, at least one. The memory is proportional to it and to the number
+    /// of joints. With hundreds of joints, pieces are shorter.
     #[must_use]
     pub fn with_length(mut self, states: usize) -> Self {
         self.length = states.clamp(1, longest_piece(self.rows.len())).next_multiple_of(self.kernel.block());
         self
     }
 
-    /// Keeps the ends of runs: beyond them a run goes on as the point reflection of itself in its last state, whose
-    /// slope is that of the run. A run that is shorter than what is made anew is left out.
+    /// Keeps the ends of runs: beyond its first and last state, a run is continued by its point reflection in that
+    /// state, which keeps its slope. A run that is shorter than this continuation is left out.
     #[must_use]
     pub fn with_ends(mut self) -> Self {
         self.with_ends = true;
         self
     }
 
-    /// How much of the log was read, 0 to 1.
+    /// Returns the fraction of the log that was read, 0 to 1.
     #[must_use]
     pub fn progress(&self) -> f64 {
         self.pass.progress()
     }
 
-    /// Reads until a piece is there or its run ends; whether it ended.
+    /// Reads the log until a piece is complete or its run ends; returns whether the run ended.
     fn fill(&mut self) -> Result<bool, LogError> {
         if let Some((time, numbers)) = self.next.take() {
             (self.begin, self.first, self.has_begun) = (time, 0, false);
@@ -177,7 +177,7 @@ impl<'a> Motions<'a> {
         Ok(false)
     }
 
-    /// Continues the run before its first row.
+    /// Extends the run before its first row by reflection.
     fn begin_earlier(&mut self) {
         let more = self.dropped;
         if self.has_begun || self.rows.first().is_none_or(|rows| rows.len() <= more) {
@@ -190,7 +190,7 @@ impl<'a> Motions<'a> {
         self.has_begun = true;
     }
 
-    /// Continues it behind its last one.
+    /// Extends the run after its last row by reflection.
     fn end_later(&mut self) {
         if !self.has_begun {
             return;
@@ -203,7 +203,7 @@ impl<'a> Motions<'a> {
         }
     }
 
-    /// The states whose neighbours are all there, at most a piece of them.
+    /// Returns the states for which all rows in reach of the filter are known, at most one piece.
     #[expect(clippy::cast_precision_loss, reason = "rows are fewer than 2^53")]
     fn filtered(&mut self) -> Motion {
         let there = self.rows.first().map_or(0, Vec::len);
@@ -214,7 +214,7 @@ impl<'a> Motions<'a> {
         let layout = &self.log.layout;
         let more = self.dropped - self.kernel.half();
         let smooth = |rows: &Vec<f64>| self.kernel.smooth(rows, count + 2 * more);
-        // the numbers of the states themselves, of lists that reach further
+        // cuts off the additional numbers at both ends
         let inner = |numbers: &Vec<f64>| {
             let beyond = (numbers.len() - count) / 2;
             numbers[beyond..beyond + count].to_vec()
@@ -252,7 +252,8 @@ impl<'a> Motions<'a> {
     }
 }
 
-/// Refuses a log whose positions may be degrees and nobody said, or whose efforts are currents without a factor.
+/// Refuses a log whose positions may be in degrees although no unit is given, or whose efforts are currents without
+/// torque constants.
 pub(crate) fn check_units(log: &Log, survey: &Survey) -> Result<(), LogError> {
     if let Some((joint, range)) = survey.may_be_degrees(log) {
         let what = format!(
@@ -269,7 +270,7 @@ pub(crate) fn check_units(log: &Log, survey: &Survey) -> Result<(), LogError> {
     Ok(())
 }
 
-/// Why a cut-off leaves nothing of any run: of the request, where another one would leave something.
+/// Returns the error for a cut-off that is so low that all runs are too short, with the lowest possible one, if any.
 fn too_low(log: &Log, survey: &Survey, hertz: f64) -> LogError {
     let (longest, step) = (usize::try_from(survey.longest).unwrap_or(usize::MAX), log.layout.step);
     let half = (longest.saturating_sub(1) / 2).saturating_sub(log.of_differences());
@@ -291,7 +292,7 @@ fn too_low(log: &Log, survey: &Survey, hertz: f64) -> LogError {
     }
 }
 
-/// States of a piece, so that memory is bounded whatever the number of columns is.
+/// Returns the largest number of states of a piece, so that memory is bounded for any number of columns.
 fn longest_piece(columns: usize) -> usize {
     MOST_NUMBERS / columns.max(1)
 }
@@ -307,7 +308,7 @@ impl Iterator for Motions<'_> {
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
-            // a run that ended is emptied first
+            // returns the rest of a run that has ended first
             if self.grid.is_none() {
                 let motion = self.filtered();
                 if !motion.is_empty() {

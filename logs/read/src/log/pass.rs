@@ -1,4 +1,4 @@
-//! One reading of a log: its states, and where a run begins.
+//! Reads a log once: its states, and where runs begin.
 
 use std::fmt;
 
@@ -15,20 +15,20 @@ impl Log {
     }
 }
 
-/// A position that moves faster than this, rad/s or m/s, was set and not reached.
+/// Largest speed, rad/s or m/s. A position that changes faster was set to another value and did not move there.
 const FASTEST: f64 = 30.0;
 
-/// A number beyond this, of whatever unit, was not measured; and its square has room for many more.
+/// Largest magnitude of a measured number, in any unit. Sums of its squares do not overflow.
 const LARGEST: f64 = 1e12;
 
-/// A state as the log has it, in SI units.
+/// An unfiltered state of the log, in SI units.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct State {
     /// The number of its message, from 1.
     pub(crate) message: u64,
-    /// ns
+    /// Time, ns.
     pub(crate) time: i64,
-    /// Positions of the joints, then velocities and efforts where the log has them.
+    /// Positions of the joints, then velocities, efforts and accelerations as far as the log has them.
     pub(crate) numbers: Vec<f64>,
 }
 
@@ -38,61 +38,61 @@ pub(crate) struct State {
 pub struct InvalidSample {
     /// The number of the message or row, from 1, header and comments not counted.
     pub message: u64,
-    /// s
+    /// Time, s.
     pub time: f64,
-    /// The joint's place among those that are read, from 0.
+    /// Index of the joint among those that are read, from 0.
     pub joint: usize,
-    /// `position`, `velocity`, `effort` or `acceleration`
+    /// The quantity: `position`, `velocity`, `effort` or `acceleration`.
     pub quantity: &'static str,
-    /// As the log has it, in SI units.
+    /// The value in the log, in SI units.
     pub value: f64,
 }
 
-/// Counts of messages, and of those that are not states of the arm by their reason.
+/// Counts of messages, and of those that are not states of the arm, by reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Messages or rows, all of them.
+    /// All messages or rows.
     pub messages: u64,
     /// Messages that are states of the arm.
     pub states: u64,
     /// Messages that have none of the joints.
     pub of_others: u64,
-    /// Messages that have some of the joints.
+    /// Messages that have some but not all of the joints.
     pub without_joints: u64,
-    /// Messages without positions, or with another number of them.
+    /// Messages whose number of positions is not that of their joints.
     pub without_positions: u64,
-    /// Messages without velocities, or with another number of them, where the log has velocities.
+    /// Messages whose number of velocities is not that of their joints, if the log has velocities.
     pub without_velocities: u64,
-    /// Messages without efforts, or with another number of them, where the log has efforts.
+    /// Messages whose number of efforts is not that of their joints, if the log has efforts.
     pub without_efforts: u64,
     /// Messages with a number that is NaN, infinite, or beyond 10¹² of its unit.
     pub not_finite: u64,
-    /// Messages that repeat the one before, with the same time.
+    /// Messages with the same time and numbers as the previous one.
     pub repeats: u64,
 }
 
 /// The reason for which a run begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Interruption {
-    /// It is the first.
+    /// It is the first run.
     Beginning,
-    /// Nothing was measured for these seconds.
+    /// Nothing was measured for some time.
     Gap {
         /// s
         seconds: f64,
     },
     /// Time went back.
     Reset {
-        /// By so much, s.
+        /// The time by which it went back, s.
         seconds: f64,
     },
-    /// Two states have the same time and differ.
+    /// Two successive states have the same time but different numbers.
     Duplicate,
-    /// A joint is elsewhere, faster than a joint moves.
+    /// The position of a joint changed faster than a joint can move.
     Jump {
-        /// Its place among those that are read, from 0.
+        /// Index of the joint among those that are read, from 0.
         joint: usize,
-        /// rad or m
+        /// The change of the position, rad or m.
         by: f64,
     },
 }
@@ -119,7 +119,7 @@ pub(crate) struct Pass<'a> {
     previous: Option<State>,
     pub(crate) counts: Counts,
     pub(crate) invalid_sample: Option<InvalidSample>,
-    /// Messages that are left out, by their numbers, in order.
+    /// The numbers of messages that are left out, in increasing order.
     without: Vec<u64>,
 }
 
@@ -138,17 +138,17 @@ impl<'a> Pass<'a> {
         })
     }
 
-    /// Without the messages that have a spike.
+    /// Leaves out the messages that have a spike.
     pub(crate) fn without(self, spikes: &[Spike]) -> Self {
         Self { without: spikes.iter().map(|spike| spike.message).collect(), ..self }
     }
 
-    /// How much of the log was read, 0 to 1.
+    /// Returns the fraction of the log that was read, 0 to 1.
     pub(crate) fn progress(&self) -> f64 {
         self.chain.progress()
     }
 
-    /// The next state, and why a run begins with it, if one does.
+    /// Reads the next state, and the reason for which a run begins with it, if one does.
     pub(crate) fn next(&mut self) -> Result<Option<(&State, Option<Interruption>)>, LogError> {
         loop {
             if !self.chain.read(&mut self.sample)? {
@@ -175,7 +175,7 @@ impl<'a> Pass<'a> {
         }
     }
 
-    /// Makes a state of the sample, if it is one; else counts why not.
+    /// Makes a state from the sample and returns true; if that is impossible, counts the reason.
     fn take(&mut self) -> bool {
         let Self { log, sample, state, counts, .. } = self;
         match self.joints.find(sample) {
@@ -235,7 +235,7 @@ impl<'a> Pass<'a> {
         true
     }
 
-    /// Why the state does not continue the run of the previous one.
+    /// Returns the reason for which the state does not continue the run of the previous one, if any.
     #[expect(clippy::cast_precision_loss, reason = "ns between samples")]
     fn interruption(&self, previous: &State) -> Option<Interruption> {
         let step = self.log.layout.step;
@@ -251,7 +251,7 @@ impl<'a> Pass<'a> {
         }
         let joints = self.joints.names.len();
         let moved = |joint: &usize| (self.state.numbers[*joint] - previous.numbers[*joint]).abs();
-        // stamps of a burst are closer than the samples were
+        // if messages arrive in a burst, their stamps are closer together than the samples were
         let most = FASTEST * interval.max(step);
         let joint = (0..joints).find(|joint| moved(joint) > most)?;
         Some(Interruption::Jump { joint, by: moved(&joint) })

@@ -1,4 +1,4 @@
-//! The states of a log as they were recorded: without a filter, and all of them.
+//! Reads all states of a log as they were recorded, without a filter.
 
 use crate::columns::quantity::Quantity;
 use crate::log::motions::check_units;
@@ -7,7 +7,7 @@ use crate::log::survey::Survey;
 use crate::{Log, LogError};
 
 impl Log {
-    /// Reads the log again and hands out its states as they were recorded, one by one: no filter changes a number, no
+    /// Reads the log again and returns its states one by one as they were recorded: no filter changes a number, no
     /// state is interpolated, and the ends of runs are kept.
     ///
     /// # Errors
@@ -24,7 +24,7 @@ impl Log {
 pub struct Recorded<'a> {
     log: &'a Log,
     pass: Pass<'a>,
-    /// How many runs have begun.
+    /// Number of runs that have begun.
     begun: u64,
 }
 
@@ -52,7 +52,7 @@ impl std::fmt::Debug for Recorded<'_> {
 }
 
 impl Recorded<'_> {
-    /// The next state; none at the end of the log.
+    /// Reads the next state; `None` at the end of the log.
     ///
     /// # Errors
     ///
@@ -66,7 +66,7 @@ impl Recorded<'_> {
         Ok(Some(RecordedState {
             run: self.begun.saturating_sub(1),
             stamp: state.time,
-            // divided, so that 0.12 s is written as 0.12
+            // a division instead of a multiplication by 1e-9, so that 0.12 s gives exactly the number 0.12
             time: state.time.saturating_sub(layout.origin) as f64 / 1e9,
             q: numbers(Quantity::Position),
             qd: numbers(Quantity::Velocity),
@@ -74,7 +74,7 @@ impl Recorded<'_> {
         }))
     }
 
-    /// How much of the log was read, 0 to 1.
+    /// Returns the fraction of the log that was read, 0 to 1.
     #[must_use]
     pub fn progress(&self) -> f64 {
         self.pass.progress()

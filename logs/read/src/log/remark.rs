@@ -1,4 +1,4 @@
-//! Remarks on a log, as data: what a reader of it has to know.
+//! Remarks on a log that a user has to know, as data.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use crate::number::short;
 use crate::spelling::listed;
 use crate::{Counts, Log};
 
-/// Relative difference between velocities and differences of positions from which it is reported.
+/// Smallest relative difference between measured velocities and differences of positions that is reported.
 const DISAGREEMENT: f64 = 0.05;
 
 /// A remark on a log. `Display` says it without the options of any interface.
@@ -17,27 +17,27 @@ const DISAGREEMENT: f64 = 0.05;
 pub enum Remark {
     /// A sentence on the file itself, such as units that were converted.
     File(String),
-    /// Positions of a joint may be in degrees: nobody said that they are radians, and their range is wide.
+    /// Positions of a joint may be in degrees: no unit is given, and their range is wide.
     MayBeDegrees {
         /// The joint by the log's name.
         joint: String,
-        /// rad, if they are radians
+        /// The range of the positions, rad, if they are in radians.
         range: f64,
     },
     /// Time goes back within a table, which may contain several logs.
     TimeGoesBack {
-        /// How often.
+        /// How often time goes back.
         times: usize,
-        /// The columns that have words, which may say of which log a row is.
+        /// The columns with words, which may name the log of a row.
         columns: Vec<String>,
     },
     /// Joints of the log that are not read.
     IgnoredJoints(Vec<String>),
     /// Measured velocities differ from the derivative of positions.
     VelocitiesDisagree {
-        /// The joint whose velocities differ most, by the log's name.
+        /// The name in the log of the joint whose velocities differ most.
         joint: String,
-        /// Root mean square of the difference over that of the derivative.
+        /// Root mean square of the difference over root mean square of the derivative.
         share: f64,
     },
     /// A position keeps one value while the joint moves.
@@ -47,24 +47,24 @@ pub enum Remark {
         /// The times of the first and of the last sample with the value, s.
         times: [f64; 2],
     },
-    /// The log has no velocities that are read: they are derived from positions.
+    /// No velocities of the log are read: they are derived from positions.
     VelocitiesDerived,
     /// Efforts of these joints are currents by the names of columns, and no torque constant is given.
     Currents(Vec<String>),
-    /// Efforts of one or two samples that stand far out of those about them.
+    /// Efforts of one or two samples that differ strongly from the samples before and after.
     Spikes {
-        /// How many there are.
+        /// Number of spikes.
         count: usize,
-        /// The joint of the first, by the log's name.
+        /// The name in the log of the joint with the first spike.
         joint: String,
-        /// The first, N m or N.
+        /// The effort of the first spike, N m or N.
         effort: f64,
-        /// The time of the first, s.
+        /// The time of the first spike, s.
         time: f64,
     },
     /// The log has no efforts.
     NoEfforts,
-    /// Efforts are taken for torques, because nothing says what they are.
+    /// Efforts are taken as torques, because nothing gives their unit.
     TakenForTorques,
 }
 
@@ -138,7 +138,7 @@ impl fmt::Display for Remark {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LeftOut {
-    /// How many there are.
+    /// Number of messages or rows.
     pub count: u64,
     /// Why they are left out.
     pub reason: Reason,
@@ -156,21 +156,21 @@ pub enum Reason {
     SomeJoints,
     /// It has no positions, or another number of them.
     NoPositions,
-    /// It has no velocities, which others have.
+    /// It has no velocities, although others have.
     NoVelocities,
-    /// It has no efforts, which others have.
+    /// It has no efforts, although others have.
     NoEfforts,
-    /// It repeats the one before, with its time.
+    /// It has the same time and numbers as the previous one.
     Repeated,
     /// A value in it is not a number.
     NotFinite {
-        /// The first such value, and its joint by the log's name.
+        /// The first such value, and the name of its joint in the log.
         first: Option<(InvalidSample, String)>,
     },
 }
 
 impl LeftOut {
-    /// Why they are left out, such as "without some of the joints".
+    /// Returns the reason in words, such as "without some of the joints".
     #[must_use]
     pub fn why(&self) -> String {
         let record = self.record();
@@ -190,7 +190,7 @@ impl LeftOut {
         }
     }
 
-    /// The word for one of them, `row` or `message`.
+    /// Returns the word for one record, `row` or `message`.
     #[must_use]
     pub fn record(&self) -> &'static str {
         if self.are_rows { "row" } else { "message" }
@@ -205,7 +205,7 @@ impl fmt::Display for LeftOut {
 }
 
 impl Log {
-    /// Remarks on the log by its survey: on the file and its motion first, then on efforts.
+    /// Returns remarks on the log from its survey: first on the file and its motion, then on efforts.
     #[must_use]
     pub fn remarks(&self, survey: &Survey) -> Vec<Remark> {
         let layout = self.layout();
@@ -252,7 +252,7 @@ impl Log {
         remarks
     }
 
-    /// Messages or rows that are left out, by reason.
+    /// Returns the numbers of messages or rows that are left out, by reason.
     #[must_use]
     pub fn left_out(&self, survey: &Survey) -> Vec<LeftOut> {
         let counts: &Counts = &survey.counts;

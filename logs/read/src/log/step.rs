@@ -1,4 +1,4 @@
-//! The interval between the samples of a log, and the unit of its times.
+//! Finds the interval between the samples of a log, and checks the unit of its times.
 
 use std::path::Path;
 
@@ -6,14 +6,14 @@ use crate::number::short;
 use crate::remedy::Setting;
 use crate::{LogError, TimeUnit};
 
-/// Samples that are so far apart, s, or further, are rare: such times are in another unit, unless somebody says that
-/// they are seconds.
+/// Interval, s, from which on times are refused unless the user gives their unit: logs with such long intervals are
+/// rare, so the times probably have another unit than s.
 const SLOWEST: f64 = 0.5;
 
-/// Samples that are so far apart, s, or further, are taken for seconds, and a note says so: 0.1 may be ms at 10 kHz.
+/// Interval, s, from which on a note says that times are read as seconds: 0.1 may also mean ms at 10 kHz.
 const SLOW: f64 = 0.0999;
 
-/// The median of the intervals between times that grow, s.
+/// Returns the median of the intervals between increasing times, s.
 #[expect(clippy::cast_precision_loss, reason = "ns of a step")]
 pub(super) fn median_step(path: &Path, times: &[i64]) -> Result<f64, LogError> {
     let mut steps: Vec<i64> = times.windows(2).filter_map(|pair| pair[1].checked_sub(pair[0])).collect();
@@ -28,7 +28,7 @@ pub(super) fn median_step(path: &Path, times: &[i64]) -> Result<f64, LogError> {
     Ok(*steps.select_nth_unstable(middle).1 as f64 * 1e-9)
 }
 
-/// Refuses rows that are not in the order of time.
+/// Refuses rows that are often not in the order of time.
 pub(super) fn check_order(path: &Path, times: &[i64]) -> Result<(), LogError> {
     let (back, count) = (times.windows(2).filter(|pair| pair[1] < pair[0]).count(), times.len());
     if 4 * back <= count {
@@ -41,8 +41,8 @@ pub(super) fn check_order(path: &Path, times: &[i64]) -> Result<(), LogError> {
     Err(LogError::file(path, what))
 }
 
-/// Refuses times whose unit is not known, if they would be seconds too long for a sample; the note on times that are
-/// nearly so long.
+/// Refuses times of unknown unit with intervals that are very long for seconds. Returns a note for intervals that are
+/// nearly as long.
 pub(super) fn check_unit(path: &Path, step: f64) -> Result<Option<String>, LogError> {
     let rates = rates(step);
     if step >= SLOWEST {
@@ -61,7 +61,7 @@ pub(super) fn check_unit(path: &Path, step: f64) -> Result<Option<String>, LogEr
     Ok((step >= SLOW).then(note))
 }
 
-/// The rate of samples by the unit of their times.
+/// Returns the sampling rates, in words, that the interval means in each unit of time.
 fn rates(step: f64) -> String {
     let words = |unit: TimeUnit, rate: f64| {
         let (rate, prefix) = match rate {

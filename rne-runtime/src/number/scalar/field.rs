@@ -1,4 +1,4 @@
-//! Every scalar that simba knows.
+//! Implements the scalar for every type of numbers that simba knows.
 
 use core::any::Any;
 
@@ -26,7 +26,7 @@ impl<T: SimdRealField + Copy> Scalar for T {
         (sine, cosine)
     }
 
-    // Firmware calls nothing: compilers for small processors would rather share one copy.
+    // Firmware must not call functions here, but compilers for small processors would share one copy of this code.
     #[cfg_attr(feature = "std", inline)]
     #[cfg_attr(not(feature = "std"), allow(clippy::inline_always), inline(always))]
     fn sin_cos_array<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]) {
@@ -68,7 +68,7 @@ impl<T: SimdRealField + Copy> Scalar for T {
     }
 }
 
-/// `value` itself if its type is `B`. There is no specialisation in stable Rust; this test is of two constants and
+/// Returns `value` itself if its type is `B`. Stable Rust has no specialisation; this test compares two constants and
 /// disappears in release builds.
 #[inline]
 fn same<A: Any, B: Any + Copy>(value: A) -> Option<B> {

@@ -1,4 +1,4 @@
-//! `f32` and `f64` alone, with the bits that they have among simba's scalars.
+//! Implements the scalar for `f32` and `f64` without the feature `simba`, with the same bits as with it.
 
 use super::Scalar;
 use crate::number::sin_cos::{Lanes, sin_cos};
@@ -24,7 +24,8 @@ macro_rules! float {
                 (sine, cosine)
             }
 
-            // Firmware calls nothing: compilers for small processors would rather share one copy.
+            // Firmware must not call functions here, but compilers for small processors would share one copy of this
+            // code.
             #[cfg_attr(feature = "std", inline)]
             #[cfg_attr(not(feature = "std"), allow(clippy::inline_always), inline(always))]
             fn sin_cos_array<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]) {

@@ -1,4 +1,4 @@
-//! The kernel for an array of angles, and the one test of their range, for eight at a time.
+//! The kernel of sine and cosine for an array of angles, with one test of the range for eight angles at a time.
 
 #[cfg(feature = "std")]
 use super::kernel_of_one_call;
@@ -16,8 +16,8 @@ pub(crate) fn sin_cos<T: Float, const N: usize>(angles: &[T; N], sines: &mut [T;
     sin_cos_lanes(angles, sines, cosines);
 }
 
-/// The kernel for the next sixteen angles, or as many as there are, written out: compilers for small processors would
-/// make a loop of them, and so a branch.
+/// Evaluates up to sixteen angles, written out one by one: compilers for small processors would turn a loop into a
+/// branch.
 macro_rules! one_by_one {
     ($angles:ident, $sines:ident, $cosines:ident, $start:ident: $($index:literal)*) => {$(
         if $start + $index < N {
@@ -40,7 +40,7 @@ pub(crate) fn sin_cos_lanes<T: Float, const N: usize>(angles: &[T; N], sines: &m
     }
 }
 
-/// Evaluates angles in registers `V`; the last register may be filled up with zeros.
+/// Evaluates angles in registers `V`. If the last register is not full, zeros are added.
 #[cfg(feature = "std")]
 #[inline(always)]
 pub(crate) fn in_registers<V: Register, const N: usize>(
@@ -48,7 +48,8 @@ pub(crate) fn in_registers<V: Register, const N: usize>(
     sines: &mut [V::Element; N],
     cosines: &mut [V::Element; N],
 ) {
-    /// Angles in a block at most, registers in a block: small enough to be unrolled and to stay in registers.
+    /// Largest number of angles in a block, and of registers in a block: small enough to be unrolled and to stay in
+    /// registers.
     const BLOCK: usize = 8;
     const REGISTERS: usize = 4;
 
@@ -68,8 +69,9 @@ pub(crate) fn in_registers<V: Register, const N: usize>(
             cosine.write(cosines, start + index * V::LANES);
         }
         if !are_within_limit {
-            // From the registers, not from `angles`: an array that is lent to a call has to live in memory, here as
-            // well, and loading a register from numbers that have just been written one by one stalls the processor.
+            // Copied from the registers and not from `angles`: an array whose address is passed to a call would have to
+            // be in memory, in the branch-free code too, and loading a register from numbers that were just written one
+            // by one stalls the processor.
             let mut copies = [[V::Element::ZERO; BLOCK]; 3];
             for (index, register) in block[..count].iter().enumerate() {
                 register.write(&mut copies[0], index * V::LANES);
@@ -86,8 +88,8 @@ pub(crate) fn in_registers<V: Register, const N: usize>(
     }
 }
 
-/// Evaluates angles beyond the limit, infinite or NaN with `std`. The other angles keep the results that the kernel
-/// found, which may have had more instructions than this is compiled with.
+/// Evaluates with `std` the angles that are beyond the limit, infinite or NaN. The other angles keep the results of the
+/// kernel, which may have been compiled with more instructions than this function.
 #[cfg(feature = "std")]
 #[cold]
 #[inline(never)]
@@ -107,7 +109,7 @@ mod tests {
     #[test]
     fn an_angle_has_the_same_bits_in_an_array_and_in_registers() {
         for start in (-100..100).map(f64::from) {
-            // more than are written out at once
+            // more angles than the code evaluates in one unrolled part
             let angles: [f64; 20] =
                 core::array::from_fn(|lane| start * 0.37 + start * start * f64::from(u8::try_from(lane).expect("few")));
             let (mut sines, mut cosines) = ([0.0; 20], [0.0; 20]);

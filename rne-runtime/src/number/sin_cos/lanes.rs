@@ -1,10 +1,10 @@
-//! One number or a register of them: what the kernel computes with.
+//! One number or a register of numbers, with which the kernel of sine and cosine computes.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{FUSED_F32, FUSED_F64, Float};
 
-/// `f64`, `f32` and, with `std`, the SIMD registers of them.
+/// `f64`, `f32` and, with `std`, SIMD registers of these.
 pub trait Lanes:
     Copy + Neg<Output = Self> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
@@ -13,8 +13,8 @@ pub trait Lanes:
     /// Whether [`plus_product`](Self::plus_product) and [`minus_product`](Self::minus_product) round once.
     const FUSED: bool;
 
-    /// Whether many are computed one after the other, so that the number of operations counts, not the length of their
-    /// chain; only of what is [fused](Self::FUSED).
+    /// Whether registers are computed one after another, so that the number of operations decides and not the length of
+    /// their chain. Only used by code that is [fused](Self::FUSED).
     const MANY: bool = false;
 
     /// Returns lanes that all contain one number.
@@ -26,7 +26,7 @@ pub trait Lanes:
     /// `self - a * b`
     fn minus_product(self, a: Self, b: Self) -> Self;
 
-    /// Sine and cosine of x from those of x - n π/2; n modulo 4 stands in the two lowest bits of `rounded`.
+    /// Returns sine and cosine of x from those of x - n π/2. The two lowest bits of `rounded` contain n modulo 4.
     ///
     /// | n mod 4 | sine of x | cosine of x |
     /// |---|---|---|
@@ -35,8 +35,8 @@ pub trait Lanes:
     /// | 2 | -sine | -cosine |
     /// | 3 | -cosine | sine |
     ///
-    /// The lowest bit of n exchanges the two; the second lowest negates the sine of x, that of n + 1 its cosine. Bit
-    /// operations, not branches, for neighbouring angles lie in different quadrants.
+    /// The lowest bit of n exchanges sine and cosine. The second lowest bit of n negates the sine of x, that of n + 1
+    /// its cosine. These are bit operations and not branches, because neighbouring angles are in different quadrants.
     fn in_quadrant(rounded: Self, sine: Self, cosine: Self) -> (Self, Self);
 }
 

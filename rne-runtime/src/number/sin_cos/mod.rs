@@ -40,10 +40,10 @@ use core::fmt::Debug;
 use crate::lanes::registers::compiled;
 use reduction::Reduced;
 
-/// Whether there is a fused multiply-add to ask for: in `std`, or in a `core` that has it.
+/// Whether Rust offers a fused multiply-add: `std` does, and `core` with a nightly compiler.
 const IS_THERE: bool = cfg!(any(feature = "std", feature = "core_float_math"));
 
-/// Whether it is one instruction for `f32` on the target this is compiled for. Cortex-M with registers for numbers
+/// Whether fused multiply-add is one instruction for `f32` on the compiled target. Cortex-M with registers for numbers
 /// (`eabihf`) has it in single precision.
 pub(crate) const FUSED_F32: bool = FUSED_F64
     || IS_THERE
@@ -60,7 +60,7 @@ pub(crate) const FUSED_F64: bool = IS_THERE
         all(any(target_arch = "riscv32", target_arch = "riscv64"), target_feature = "d"),
     ));
 
-/// `f32` and `f64`: constants and the step that differs.
+/// The properties of `f32` and `f64` that differ: the constants, and the reduction of the angle.
 pub trait Float: Lanes<Element = Self> + Debug + PartialOrd + 'static {
     const ZERO: Self;
     const MINUS_TWO: Self;
@@ -72,26 +72,26 @@ pub trait Float: Lanes<Element = Self> + Debug + PartialOrd + 'static {
     #[cfg(feature = "std")]
     type Register: registers::Register<Element = Self>;
 
-    /// The nearest number of this type.
+    /// Returns the nearest number of this type.
     fn rounded(value: f64) -> Self;
 
-    /// The first of the three steps.
+    /// Reduces an angle, the first of the three steps.
     fn reduced<V: Lanes<Element = Self>>(angle: V) -> Reduced<V>;
 
     /// Whether the kernel is correct for this angle; false for NaN.
     fn is_within_limit(self) -> bool;
-    /// Whether the kernel is correct for all angles of which this is the sum of the squares; false for NaN. It may be
-    /// false where it need not be.
+    /// Whether the kernel is certainly correct for all angles whose squares have this sum; false for NaN. A sum of
+    /// correct angles may be too large.
     fn is_square_within_limit(self) -> bool;
-    /// Correct everywhere.
+    /// Returns sine and cosine by `std`, which are correct for every angle.
     #[cfg(feature = "std")]
     fn std_sin_cos(self) -> (Self, Self);
 }
 
-/// Angles up to this, in rad, are reduced exactly enough.
+/// The largest angle, rad, that is reduced with sufficient accuracy.
 pub(crate) const LIMIT: f32 = 1e5;
 
-/// Angles whose squares have no greater sum, in rad², are within it.
+/// If the squares of angles have a sum of at most this, rad², then each angle is below the limit.
 pub(crate) const SQUARE_LIMIT: f32 = 0.99 * LIMIT * LIMIT;
 
 macro_rules! float {
@@ -138,7 +138,7 @@ macro_rules! float {
 float!(f64, double, P_F64, Q_F64, Doubles);
 float!(f32, single, P_F32, Q_F32, Singles);
 
-/// Sine and cosine, correct up to the limit: no branch.
+/// Computes sine and cosine without a branch; they are correct up to the limit.
 #[inline(always)]
 pub(crate) fn kernel<V: Lanes>(angle: V) -> (V, V) {
     let Reduced { rounded, head, excess } = V::Element::reduced(angle);
@@ -146,7 +146,8 @@ pub(crate) fn kernel<V: Lanes>(angle: V) -> (V, V) {
     V::in_quadrant(rounded, sine, cosine)
 }
 
-/// Evaluates an angle whose result the call waits for, even in a register that is made for [many](Lanes::MANY).
+/// Evaluates one angle whose result the caller waits for, as fast as possible even for registers that are otherwise
+/// used for [many](Lanes::MANY).
 #[cfg(feature = "std")]
 #[inline(always)]
 fn kernel_of_one_call<V: Lanes>(angle: V) -> (V, V) {

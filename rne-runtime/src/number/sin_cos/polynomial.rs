@@ -43,7 +43,7 @@ pub(super) fn sine_and_cosine<V: Lanes>(y: V, e: V) -> (V, V) {
     if V::MANY { short(y, e) } else { soon(y, e) }
 }
 
-// In this order and with these signs the sine of a negative zero is one, both ways.
+// With this order and these signs, both ways give -0 as the sine of -0.
 
 #[inline(always)]
 pub(super) fn soon<V: Lanes>(y: V, e: V) -> (V, V) {
@@ -51,7 +51,7 @@ pub(super) fn soon<V: Lanes>(y: V, e: V) -> (V, V) {
     let z = y * y;
     let square = z * z;
     let half = V::splat(V::Element::HALF) * z;
-    // rounded; (1 - w) - z/2 is what that leaves
+    // the rounded sum; (1 - w) - z/2 is its rounding error
     let w = one - half;
     let sine = y - (e * w).minus_product(z * y, two_by_two(V::Element::P, z, square));
     let correction = (y * e).plus_product(square, two_by_two(V::Element::Q, z, square));
@@ -68,8 +68,8 @@ fn short<V: Lanes>(y: V, e: V) -> (V, V) {
     (sine, cosine)
 }
 
-/// c_0 + c_1 z + c_2 z² + ..., `square` being z², two coefficients at a time for a shorter chain of operations, and
-/// c_0, by far the largest term, last, for its rounding is felt.
+/// Returns c_0 + c_1 z + c_2 z² + ..., where `square` is z². It takes two coefficients at a time, for a shorter chain
+/// of operations. c_0, by far the largest term, is added last, because its rounding error matters most.
 #[inline(always)]
 fn two_by_two<V: Lanes>(coefficients: &'static [V::Element], z: V, square: V) -> V {
     let pair = |even, odd| V::splat(even).plus_product(z, V::splat(odd));

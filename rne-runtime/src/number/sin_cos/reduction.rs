@@ -64,8 +64,8 @@ pub(super) fn single<V: Lanes<Element = f32>>(x: V) -> Reduced<V> {
     Reduced { rounded, head, excess }
 }
 
-/// `a - n part` rounded, and what it is too large by. The product has no rounding error; the excess has none if the
-/// product is no larger than a or if the difference needs no rounding.
+/// Returns `a - n part` rounded, and its rounding error, by which it is too large. The product has no rounding error.
+/// The error is exact if the product is not larger than a, or if the difference needs no rounding.
 #[inline(always)]
 fn difference<V: Lanes>(a: V, n: V, part: V::Element) -> (V, V) {
     let rounded = a.minus_product(n, V::splat(part));

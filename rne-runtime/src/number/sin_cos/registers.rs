@@ -1,18 +1,18 @@
-//! Registers that are filled from an array and written to one.
+//! Registers that are loaded from an array and stored to one.
 //!
-//! Written out as registers rather than left to LLVM's vectorisers: those succeed or fail with the code around the
+//! They are written out as registers and not left to LLVM's vectorisers, whose success depends on the code around the
 //! kernel.
 
 use super::Lanes;
 
-/// Lanes that are filled from an array and written to one.
+/// Lanes that are loaded from an array and stored to one.
 pub trait Register: Lanes {
     const LANES: usize;
 
-    /// The numbers from `start` on; zeros beyond the last.
+    /// Loads the numbers from `start` on; lanes beyond the last number are zero.
     fn padded<const N: usize>(numbers: &[Self::Element; N], start: usize) -> Self;
 
-    /// Writes the lanes to `numbers` from `start` on, as far as there are some.
+    /// Stores the lanes to `numbers` from `start` on, except those beyond its end.
     fn write<const N: usize>(self, numbers: &mut [Self::Element; N], start: usize);
 
     /// Whether the kernel is correct for all of these angles.

@@ -1,4 +1,4 @@
-//! Batches: all states in one call.
+//! Tests of batches, which compute all states in one call.
 
 use core::array;
 
@@ -21,7 +21,7 @@ pub fn on_large_stack(test: impl FnOnce() + Send) {
     });
 }
 
-/// The states, and each joint's numbers of all of them: positions, velocities, accelerations and torques.
+/// States of a robot, and the positions, velocities, accelerations and torques of each joint in all of them.
 struct Motion<const DOF: usize> {
     arm: DynArm,
     states: Vec<State>,
@@ -42,17 +42,18 @@ impl<const DOF: usize> Motion<DOF> {
         self.columns.each_ref().map(|columns| columns.each_ref().map(Vec::as_slice))
     }
 
-    /// Room for a vector.
+    /// Returns arrays of zeros for the results of a vector.
     fn vector(&self) -> [Vec<f64>; DOF] {
         array::from_fn(|_| vec![f64::NAN; self.states.len()])
     }
 
-    /// Room for a matrix.
+    /// Returns arrays of zeros for the results of a matrix.
     fn matrix(&self) -> [[Vec<f64>; DOF]; DOF] {
         array::from_fn(|_| self.vector())
     }
 
-    /// Compares what a batch has computed with the runtime. Vector registers have sines and cosines of their own.
+    /// Compares the results of a batch with the runtime, up to rounding: vector registers have another kernel of sine
+    /// and cosine.
     #[track_caller]
     fn compare(&self, function: Function, found: impl Fn(usize) -> Vec<f64>) {
         for (index, state) in self.states.iter().enumerate() {
@@ -63,22 +64,22 @@ impl<const DOF: usize> Motion<DOF> {
     }
 }
 
-/// The slices of a vector.
+/// Returns the arrays of a vector as mutable slices.
 fn written<const DOF: usize>(vector: &mut [Vec<f64>; DOF]) -> [&mut [f64]; DOF] {
     vector.each_mut().map(Vec::as_mut_slice)
 }
 
-/// The vector of a state.
+/// Returns the vector in one state.
 fn at<const DOF: usize>(vector: &[Vec<f64>; DOF], state: usize) -> Vec<f64> {
     vector.iter().map(|numbers| numbers[state]).collect()
 }
 
-/// The matrix of a state, row after row.
+/// Returns the matrix in one state, row after row.
 fn matrix_at<const DOF: usize>(matrix: &[[Vec<f64>; DOF]; DOF], state: usize) -> Vec<f64> {
     matrix.iter().flat_map(|row| at(row, state)).collect()
 }
 
-/// Torques.
+/// Tests the torques of a batch.
 pub fn batches_are_those_of_the_runtime<const DOF: usize, R: BatchInverseDynamics<DOF>>(robot: &R, file: &RobotFile) {
     let motion = Motion::new(file);
     let ([q, qd, qdd, _], mut tau) = (motion.slices(), motion.vector());
@@ -86,7 +87,7 @@ pub fn batches_are_those_of_the_runtime<const DOF: usize, R: BatchInverseDynamic
     motion.compare(Function::InverseDynamics, |state| at(&tau, state));
 }
 
-/// M(q).
+/// Tests the mass matrices of a batch.
 pub fn mass_matrices_of_a_batch_are_those_of_the_runtime<const DOF: usize, R: BatchMassMatrix<DOF> + Sync>(
     robot: &R,
     file: &RobotFile,
@@ -100,7 +101,8 @@ pub fn mass_matrices_of_a_batch_are_those_of_the_runtime<const DOF: usize, R: Ba
     motion.compare(Function::MassMatrix, |state| matrix_at(&mass, state));
 }
 
-/// The runtime's torques for the accelerations of τ are τ, as for single calls.
+/// Tests the accelerations of a batch: the runtime's torques for these accelerations must be the given torques, as for
+/// single calls.
 pub fn accelerations_of_a_batch_need_the_torques_that_cause_them<
     const DOF: usize,
     R: BatchForwardDynamics<DOF> + Sync,
@@ -120,7 +122,7 @@ pub fn accelerations_of_a_batch_need_the_torques_that_cause_them<
     }
 }
 
-/// ∂τ/∂q and ∂τ/∂q̇.
+/// Tests the derivatives ∂τ/∂q and ∂τ/∂q̇ of a batch.
 pub fn derivatives_of_a_batch_are_those_of_the_runtime<
     const DOF: usize,
     R: BatchInverseDynamicsDerivatives<DOF> + Sync,

@@ -1,4 +1,4 @@
-//! Torques of a golden file, which somebody else has computed or measured.
+//! Compares torques with a golden file, whose torques somebody else has computed or measured.
 
 use core::fmt::Write as _;
 
@@ -20,8 +20,8 @@ pub struct GoldenState<const DOF: usize> {
     pub tau: [f64; DOF],
 }
 
-/// Compares the torques of every line, relative to the largest torque of the file. All wrong torques are named, with
-/// line and joint.
+/// Compares the torques of every line, with an error relative to the largest torque of the file. The panic names all
+/// wrong torques, with line and joint.
 pub fn torques_are_those_of_the_golden_file<const DOF: usize, R: InverseDynamics<DOF>>(
     robot: &R,
     file: &str,
@@ -34,7 +34,7 @@ pub fn torques_are_those_of_the_golden_file<const DOF: usize, R: InverseDynamics
     for GoldenState { line, q, qd, qdd, tau } in states {
         let found = robot.inverse_dynamics(q, qd, qdd);
         for ((joint, found), expected) in joints.iter().zip(found).zip(tau) {
-            // false for what is not a number
+            // false for NaN
             let is_met = (found - expected).abs() <= tolerance * scale;
             if !is_met {
                 let _ = writeln!(wrong, "{file}:{line}: the torque of {joint} is {found:e}, not {expected:e}");

@@ -1,4 +1,4 @@
-//! Laws of mechanics that functions of a robot obey together.
+//! Tests of laws of mechanics that the functions of a robot must obey.
 
 use core::array;
 
@@ -16,12 +16,12 @@ fn at_each_state<const DOF: usize>(file: &RobotFile, law: impl Fn(&DynArm, &Stat
     }
 }
 
-/// The mass matrix of the runtime.
+/// Returns the mass matrix of the runtime.
 fn mass(arm: &DynArm, q: &[f64]) -> Vec<Vec<f64>> {
     arm.mass_matrix(q).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// τ(q, q̇, a + b) - τ(q, q̇, b) = τ(q, q̇, a) - τ(q, q̇, 0).
+/// Tests τ(q, q̇, a + b) - τ(q, q̇, b) = τ(q, q̇, a) - τ(q, q̇, 0).
 pub fn torques_are_linear_in_accelerations<const DOF: usize, R: InverseDynamics<DOF>>(robot: &R, file: &RobotFile) {
     at_each_state(file, |_, state, [q, qd, a, b]| {
         let torques = |qdd: &[f64; DOF]| robot.inverse_dynamics(&q, &qd, qdd);
@@ -34,7 +34,7 @@ pub fn torques_are_linear_in_accelerations<const DOF: usize, R: InverseDynamics<
     });
 }
 
-/// g(q) = τ(q, 0, 0), and C(q, q̇) q̇ + g(q) = τ(q, q̇, 0).
+/// Tests g(q) = τ(q, 0, 0), and C(q, q̇) q̇ + g(q) = τ(q, q̇, 0).
 pub fn gravity_and_bias_are_torques_without_motion<const DOF: usize, R: InverseDynamics<DOF>>(
     robot: &R,
     file: &RobotFile,
@@ -49,7 +49,7 @@ pub fn gravity_and_bias_are_torques_without_motion<const DOF: usize, R: InverseD
     });
 }
 
-/// M = Mᵀ, to the last bit.
+/// Tests M = Mᵀ, to the last bit.
 pub fn mass_matrix_is_symmetric<const DOF: usize, R: MassMatrix<DOF>>(robot: &R, file: &RobotFile) {
     at_each_state(file, |_, state, [q, ..]| {
         let mass: [[f64; DOF]; DOF] = robot.mass_matrix(&q);
@@ -59,8 +59,8 @@ pub fn mass_matrix_is_symmetric<const DOF: usize, R: MassMatrix<DOF>>(robot: &R,
     });
 }
 
-/// The runtime's torques for the accelerations of τ are τ, where the accelerations are finite: those of a singular mass
-/// matrix are not.
+/// Tests that the runtime's torques for the accelerations of τ are τ, if the accelerations are finite: those of a
+/// singular mass matrix are not.
 pub fn accelerations_need_the_torques_that_cause_them<const DOF: usize, R: ForwardDynamics<DOF>>(
     robot: &R,
     file: &RobotFile,
@@ -72,23 +72,23 @@ pub fn accelerations_need_the_torques_that_cause_them<const DOF: usize, R: Forwa
     });
 }
 
-/// Whether the runtime finds accelerations.
+/// Whether the runtime finds finite accelerations.
 pub(super) fn are_accelerated(arm: &DynArm, State { q, qd, tau, .. }: &State) -> bool {
     arm.forward_dynamics(q, qd, tau).is_ok_and(|accelerations| are_finite(&accelerations))
 }
 
-/// The runtime's torques for accelerations are those of the state.
+/// Asserts that the runtime's torques for accelerations are those of the state.
 #[track_caller]
 pub(super) fn caused(arm: &DynArm, state: &State, accelerations: &[f64]) {
     let State { q, qd, tau, .. } = state;
     let torques = arm.inverse_dynamics(q, qd, accelerations).unwrap_or_else(|error| panic!("{error}"));
-    // of the terms of M q̈: of an arm that is nearly singular they are larger than their sum
+    // compared with the terms of M q̈, which are larger than their sum if M is nearly singular
     let terms = largest(mass(arm, q).iter().flatten()) * largest(accelerations);
     let bias = arm.bias_torques(q, qd).map_or(0.0, |bias| largest(&bias));
     compare("torques of forward_dynamics", state, Allowed::Rounding { scale: terms.max(bias) }, &torques, tau);
 }
 
-/// R Rᵀ = 1 for tip and links.
+/// Tests R Rᵀ = 1 for the tip and the links.
 pub fn rotations_are_orthonormal<const DOF: usize, R: Kinematics<DOF>>(robot: &R, file: &RobotFile) {
     let identity = Pose::<f64>::identity().rotation;
     at_each_state(file, |_, state, [q, ..]| {
@@ -101,7 +101,7 @@ pub fn rotations_are_orthonormal<const DOF: usize, R: Kinematics<DOF>>(robot: &R
     });
 }
 
-/// T = ½ q̇ᵀ M q̇, with the runtime's M.
+/// Tests T = ½ q̇ᵀ M q̇, with the runtime's M.
 pub fn kinetic_energy_is_that_of_the_mass_matrix<const DOF: usize, R: Energy<DOF>>(robot: &R, file: &RobotFile) {
     at_each_state(file, |arm, state, [q, qd, ..]| {
         let mass = mass(arm, &q);
@@ -112,7 +112,7 @@ pub fn kinetic_energy_is_that_of_the_mass_matrix<const DOF: usize, R: Energy<DOF
     });
 }
 
-/// p = M q̇ and rate = τ + Cᵀ q̇ - g, with the runtime's M, C and g.
+/// Tests p = M q̇ and rate = τ + Cᵀ q̇ - g, with the runtime's M, C and g.
 pub fn momentum_is_that_of_the_mass_matrix<const DOF: usize, R: MomentumObserver<DOF>>(robot: &R, file: &RobotFile) {
     at_each_state(file, |arm, state, [q, qd, _, tau]| {
         let (mass, found) = (mass(arm, &q), robot.momentum_and_rate(&q, &qd, &tau));

@@ -1,4 +1,4 @@
-//! The tests, for a build with a runtime to compare with.
+//! The tests for builds that contain the runtime to compare with.
 
 mod batches;
 mod comparison;

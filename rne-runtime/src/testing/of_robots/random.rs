@@ -5,10 +5,12 @@ use core::cell::Cell;
 
 use crate::{BaseMotion, Payload, Wrench};
 
-/// The largest positions, velocities, accelerations and torques of a joint: rad or m, N m or N.
+/// The largest positions, velocities, accelerations and torques of a joint: rad or m, their rates per s and s², N m or
+/// N.
 pub const JOINTS: [f64; 4] = [3.0, 2.0, 5.0, 20.0];
 
-/// Numbers that are the same in each run and on each machine: a linear congruential generator, with Knuth's constants.
+/// Random numbers that are the same in each run and on each machine, from a linear congruential generator with Knuth's
+/// constants.
 #[derive(Clone, Debug)]
 pub struct Random {
     state: Cell<u64>,
@@ -16,13 +18,13 @@ pub struct Random {
 }
 
 impl Random {
-    /// Numbers that depend on a seed, and that `rounded` rounds, each.
+    /// Creates random numbers that depend on a seed. Each is rounded by `rounded`.
     #[must_use]
     pub const fn new(seed: u64, rounded: fn(f64) -> f64) -> Self {
         Self { state: Cell::new(seed), rounded }
     }
 
-    /// Between `-limit` and `limit`.
+    /// Returns a number between `-limit` and `limit`.
     #[must_use]
     pub fn number(&self, limit: f64) -> f64 {
         let next = self.state.get().wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -32,25 +34,25 @@ impl Random {
         (self.rounded)(limit * (2.0 * f64::from(u32::from_be_bytes([a, b, c, d])) / f64::from(u32::MAX) - 1.0))
     }
 
-    /// Each between `-limit` and `limit`.
+    /// Returns numbers between `-limit` and `limit`.
     #[must_use]
     pub fn array<const N: usize>(&self, limit: f64) -> [f64; N] {
         array::from_fn(|_| self.number(limit))
     }
 
-    /// N and N m.
+    /// Returns a wrench, N and N m.
     #[must_use]
     pub fn wrench(&self) -> Wrench<f64> {
         Wrench { force: self.array(10.0), moment: self.array(10.0) }
     }
 
-    /// A point mass, kg and m.
+    /// Returns a point mass, kg and m.
     #[must_use]
     pub fn payload(&self) -> Payload<f64> {
         Payload { mass: (self.rounded)(1.5 + self.number(1.0)), com: self.array(0.1), ..Payload::default() }
     }
 
-    /// A base without a velocity of its origin, which no torque depends on.
+    /// Returns the motion of a base without a velocity of its origin, on which no torque depends.
     #[must_use]
     pub fn base(&self) -> BaseMotion<f64> {
         BaseMotion {

@@ -1,17 +1,17 @@
-//! The robot file of a derive, as its tests know it.
+//! The robot file of a derive, for its tests.
 
 use rne_model::{Reader, Robot};
 
 use crate::DynArm;
 
-/// The robot file of a derive, and how the derive read it.
+/// The robot file of a derive, and the options with which the derive read it.
 #[derive(Clone, Copy, Debug)]
 pub struct RobotFile {
     /// The text.
     pub text: &'static str,
     /// Whether rotors belong to the arm.
     pub rotors: bool,
-    /// Whether the code is the seven steps, which have the bits of the runtime.
+    /// Whether the form of the code is the seven steps, which have the bits of the runtime.
     pub seven_steps: bool,
 }
 

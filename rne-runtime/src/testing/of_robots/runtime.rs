@@ -1,4 +1,4 @@
-//! Any function of a robot against the runtime.
+//! Compares any function of a robot with the runtime.
 
 use rne_functions::Function;
 use rne_model::Robot;
@@ -10,10 +10,10 @@ use super::state::states;
 use crate::values::numbers::Numbers;
 use crate::{DynArm, Inputs};
 
-/// How much arguments change, of themselves, to see how much a function does.
+/// The relative change of the arguments with which the sensitivity of a function is measured.
 const PART: f64 = 1e-7;
 
-/// A list of as many elements as the argument of a function has.
+/// Converts a list to the array that an argument of a function needs.
 ///
 /// # Panics
 /// When it has another number of elements.
@@ -22,7 +22,7 @@ pub fn array<T, const N: usize>(list: &[T]) -> &[T; N] {
     list.try_into().unwrap_or_else(|_| panic!("{N} elements, not {}", list.len()))
 }
 
-/// The numbers of a result, in the order of their layout.
+/// Returns the numbers of a result, in the order of its layout.
 pub fn numbers(result: impl Numbers<f64>) -> Vec<f64> {
     let mut numbers = Vec::new();
     result.each(&mut |number| numbers.push(*number));
@@ -31,8 +31,8 @@ pub fn numbers(result: impl Numbers<f64>) -> Vec<f64> {
 
 /// Compares a function of derived code, by its name in the table, with the runtime.
 ///
-/// In the seven steps most functions have the bits of the runtime. Elsewhere rounding is allowed, by as much as the
-/// function changes where its arguments do, and by rounding of the terms of which it is made.
+/// In the seven steps, most functions have the bits of the runtime. Otherwise rounding is allowed: as much as a
+/// relative change of the arguments by rounding would change the function, and rounding of the terms that it adds.
 ///
 /// # Panics
 /// When they are different, or when no state closes the loops of the robot.
@@ -47,7 +47,7 @@ pub fn is_that_of_the_runtime(file: &RobotFile, function: &str, call: impl Fn(&I
         let [expected, beside] = [&state, &changed]
             .map(|state| arm.evaluate(function, &state.inputs()).unwrap_or_else(|error| panic!("{error}")));
         if !are_finite(&expected) {
-            continue; // of a singular mass matrix, or of an arm without mass
+            continue; // the mass matrix is singular, or the arm has no mass
         }
         let change = expected.iter().zip(&beside).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
         let scale = terms(&arm, function, &state.inputs()).max(change / PART);
@@ -57,17 +57,18 @@ pub fn is_that_of_the_runtime(file: &RobotFile, function: &str, call: impl Fn(&I
     assert!(compared > 0, "the loops of {} stay open at each state", robot.name);
 }
 
-/// Whether the seven steps of a function have the bits of the runtime.
+/// Whether the code of a function in the form of the seven steps has the bits of the runtime.
 fn has_bits(robot: &Robot, function: Function) -> bool {
-    // code differentiates through couplings, and eliminates the joints of a tree in the order that fills less
+    // generated code differentiates through couplings, and factors the mass matrix of a tree in another order, with
+    // fewer fill-ins
     let is_in_order = robot.is_serial() || !function.inverts_mass() || function.is_of_floating_base();
     function.entry().has_bits_of_runtime && !robot.has_couplings() && is_in_order
 }
 
-/// How large the terms of a function are: lengths and directions are about one, dynamics has a part of the torques on a
-/// base that moves in all directions under a gravity that no axis is parallel to.
+/// Returns the size of the terms that a function adds: 1 for lengths and directions, and for dynamics a fraction of the
+/// torques on a base that moves in all directions under a gravity that is parallel to no axis.
 pub(super) fn terms(arm: &DynArm, function: Function, inputs: &Inputs<'_, f64>) -> f64 {
-    /// Torques that vanish but for rounding are measured by this part of those that do not.
+    /// The fraction of these torques with which torques that vanish up to rounding are compared.
     const LEAST: f64 = 1e-2;
     if function.entry().is_geometry {
         return 1.0;

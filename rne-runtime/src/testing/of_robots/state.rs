@@ -1,4 +1,4 @@
-//! States at which tests compare: the same ones in each run.
+//! States at which the tests compare functions. They are the same in each run.
 
 use core::{array, fmt};
 
@@ -7,7 +7,7 @@ use rne_model::Robot;
 use super::random::{JOINTS, Random};
 use crate::{BaseMotion, BaseTwist, DynArm, Inputs, Payload, Pose, Quaternion, Scalar, Wrench};
 
-/// Number of states to try.
+/// Number of states.
 const STATES: u64 = 48;
 /// The duration of a step, s.
 const STEP: f64 = 0.5;
@@ -35,7 +35,7 @@ impl fmt::Display for State {
     }
 }
 
-/// The states of a robot. Those whose positions do not let the loops close are left out.
+/// Returns the states of a robot. States in which the loops cannot be closed are left out.
 pub(super) fn states(robot: &Robot, arm: &DynArm) -> impl Iterator<Item = State> {
     (0..STATES).filter_map(|index| State::of(robot, arm, index))
 }
@@ -65,7 +65,7 @@ impl State {
         })
     }
 
-    /// The state where each number is another one.
+    /// Returns the state with each number changed by `by`.
     pub(super) fn changed(&self, by: impl Fn(f64) -> f64) -> Self {
         let list = |numbers: &[f64]| numbers.iter().map(|&number| by(number)).collect::<Vec<_>>();
         let three = |numbers: [f64; 3]| numbers.map(&by);
@@ -95,12 +95,12 @@ impl State {
         }
     }
 
-    /// Positions, velocities, accelerations and torques.
+    /// Returns positions, velocities, accelerations and torques as arrays.
     pub(super) fn motion<const DOF: usize>(&self) -> [[f64; DOF]; 4] {
         [&self.q, &self.qd, &self.qdd, &self.tau].map(|numbers| array::from_fn(|joint| numbers[joint]))
     }
 
-    /// The arguments of every function.
+    /// Returns the arguments of every function in this state.
     pub(super) fn inputs(&self) -> Inputs<'_, f64> {
         let Self { q, qd, qdd, tau, sin, cos, passive, wrenches, payload, base, twist, pose } = self;
         Inputs {
@@ -125,13 +125,13 @@ impl State {
     }
 }
 
-/// The positions of the dependent joints that close the loops at positions near those of the robot file; the other
-/// joints are moved there. `None` where they stay open.
+/// Returns the positions of the dependent joints that close the loops. The other joints `q` are moved to positions near
+/// those of the robot file. `None` if the loops stay open.
 fn closed(robot: &Robot, arm: &DynArm, q: &mut [f64]) -> Option<Vec<f64>> {
-    /// How far the other joints are from the configuration of the file, of the largest positions.
+    /// The distance of the other joints from their positions in the file, as a fraction of the random positions.
     const PART: f64 = 0.05;
     const STEPS: usize = 20;
-    /// The largest residual, m or a product of axes.
+    /// The largest residual of closed loops: a distance in m, or a product of axes.
     const CLOSED: f64 = 1e-13;
     let Some(closure) = robot.closed.closures.first() else { return Some(Vec::new()) };
     for (q, at) in q.iter_mut().zip(robot.coordinates()) {

@@ -1,4 +1,4 @@
-//! `rne watch --by`: groups of logs, each compared with one baseline.
+//! `rne watch --by`: compares several groups of logs with one baseline.
 
 use std::path::PathBuf;
 
@@ -18,16 +18,16 @@ use crate::render::watch_dates::{LogName, LogNames};
 use crate::render::watch_report;
 use crate::values::log_arguments;
 
-/// Logs that are compared as one, or some rows of them.
+/// Logs, or some rows of them, that are compared as one.
 struct Group {
     name: String,
     paths: Vec<PathBuf>,
-    /// The column and the text of the rows that are read; all rows without.
+    /// The column and the text that the rows must have; `None` for all rows.
     rows: Option<(String, String)>,
 }
 
 impl Group {
-    /// `friday.mcap`, `the logs of 2026-11-27`, `the rows of pick`.
+    /// Returns the name of the group, such as `friday.mcap`, `the logs of 2026-11-27` or `the rows of pick`.
     fn log_name(&self) -> LogName {
         match &self.rows {
             Some(_) => LogName::several(format!("the rows of {}", one_line(&self.name))),
@@ -37,7 +37,7 @@ impl Group {
 }
 
 impl Task<'_> {
-    /// Compares each group with the baseline, and prints the changes as text, as JSON or as CSV.
+    /// Compares each group with the baseline, and prints the changes as text, JSON or CSV.
     pub(super) fn trend(mut self, known: Option<Known>, by: &str) -> Result<Outcome, Failure> {
         let Self { arguments, robot, .. } = self;
         let groups = self.groups(known.as_ref(), by)?;
@@ -57,7 +57,7 @@ impl Task<'_> {
                     trend.push(group.name, &found);
                     events.push(found.events);
                 }
-                // one log of many, such as that of a morning on which the arm stood still
+                // one unusable log of many, such as that of a morning without motion, is skipped
                 Err(failure) if failure.is_of_input() => {
                     trend.left_out.push((group.name, failure.sentence()));
                     first_failure.get_or_insert(failure);
@@ -95,7 +95,7 @@ impl Task<'_> {
         Ok(Outcome { text, remark: self.remark, at_fault, remark_last: true })
     }
 
-    /// The changes of a group against the baseline.
+    /// Computes the changes of a group relative to the baseline.
     fn compare(&mut self, group: &Group, structure: &Structure, known: &mut Known) -> Result<Changes, Failure> {
         let log = self.open(group, Some(known))?;
         self.remark += &log.remark_beside(&known.remarks);
@@ -104,7 +104,7 @@ impl Task<'_> {
             .map_err(|error| watch_failure(&error, &log.words()))
     }
 
-    /// Opens the logs of a group with the low-pass of a baseline.
+    /// Opens the logs of a group, with the low-pass filter of a baseline.
     fn open(&self, group: &Group, known: Option<&Known>) -> Result<MotionLog, Failure> {
         let mut reading = self.arguments.reading.clone();
         if let Some((column, text)) = &group.rows {
@@ -116,7 +116,7 @@ impl Task<'_> {
         }
     }
 
-    /// The groups in the order of the logs.
+    /// Returns the groups, in the order of the logs.
     fn groups(&self, known: Option<&Known>, by: &str) -> Result<Vec<Group>, Failure> {
         let arguments = self.arguments;
         if !["log", "day"].contains(&by) {
@@ -151,7 +151,7 @@ impl Task<'_> {
         Ok(groups)
     }
 
-    /// The baseline of the first group, with which the others are compared if nothing else is known.
+    /// Makes the baseline from the first group, if no other baseline is given.
     fn of_first(&self, group: &Group) -> Result<Known, Failure> {
         let log = self.open(group, None)?;
         let structure = Baseline::structure(self.robot, log.cutoff());

@@ -1,4 +1,4 @@
-//! A column of a Parquet table, read by some rows at a time.
+//! Reads a column of a Parquet table, some rows at a time.
 
 use std::borrow::Cow;
 
@@ -12,12 +12,12 @@ use crate::TimeUnit;
 use crate::formats::parquet::pages::Refused;
 use crate::limits::LONGEST_NAME;
 
-/// A column of the schema.
+/// A column in the schema of the file.
 pub(crate) struct Leaf {
-    /// Its path without what only makes a list.
+    /// The path of the column, without the levels that only make a list.
     pub(crate) name: String,
     pub(crate) kind: Kind,
-    /// Its type, for people.
+    /// The type in words, for messages.
     pub(crate) words: String,
     pub(crate) defined: i16,
     pub(crate) is_list: bool,
@@ -39,7 +39,7 @@ impl Kind {
 }
 
 impl Leaf {
-    /// Whether rows can be selected by the texts of the column, or by its numbers as texts.
+    /// Whether rows can be selected by the texts of the column, or by its numbers written as texts.
     pub(crate) fn has_texts(&self) -> bool {
         !self.is_list && self.kind != Kind::Other
     }
@@ -47,7 +47,7 @@ impl Leaf {
     pub(crate) fn of(leaf: &ColumnDescriptor) -> Self {
         let is_list = leaf.max_rep_level() == 1;
         let mut parts: Vec<&str> = leaf.path().parts().iter().map(String::as_str).collect();
-        // three levels, position.list.element, or two, position.array
+        // lists have three levels, position.list.element, or two, position.array
         while is_list
             && parts.len() > 1
             && matches!(parts[parts.len() - 1], "list" | "element" | "item" | "array" | "bag" | "array_element")
@@ -70,7 +70,7 @@ impl Leaf {
         let is_signed = match leaf.logical_type_ref() {
             Some(LogicalType::Integer(integer)) => integer.is_signed,
             _ if converted == ConvertedType::UINT_32 || converted == ConvertedType::UINT_64 => false,
-            // shorter ones are below the sign
+            // values of shorter unsigned types do not reach the sign bit
             _ => true,
         };
         let kind = match (leaf.physical_type(), stamp) {
@@ -89,22 +89,22 @@ impl Leaf {
     }
 }
 
-/// A column of the file that is read.
+/// A column that is read.
 pub(crate) struct Column {
     pub(crate) leaf: usize,
     pub(crate) name: String,
-    /// The level of definition that a number has.
+    /// The definition level of a number that is not missing.
     defined: i16,
     pub(crate) is_list: bool,
     is_signed: bool,
-    /// Factor of its numbers, from the unit in its name.
+    /// Factor from the unit in the column's name to the SI unit.
     factor: f64,
     pub(crate) reader: Option<ColumnReader>,
-    /// The numbers of this batch, as numbers and as the integers of stamps.
+    /// The numbers of this batch: as floating-point numbers and as integers for time stamps.
     pub(crate) numbers: Vec<f64>,
     integers: Vec<i64>,
     texts: Vec<ByteArray>,
-    /// By row, where its list ends; empty of a column without lists.
+    /// For each row, the end of its list in `numbers` or `texts`; empty for a column without lists.
     ends: Vec<usize>,
 }
 
@@ -125,7 +125,7 @@ impl Column {
         }
     }
 
-    /// Takes the next rows.
+    /// Reads the next rows.
     pub(crate) fn fill(&mut self, rows: usize) -> Result<(), ParquetError> {
         self.numbers.clear();
         self.integers.clear();
@@ -134,12 +134,12 @@ impl Column {
         let Some(reader) = &mut self.reader else { return Ok(()) };
         let levels = (self.defined, self.is_list, &mut self.ends);
         let (numbers, integers, is_signed) = (&mut self.numbers, &mut self.integers, self.is_signed);
-        // the bits of an integer without a sign are those of one with a sign
+        // an unsigned integer is stored with the bits of a signed one
         #[expect(clippy::cast_precision_loss, reason = "an integer in the place of a real number")]
         let mut push = |number: Option<(i64, u64)>| {
             let (number, integer) = match number {
                 Some((signed, _)) if is_signed => (signed as f64, signed),
-                // one beyond those with a sign is no time, and i64::MIN says so
+                // an unsigned integer that is too large for i64 is no time; i64::MIN marks it
                 Some((_, unsigned)) => (unsigned as f64, i64::try_from(unsigned).unwrap_or(i64::MIN)),
                 None => (f64::NAN, i64::MIN),
             };
@@ -159,7 +159,7 @@ impl Column {
             ColumnReader::Int64ColumnReader(reader) => {
                 take(reader, rows, levels, |number| push(number.map(|x| (*x, x.cast_unsigned()))))
             }
-            // a text is that of its page or its dictionary, and is not copied
+            // a text shares the memory of its page or dictionary and is not copied
             ColumnReader::ByteArrayColumnReader(reader) => {
                 take(reader, rows, levels, |text| self.texts.push(text.cloned().unwrap_or_else(|| Vec::new().into())))
             }
@@ -176,12 +176,12 @@ impl Column {
         filled
     }
 
-    /// How many rows were taken.
+    /// Number of rows that were read.
     pub(crate) fn rows(&self) -> usize {
         if self.is_list { self.ends.len() } else { self.numbers.len().max(self.texts.len()) }
     }
 
-    /// The text of a row of a column without lists, or its number as a text; empty where it is missing.
+    /// Returns the text of a row of a column without lists, or its number as a text; empty if it is missing.
     pub(crate) fn text(&self, row: usize) -> Cow<'_, str> {
         if let Some(text) = self.texts.get(row) {
             return Cow::Borrowed(text.as_utf8().unwrap_or_default());
@@ -203,12 +203,12 @@ impl Column {
         &self.numbers[self.span(row)]
     }
 
-    /// The texts of a row; one that is missing or no UTF-8 is empty.
+    /// Returns the texts of a row; a text that is missing or not UTF-8 is empty.
     pub(crate) fn texts_of(&self, row: usize) -> impl ExactSizeIterator<Item = &str> {
         self.texts[self.span(row)].iter().map(|text| text.as_utf8().unwrap_or_default())
     }
 
-    /// The time of a row, ns.
+    /// Returns the time of a row, ns; `None` if it is not valid.
     pub(crate) fn time(&self, row: usize, unit: TimeUnit) -> Option<i64> {
         match self.integers.get(row) {
             Some(&i64::MIN) => None,
@@ -218,7 +218,8 @@ impl Column {
     }
 }
 
-/// Takes rows of a column: `push` gets each number of each row, or none where it is missing; `ends` where lists end.
+/// Reads rows of a column. `push` gets each value of each row, or `None` if it is missing; `ends` gets the ends of
+/// lists.
 fn take<T: DataType>(
     reader: &mut ColumnReaderImpl<T>,
     rows: usize,
@@ -245,7 +246,7 @@ fn take<T: DataType>(
         if is_list && repetitions.get(place) == Some(&0) && place > 0 {
             ends.push(count);
         }
-        // of a list that is empty or missing there is one level, and no number
+        // a list that is empty or missing has one level and no value
         let is_there = *definition == defined;
         if is_there || !is_list {
             push(if is_there { values.next() } else { None });

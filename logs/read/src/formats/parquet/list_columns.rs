@@ -1,4 +1,4 @@
-//! The columns of a table that are lists, a number of each joint in a row, by their names.
+//! Finds by their names the columns of lists of a table, which have in each row one number for each joint.
 
 use std::path::Path;
 
@@ -11,27 +11,27 @@ use crate::remedy::Setting;
 use crate::spelling::listed;
 use crate::{LogError, Options};
 
-/// Lists that are read: their places, and what their numbers are multiplied by.
+/// The columns of lists that are read: their indices, and the factors of their numbers.
 #[derive(Debug, Default)]
 pub(crate) struct ListColumns {
     pub(crate) position: Option<(usize, f64)>,
     pub(crate) velocity: Option<(usize, f64)>,
     pub(crate) effort: Option<(usize, f64)>,
-    /// Units of every joint.
+    /// The units, which are the same for every joint.
     pub(crate) units: JointUnits,
-    /// The names of those whose numbers are not of SI, by these.
+    /// The names of columns whose numbers are converted, because their names have units other than SI.
     pub(crate) converted: Vec<String>,
 }
 
 impl ListColumns {
-    /// The lists among columns of numbers, by their places and names.
+    /// Finds the columns of lists among columns of numbers, given by their indices and names.
     pub(crate) fn of<'a>(
         path: &Path,
         columns: impl Iterator<Item = (usize, &'a str)>,
         options: &Options,
     ) -> Result<Self, LogError> {
         let mut lists = Self::default();
-        // by quantity: the name and the unit
+        // quantity, name and unit of each list
         let mut found: Vec<(Quantity, &str, Option<Unit>)> = Vec::new();
         for (place, name) in columns {
             let Named { quantity, is_current, unit, .. } = match meaning(name, true) {
@@ -52,7 +52,7 @@ impl ListColumns {
                 Quantity::Position => (&mut lists.position, &mut lists.units.position),
                 Quantity::Velocity => (&mut lists.velocity, &mut lists.units.velocity),
                 Quantity::Effort => (&mut lists.effort, &mut lists.units.effort),
-                // no name of a list says it
+                // lists of accelerations have no known name
                 Quantity::Acceleration => continue,
             };
             *list = Some((place, unit.map_or(1.0, |unit| unit.factor)));
@@ -69,8 +69,8 @@ impl ListColumns {
     }
 }
 
-/// The column of the joints' names among columns of texts: of several those of the prefix that is asked for, and of
-/// several of these the one whose name begins as that of the positions does.
+/// Returns the column with the names of the joints among columns of texts. If there are several, it takes those with
+/// the prefix that the options ask for, then the one whose name begins like that of the positions.
 pub(crate) fn names<'a>(
     path: &Path,
     texts: impl Iterator<Item = (usize, &'a str)>,

@@ -1,4 +1,4 @@
-//! Motions as a table in Parquet, with a list of numbers per quantity: the input of SQL.
+//! Writes motions as a table in Parquet with a column of lists for each quantity, for queries in SQL.
 
 use std::io::{self, Write};
 use std::sync::Arc;
@@ -13,24 +13,24 @@ use parquet::schema::types::{ColumnPath, Type};
 use crate::limits::MOST_NUMBERS;
 use crate::{Layout, Motion, RecordedState};
 
-/// Rows of a group: engines read groups in parallel.
+/// Number of rows of a group: query engines read groups in parallel.
 const ROWS: usize = 1 << 16;
 
-/// The columns of the table, which no label may have as its name.
+/// The names of the columns of the table; a label must have another name.
 const COLUMNS: [&str; 7] = ["time", "name", "q", "qd", "qdd", "tau", "run"];
 
 /// Writes motions as a table in Parquet; it keeps one group of rows in memory.
 ///
 /// The columns are `time`, `name`, `q`, `qd`, `qdd`, `tau` and `run`. `name` is the list of joint names, base to tip;
 /// the following four are lists with a number per joint, in SI units; `tau` is missing where the log has no efforts.
-/// `run` is the number of the run, from 1. `time` is a time stamp in ns where the times of the log are absolute
-/// ([`Layout::origin`] is not 0), else a number of seconds. A table of states as they were recorded has no `qdd`, and
-/// no `qd` if the log has no velocities. [`Log`](crate::Log) reads such a table.
+/// `run` is the number of the run, from 1. `time` is a time stamp in ns if the times of the log are absolute
+/// ([`Layout::origin`] is not 0), and a number of seconds otherwise. A table of unfiltered states has no `qdd`, and no
+/// `qd` if the log has no velocities. [`Log`](crate::Log) reads such a table.
 pub struct MotionParquet<W: Write + Send> {
     writer: SerializedFileWriter<W>,
     joints: Vec<String>,
     is_stamped: bool,
-    /// Whether there is a column of positions, of velocities, of accelerations, of torques.
+    /// Whether the table has columns of positions, velocities, accelerations and torques.
     has: [bool; 4],
     has_label: bool,
     rows: Rows,
@@ -54,18 +54,19 @@ struct Rows {
 }
 
 impl<W: Write + Send> MotionParquet<W> {
-    /// Begins a table for motions of a log with this layout. `label` is the name of one more column of texts.
+    /// Begins a table for motions of a log with this layout. `label` is the name of an additional column of texts.
     ///
     /// # Errors
-    /// When the table has a column of the label's name, or the output cannot be written.
+    /// When the table already has a column with the label's name, or the output cannot be written.
     pub fn new(out: W, layout: &Layout, label: Option<&str>) -> io::Result<Self> {
         Self::with(out, layout, label, [true, true, true, layout.has_efforts])
     }
 
-    /// Begins a table for the states of a log with this layout as they were recorded: [`MotionParquet::push_recorded`].
+    /// Begins a table for the unfiltered states of a log with this layout, which [`MotionParquet::push_recorded`]
+    /// appends.
     ///
     /// # Errors
-    /// Those of [`MotionParquet::new`].
+    /// The errors of [`MotionParquet::new`].
     pub fn of_recorded(out: W, layout: &Layout, label: Option<&str>) -> io::Result<Self> {
         Self::with(out, layout, label, [true, layout.has_velocities, false, layout.has_efforts])
     }
@@ -94,8 +95,7 @@ impl<W: Write + Send> MotionParquet<W> {
         })
     }
 
-    /// Appends a motion of a run, whose number is from 0, with the text of its label. `layout` is that of the log from
-    /// which the motion is.
+    /// Appends a motion of run number `run`, from 0, with the text of its label. `layout` is that of the motion's log.
     ///
     /// # Errors
     /// When the joints are not those of the table, or the output cannot be written.
@@ -112,10 +112,10 @@ impl<W: Write + Send> MotionParquet<W> {
         Ok(())
     }
 
-    /// Appends a state as it was recorded, with the text of its label. `layout` is that of the log.
+    /// Appends an unfiltered state with the text of its label. `layout` is that of the state's log.
     ///
     /// # Errors
-    /// Those of [`MotionParquet::push`].
+    /// The errors of [`MotionParquet::push`].
     pub fn push_recorded(&mut self, layout: &Layout, state: &RecordedState<'_>, label: &str) -> io::Result<()> {
         self.check(layout)?;
         for (list, numbers) in self.rows.lists.iter_mut().zip([state.q, state.qd, &[], state.tau]) {
@@ -124,7 +124,7 @@ impl<W: Write + Send> MotionParquet<W> {
         self.end_row(state.stamp, state.time, layout, state.run, &ByteArray::from(label))
     }
 
-    /// Refuses a log whose joints or quantities are not those of the table.
+    /// Refuses a log with other joints or quantities than the table.
     fn check(&self, layout: &Layout) -> io::Result<()> {
         let [_, has_velocities, has_accelerations, has_efforts] = self.has;
         // a filtered motion always has velocities
@@ -140,7 +140,8 @@ impl<W: Write + Send> MotionParquet<W> {
         Err(io::Error::new(io::ErrorKind::InvalidInput, what))
     }
 
-    /// Completes a row whose lists are there: its stamp, ns, its time since the origin, s, its run and its label.
+    /// Completes a row whose lists have been added: by its stamp, ns, its time since the origin, s, its run and its
+    /// label.
     #[expect(clippy::cast_precision_loss, reason = "an origin that is not 0 is far from it")]
     fn end_row(&mut self, stamp: i64, time: f64, layout: &Layout, run: u64, label: &ByteArray) -> io::Result<()> {
         let rows = &mut self.rows;
@@ -159,7 +160,7 @@ impl<W: Write + Send> MotionParquet<W> {
         Ok(())
     }
 
-    /// Writes the rows that are left, and the end of the file.
+    /// Writes the remaining rows and the end of the file.
     ///
     /// # Errors
     /// When the output cannot be written.
@@ -265,7 +266,7 @@ mod tests {
     use crate::formats::sample::{Sample, Source as _};
     use crate::{Log, Options};
 
-    /// A motion of two joints with irrational numbers.
+    /// Returns a motion of two joints with numbers that need all digits.
     fn motion(states: u32, from: f64) -> Motion {
         let time: Vec<f64> = (0..states).map(|state| from + f64::from(state) * 0.01).collect();
         let lists = |factor: f64| [0.3, 0.7].map(|speed| time.iter().map(|t| factor * (speed * t).sin()).collect());
@@ -273,7 +274,7 @@ mod tests {
         Motion { time, q, qd, qdd, tau, recorded: Vec::new() }
     }
 
-    /// The layout of a log of these joints whose times begin at `origin`, ns.
+    /// Returns the layout of a log of these joints whose times begin at `origin`, ns.
     fn layout(origin: i64) -> Layout {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log.csv");
@@ -283,7 +284,7 @@ mod tests {
         Log::open(&[path], Options::default()).unwrap().layout().clone()
     }
 
-    /// Writes two runs, the second with as many states as make two groups of rows.
+    /// Writes two runs; the second has so many states that there are two groups of rows.
     fn written(origin: i64, label: Option<&str>) -> (tempfile::TempDir, std::path::PathBuf, [Motion; 2]) {
         let (layout, motions) = (layout(origin), [motion(50, 0.8), motion(70_000, 3.1)]);
         let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! The pages of a Parquet column, within bounds: a page of some bytes may claim gigabytes, and a list millions of
-//! numbers.
+//! Reads the pages of a Parquet column with bounded memory, because a small page may unpack to gigabytes, or have a
+//! list of millions of numbers.
 
 use std::fmt;
 use std::fs::File;
@@ -18,25 +18,25 @@ use parquet::file::serialized_reader::SerializedPageReader;
 
 use crate::limits::MOST_JOINTS;
 
-/// Bytes of pages, unpacked, that all columns hold at once.
+/// Largest number of bytes of unpacked pages that all columns have in memory at once.
 const MOST_BYTES: u64 = 320 << 20;
 
-/// Bytes by which a text of a dictionary is larger in memory, by those that its length takes in the file.
+/// Additional bytes that a text of a dictionary needs in memory, compared with its length field in the file.
 const OF_TEXT: u64 = 12;
 
-/// The kind of a page that has the values which others point to.
+/// The kind of a page with a dictionary of values, to which other pages refer.
 const DICTIONARY: u64 = 2;
 
-/// The kind of a page whose levels are not packed.
+/// The kind of a page whose levels are not compressed.
 const DATA_PAGE_V2: u64 = 3;
 
-/// A field that comes next after the one before, and is a 32-bit integer.
+/// The byte in Thrift's compact protocol before a 32-bit integer whose field number is one more than the previous one.
 const NEXT: u8 = 0x15;
 
-/// The first bytes of a frame of LZ4, which tells nobody its length.
+/// The first bytes of an LZ4 frame, which need not contain its unpacked length.
 const LZ4_FRAME: [u8; 4] = [0x04, 0x22, 0x4D, 0x18];
 
-/// Correct content of a file that is not read.
+/// The error for valid content of a file that this crate does not read.
 #[derive(Debug)]
 pub(crate) struct Refused(String);
 
@@ -53,7 +53,7 @@ impl Refused {
         ParquetError::External(Box::new(Self(what.to_string())))
     }
 
-    /// The refused content, if an error contains one.
+    /// Returns the refused content, if an error contains it.
     pub(crate) fn of(error: &ParquetError) -> Option<&Self> {
         match error {
             ParquetError::External(inner) => inner.downcast_ref(),
@@ -62,13 +62,13 @@ impl Refused {
     }
 }
 
-/// The room for pages that the columns of a table share.
+/// The memory for pages that all columns of a table share.
 #[derive(Debug, Default)]
 pub(crate) struct Room {
     used: AtomicU64,
 }
 
-/// Opens the reader of a column of a group of rows.
+/// Opens the reader of a column in a group of rows.
 pub(crate) fn column_reader(
     file: &SerializedFileReader<File>,
     source: &Arc<File>,
@@ -112,20 +112,20 @@ pub(crate) fn column_reader(
     Ok(get_column_reader(descriptor, Box::new(pages)))
 }
 
-/// The file of a column, whose pages are charged to the room before they are unpacked. The heads of pages are read from
-/// here one after another, and what follows a head is its page.
+/// The file of a column. The memory of each page is counted before the page is unpacked. The library reads from here a
+/// page header, then the page, one after another.
 struct Bounds {
     file: Arc<File>,
     room: Arc<Room>,
     of_texts: bool,
     compression: Compression,
-    /// Where the next head stands.
+    /// Position of the next page header in the file.
     next: AtomicU64,
-    /// The bytes of the next page, unpacked, as its head says.
+    /// The number of bytes of the unpacked next page, from its header.
     unpacked: AtomicU64,
-    /// The bytes before the values of the next page, which are never packed.
+    /// The number of bytes before the values of the next page, which are never compressed.
     levels: AtomicU64,
-    /// Bytes charged to this column: those of its page and of its dictionary.
+    /// Number of bytes that are counted for this column: of its page, and of its dictionary.
     page: AtomicU64,
     dictionary: AtomicU64,
 }
@@ -146,14 +146,14 @@ impl Bounds {
         Ok(())
     }
 
-    /// Whether a page unpacks to what its head says and no more. The library asks this of Snappy and zstd, but unpacks
-    /// gzip and frames of LZ4 to their ends, wherever these are.
+    /// Checks that a page does not unpack to more bytes than its header states. The library checks this for Snappy and
+    /// zstd, but unpacks gzip and LZ4 frames completely.
     fn check_unpacked(&self, page: &[u8]) -> Result<()> {
         let levels = self.levels.load(Relaxed);
         let unpacked = self.unpacked.load(Relaxed).saturating_sub(levels);
         let packed = usize::try_from(levels).ok().and_then(|levels| page.get(levels..)).unwrap_or_default();
         let is_more = match self.compression {
-            // an error on the way is the library's to tell
+            // the library reports errors in the compressed data
             Compression::GZIP(_) => copy(&mut MultiGzDecoder::new(packed).take(unpacked + 1), &mut sink())
                 .is_ok_and(|bytes| bytes > unpacked),
             Compression::LZ4 => packed.starts_with(&LZ4_FRAME),
@@ -207,24 +207,24 @@ impl ChunkReader for Bounds {
     }
 }
 
-/// Sizes in the head of a page.
+/// The kind and the sizes in a page header.
 #[derive(Debug, PartialEq)]
 struct Head {
     kind: u64,
     unpacked: u64,
     packed: u64,
-    /// The bytes before the values, which are never packed.
+    /// The number of bytes before the values, which are never compressed.
     levels: u64,
 }
 
 impl Head {
-    /// Reads a head, which is written in Thrift's compact protocol: a number tells how far its field is from the one
-    /// before, and of what type it is.
+    /// Reads a page header in Thrift's compact protocol. A byte before each field gives the distance of its number from
+    /// that of the previous field, and its type.
     fn read(mut bytes: &[u8]) -> Option<Self> {
         let (kind, unpacked, packed) = (number(&mut bytes)?, number(&mut bytes)?, number(&mut bytes)?);
         let mut levels = 0;
         if kind == DATA_PAGE_V2 {
-            // the fourth field is a check sum, if there is one, and the eighth what this kind has of its own
+            // the fourth field is an optional checksum, and the eighth has the data of this kind of page
             let to_own = if bytes.first() == Some(&NEXT) {
                 bytes = varint(&bytes[1..])?.1;
                 0x4C
@@ -241,15 +241,15 @@ impl Head {
     }
 }
 
-/// The number of the next field.
+/// Reads the value of the next field.
 fn number(bytes: &mut &[u8]) -> Option<u64> {
     let (number, rest) = varint(bytes.strip_prefix(&[NEXT])?)?;
     *bytes = rest;
-    // signs alternate; none is negative
+    // zigzag encoding: even numbers are not negative
     (number & 1 == 0).then_some(number >> 1)
 }
 
-/// An integer, seven bits a byte, the lowest first.
+/// Reads an integer with seven bits in each byte, the lowest first.
 fn varint(bytes: &[u8]) -> Option<(u64, &[u8])> {
     let mut number = 0;
     for (place, byte) in bytes.iter().enumerate().take(5) {
@@ -261,11 +261,11 @@ fn varint(bytes: &[u8]) -> Option<(u64, &[u8])> {
     None
 }
 
-/// The pages of a column. Of lists their lengths are looked at before any number is read.
+/// The pages of a column. The lengths of lists are checked before any number is read.
 struct Pages {
     reader: SerializedPageReader<Bounds>,
     bounds: Arc<Bounds>,
-    /// Where the column ends in the file.
+    /// Position of the end of the column in the file.
     end: u64,
     is_list: bool,
     /// Length of the list at the end of the last page.
@@ -274,7 +274,7 @@ struct Pages {
 }
 
 impl Pages {
-    /// Whether no list is longer than joints may be.
+    /// Refuses a page with a list that is longer than the largest number of joints.
     fn check(&mut self, page: &Page) -> Result<()> {
         let (levels, count) = match page {
             Page::DataPage { buf, num_values, rep_level_encoding, .. } => {
@@ -307,9 +307,9 @@ impl Pages {
     }
 }
 
-/// The longest list of a page with `count` values, by their levels of repetition, which are 0 where a list begins and
-/// are written as runs and as bits. `length` is that of the list that goes on from the page before, and becomes that of
-/// the last one. It stops where one is too long.
+/// Returns the length of the longest list of a page with `count` values, from the repetition levels, which are 0 where
+/// a list begins and are written as runs and as bits. `length` is that of the list that continues from the previous
+/// page, and becomes that of the last list. The search stops at a list that is too long.
 fn longest_list(mut levels: &[u8], count: usize, length: &mut usize) -> usize {
     let (mut seen, mut longest) = (0, 0);
     while seen < count && longest <= MOST_JOINTS {
@@ -349,7 +349,8 @@ impl PageReader for Pages {
         Ok(page)
     }
 
-    /// Not from the library's reader, which reads a head for it and asks for its page without one.
+    /// Refuses to look ahead: the library's reader would read the page header here, and then the page without its
+    /// header.
     fn peek_next_page(&mut self) -> Result<Option<PageMetadata>> {
         Err(ParquetError::General("no page is skipped".to_owned()))
     }
@@ -389,7 +390,7 @@ mod tests {
         }
     }
 
-    /// All columns of a table share the room, and give back what they had.
+    /// All columns of a table share the memory for pages, and release what they used.
     #[test]
     fn pages_are_charged_to_the_room() {
         let room = Arc::new(Room::default());
@@ -416,7 +417,7 @@ mod tests {
         {
             assert_eq!(read(bytes), None, "{bytes:?}");
         }
-        // levels of 5 and 7 bytes, without and with a check sum
+        // levels of 5 and 7 bytes, with and without a checksum
         let own = [0x15, 20, 0x15, 0, 0x15, 20, 0x15, 0, 0x15, 10, 0x15, 14];
         let with = |middle: &[u8]| [&[0x15, 6, 0x15, 80, 0x15, 60][..], middle, &own[..]].concat();
         assert_eq!(read(&with(&[0x5C])), Some((3, 40, 30, 12)));
@@ -424,7 +425,7 @@ mod tests {
         assert_eq!(read(&with(&[0x15, 2])), None);
     }
 
-    /// Gzip says nowhere how long it becomes: a page is unpacked to nothing first.
+    /// Gzip does not store its unpacked length, so a page is unpacked once only to count its bytes.
     #[test]
     fn pages_unpack_to_what_their_heads_say() {
         let mut gzip = flate2::read::GzEncoder::new(&[7; 5000][..], flate2::Compression::default());
@@ -440,27 +441,27 @@ mod tests {
         column(gzip, 5006).check_unpacked(&page).unwrap();
         let error = column(gzip, 5005).check_unpacked(&page).unwrap_err();
         assert!(error.to_string().contains("a page unpacks to more bytes than its header states"), "{error}");
-        // cut off, it is the library that says so
+        // if the page is cut off, the library reports it
         column(gzip, 5005).check_unpacked(&page[..20]).unwrap();
         column(Compression::LZ4, 9000).check_unpacked(b"levels\x04\x22\x4D\x18").unwrap_err();
         column(Compression::LZ4, 9000).check_unpacked(b"levels\0\0\x10\0").unwrap();
     }
 
-    /// Lists of 2, 3, 1 and what follows.
+    /// Lists with lengths of 2, 3, 1 and so on.
     #[test]
     fn lists_are_as_long_as_their_levels_say() {
         // 0 1 0 1 1 0 as bits, then 1 twice and 0 once as runs
         let levels = [3, 0b01_1010, 4, 1, 2, 0];
         let mut length = 0;
         assert_eq!(longest_list(&levels, 6, &mut length), 3);
-        // eight bits are the last list of 1 and two more of 1, and runs are behind these
+        // with eight bits, the last list of length 1 and two more of length 1 come before the runs
         let mut length = 0;
         assert_eq!(longest_list(&levels, 11, &mut length), 3);
         assert_eq!(length, 1);
-        // a list goes on from page to page
+        // a list continues on the next page
         let mut length = 1000;
         assert_eq!(longest_list(&[60, 1], 30, &mut length), 1030);
-        // and whatever a page claims, it is looked at once
+        // the check is fast, whatever lengths a page states
         let mut length = 0;
         assert!(longest_list(&[0xFE, 0xFF, 0xFF, 0xFF, 0x0F, 1], 50_000_000, &mut length) > MOST_JOINTS);
         assert_eq!(longest_list(&[1, 0, 0], 50, &mut 0), 0);

@@ -1,4 +1,4 @@
-//! Tables in Parquet, with a column per number, or with lists.
+//! Reads logs from tables in Parquet, with one column per number, or with lists.
 
 mod roles;
 
@@ -19,35 +19,36 @@ use crate::formats::sample::{Sample, Source};
 use crate::remedy::Setting;
 use crate::{LogError, Options, TimeUnit};
 
-/// Rows that are taken from a column at once, and those of a column of lists: each may have a thousand numbers.
+/// Number of rows that are read from a column at once; fewer with lists, which may have a thousand numbers each.
 const BATCH: usize = 1024;
 const BATCH_OF_LISTS: usize = 64;
 
-/// Bytes of a file's end, which describes its columns and groups of rows: in memory it takes some ten times as many.
+/// Largest number of bytes of the description of columns and groups of rows at the end of a file. In memory, it takes
+/// about ten times as many.
 const LONGEST_FOOTER: u32 = 16 << 20;
 
 /// A table, read by groups of rows.
 pub(crate) struct ParquetTable {
     path: PathBuf,
     file: SerializedFileReader<File>,
-    /// The same file, of which columns take their pages, and the room for these.
+    /// The same file, from which columns read their pages, and the memory for pages.
     source: Arc<File>,
     room: Arc<Room>,
     group: usize,
-    /// Rows of this group that were not taken from its columns.
+    /// Number of rows of this group that were not read yet.
     left: usize,
     columns: Vec<Column>,
     roles: Roles,
     clock: Clock,
     is_time_unit_known: bool,
-    /// Row of this batch.
+    /// Index of the current row in this batch.
     row: usize,
     rows: usize,
     read: u64,
-    /// Number of rows that were read and are selected.
+    /// Number of rows so far that were selected.
     selected: u64,
     all: u64,
-    /// The columns by whose texts rows can be selected, and those whose texts are held.
+    /// The columns by whose texts rows can be selected, and those whose texts are watched.
     label_columns: Vec<(usize, Leaf)>,
     labels: Vec<Label>,
     names: Vec<String>,
@@ -56,9 +57,9 @@ pub(crate) struct ParquetTable {
     notes: Vec<String>,
 }
 
-/// Roles of columns, by their places among the columns that are read.
+/// The quantities of the columns that are read, by their indices.
 enum Roles {
-    /// Velocities, efforts and accelerations are the others.
+    /// One column for each number. `others` are velocities, efforts and accelerations.
     Scalars {
         position: Vec<usize>,
         others: [Vec<Option<usize>>; 3],
@@ -71,7 +72,7 @@ enum Roles {
     },
 }
 
-/// When a row was measured.
+/// Source of the time of a row.
 enum Clock {
     Column(usize, TimeUnit),
     Step(f64),
@@ -122,13 +123,13 @@ impl ParquetTable {
         Ok(table)
     }
 
-    /// Adds a column to those that are read; its place among them.
+    /// Adds a column to those that are read; returns its index among them.
     fn column(&mut self, leaves: &[Leaf], leaf: usize, factor: f64) -> usize {
         self.columns.push(Column::new(leaf, &leaves[leaf], factor));
         self.columns.len() - 1
     }
 
-    /// Takes the next rows of all columns; false at the end.
+    /// Reads the next rows of all columns; returns false at the end.
     fn fill(&mut self) -> Result<bool, LogError> {
         let wrong = |path: &Path, read: u64, error: &ParquetError| {
             let behind = if Refused::of(error).is_some() { String::new() } else { format!(", after {read} rows") };
@@ -140,7 +141,7 @@ impl ParquetTable {
             }
             self.left = usize::try_from(self.file.metadata().row_group(self.group).num_rows()).unwrap_or(0);
             for column in &mut self.columns {
-                // the pages of the last group give way
+                // releases the pages of the previous group
                 column.reader = None;
             }
             for column in &mut self.columns {
@@ -167,7 +168,7 @@ impl ParquetTable {
         Ok(true)
     }
 
-    /// Goes to the next row that is selected; false at the end.
+    /// Goes to the next selected row; returns false at the end.
     fn next_selected(&mut self) -> Result<bool, LogError> {
         loop {
             if self.row == self.rows && !self.fill()? {
@@ -186,7 +187,7 @@ impl ParquetTable {
         }
     }
 
-    /// When this row was measured, ns.
+    /// Returns the time of this row, ns.
     fn time(&self) -> Result<i64, LogError> {
         Ok(match self.clock {
             Clock::Step(step) => TimeUnit::step(self.selected, step),
@@ -201,7 +202,7 @@ impl ParquetTable {
         })
     }
 
-    /// The names and numbers of this row.
+    /// Copies the names and numbers of this row into a sample.
     fn numbers(&self, sample: &mut Sample) {
         let (row, columns) = (self.row, &self.columns);
         match &self.roles {
@@ -297,19 +298,19 @@ impl Source for ParquetTable {
     }
 }
 
-/// Bytes of what stands at the end of a file; none of one that is too short.
+/// Returns the number of bytes of the description at the end of a file; `None` if the file is too short.
 fn footer(mut file: &File) -> Option<u32> {
     let mut length = [0; 4];
     file.seek(SeekFrom::End(-8)).and_then(|_| file.read_exact(&mut length)).ok()?;
     Some(u32::from_le_bytes(length))
 }
 
-/// Error for an assertion that failed in the library.
+/// Returns the error for a panic in the library.
 fn corrupt() -> ParquetError {
     ParquetError::General("a part of the file (a page) contains other data than its header states".to_owned())
 }
 
-/// Message of the library as a sentence.
+/// Returns the message for an error of the library.
 fn reason(error: &ParquetError) -> String {
     if let Some(refused) = Refused::of(error) {
         return refused.to_string();

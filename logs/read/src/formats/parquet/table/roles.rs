@@ -1,4 +1,4 @@
-//! The roles of the columns of a table in Parquet.
+//! Finds the quantities of the columns of a table in Parquet.
 
 use super::{Clock, ParquetTable, Roles};
 use crate::columns::mapping::Mapped;
@@ -11,7 +11,7 @@ use crate::remedy::Setting;
 use crate::{LogError, Options, Target, TimeUnit};
 
 impl ParquetTable {
-    /// Finds out what columns are: lists where there is one of positions, else single columns.
+    /// Finds the quantities of the columns: columns of lists if there is one of positions, single columns otherwise.
     pub(super) fn assign(&mut self, leaves: &[Leaf], options: &Options) -> Result<(), LogError> {
         let is_list = |leaf: &Leaf| leaf.is_list && leaf.kind.is_number() && within(&leaf.name, options).is_some();
         let lists = leaves.iter().enumerate().filter(|(_, leaf)| is_list(leaf));
@@ -23,7 +23,7 @@ impl ParquetTable {
         }
     }
 
-    /// Takes lists: that of positions is at this place and has this factor.
+    /// Chooses columns of lists; the index and factor of the column of positions are given.
     fn assign_lists(
         &mut self,
         leaves: &[Leaf],
@@ -64,7 +64,7 @@ impl ParquetTable {
         self.tell_time(leaves, time.map(|time| (time.place, time.unit)), options)
     }
 
-    /// Takes single columns.
+    /// Chooses columns with a single number in each row.
     fn assign_scalars(&mut self, leaves: &[Leaf], options: &Options) -> Result<(), LogError> {
         let (scalars, header) = scalars(leaves);
         let mut columns = Columns::of(&self.path, &header, options)?;
@@ -85,7 +85,7 @@ impl ParquetTable {
         if let Some((place, _)) = columns.time
             && matches!(leaves[scalars[place]].kind, Kind::Stamp(_))
         {
-            // by its type, not by its name
+            // the unit is that of the column's type, not that in its name
             columns.converted.retain(|name| *name != header[place]);
         }
         self.notes = columns.remarks();
@@ -130,7 +130,7 @@ impl ParquetTable {
     }
 }
 
-/// The places of the columns that have no lists, and their names.
+/// Returns the indices and names of the columns without lists.
 fn scalars(leaves: &[Leaf]) -> (Vec<usize>, Vec<String>) {
     let scalars = leaves.iter().enumerate().filter(|(_, leaf)| !leaf.is_list);
     scalars.map(|(place, leaf)| (place, leaf.name.clone())).unzip()
