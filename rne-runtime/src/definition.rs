@@ -1,5 +1,5 @@
 //! The functions of a robot by their definitions: the seven steps on numbers, and everything else derived from them.
-//! They stand once, for [`Arm`](crate::Arm) with its arrays and for `DynArm` with its lists.
+//! They are written once, for [`Arm`](crate::Arm) with its arrays and for `DynArm` with its lists.
 
 pub(crate) mod actuation;
 #[cfg(all(feature = "arm", feature = "std"))]
@@ -37,16 +37,17 @@ use crate::seven_steps::link_state::JointMotions;
 use crate::seven_steps::mechanism::Mechanism;
 use crate::{BaseMotion, Constant, Dual, Scalar, Wrench};
 
-/// A robot, from its coordinates to its joints. Arguments and results have one element for each coordinate.
+/// A robot with couplings, tips and contacts. Arguments and results of its functions have one element for each
+/// coordinate, that is, for each joint that follows no other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Definition<'a, J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> {
     pub(crate) mechanism: Mechanism<'a, J, S>,
     pub(crate) coordinates: J::Coordinates<'a, S>,
-    /// Collections with six elements for a floating base, and one for each coordinate.
+    /// Makes collections with six elements for a floating base, and one for each coordinate.
     pub(crate) velocities: V,
-    /// Collections with one element for each named tip.
+    /// Makes collections with one element for each named tip.
     pub(crate) tips: P,
-    /// The tips that something outside the robot holds.
+    /// The contacts, at tips that something outside the robot holds.
     pub(crate) contacts: &'a [Contact],
 }
 
@@ -56,17 +57,17 @@ impl<'a, J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'a, J, V
         self.mechanism.fixed_base()
     }
 
-    /// Zero for every coordinate.
+    /// Returns zeros, one for each coordinate.
     pub(crate) fn zeros<T: Scalar>(self) -> J::Of<T> {
         self.coordinates.each().all(&T::zero())
     }
 
-    /// The numbers of a slice, one for each coordinate.
+    /// Copies the numbers of a slice, one for each coordinate.
     pub(crate) fn list<T: Scalar>(self, x: &[T]) -> J::Of<T> {
         self.coordinates.each().of(|i| x[i])
     }
 
-    /// The values of all joints, from one for each coordinate.
+    /// Returns the values of all joints, from one value for each coordinate.
     pub(crate) fn of_joints<T: Scalar>(
         self,
         values: &[T],
@@ -74,12 +75,12 @@ impl<'a, J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'a, J, V
         self.coordinates.of_joints(values)
     }
 
-    /// The results of `of_tip` for the frame of each tip.
+    /// Returns the results of `of_tip` for the frames of all tips.
     pub(crate) fn each_tip<X: Clone>(self, of_tip: impl Fn(&FixedFrame<S>) -> X) -> P::Of<X> {
         self.tips.of(|tip| of_tip(&self.mechanism.frames[tip]))
     }
 
-    /// The wrench that must act on the base, about the origin of frame 0, and the torques: by the seven steps.
+    /// Returns, by the seven steps, the wrench that must act on the base, about the origin of frame 0, and the torques.
     pub(crate) fn torques_and_wrench<T: Scalar>(
         self,
         [q, qd, qdd]: [&[T]; 3],
@@ -92,7 +93,7 @@ impl<'a, J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'a, J, V
         (Wrench::from_vectors(wrench.force, wrench.moment), self.coordinates.torques(of_joints))
     }
 
-    /// Torques by the seven steps, on a base that moves.
+    /// Returns the torques on a base that moves, by the seven steps.
     pub(crate) fn torques_on<T: Scalar>(
         self,
         [q, qd, qdd]: [&[T]; 3],
@@ -104,22 +105,22 @@ impl<'a, J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'a, J, V
         self.coordinates.torques(self.mechanism.torques(joints, base, load))
     }
 
-    /// Torques by the seven steps, on a base at rest.
+    /// Returns the torques on a base at rest, by the seven steps.
     pub(crate) fn torques<T: Scalar>(self, motion: [&[T]; 3], load: AtTip<'_, T>) -> J::Of<T> {
         self.torques_on(motion, &self.fixed_base(), load)
     }
 
-    /// Torques where nothing accelerates.
+    /// Returns the torques of a motion without accelerations.
     pub(crate) fn bias<T: Scalar>(self, q: &[T], qd: &[T], load: AtTip<'_, T>) -> J::Of<T> {
         self.torques([q, qd, self.zeros().as_ref()], load)
     }
 
-    /// Torques where nothing moves.
+    /// Returns the torques that hold the robot at rest.
     pub(crate) fn gravity<T: Scalar>(self, q: &[T], load: AtTip<'_, T>) -> J::Of<T> {
         self.bias(q, self.zeros().as_ref(), load)
     }
 
-    /// Torques from sines and cosines of the positions.
+    /// Returns the torques from sines and cosines of the positions.
     pub(crate) fn torques_from_turns<T: Scalar>(self, [sin, cos]: [&[T]; 2], [q, qd, qdd]: [&[T]; 3]) -> J::Of<T> {
         let [q, qd, qdd] = [q, qd, qdd].map(|values| self.of_joints(values));
         let [sin, cos] = self.coordinates.turns([sin, cos], q.as_ref());
@@ -128,18 +129,18 @@ impl<'a, J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'a, J, V
         self.coordinates.torques(self.mechanism.torques(joints, &self.fixed_base(), AtTip::Nothing))
     }
 
-    /// Numbers that nothing changes.
+    /// Returns numbers whose derivatives are zero.
     pub(crate) fn still<T: Scalar>(self, x: &[T]) -> J::Of<Dual<T>> {
         self.coordinates.each().of(|i| Dual::constant(x[i]))
     }
 
-    /// Numbers of which `j` is on its way.
+    /// Returns numbers with the derivative 1 for element `j` and 0 for the others.
     pub(crate) fn along<T: Scalar>(self, x: &[T], j: usize) -> J::Of<Dual<T>> {
         let derivative = |i| if i == j { T::one() } else { T::zero() };
         self.coordinates.each().of(|i| Dual { value: x[i], derivative: derivative(i) })
     }
 
-    /// The derivatives of the elements of y(x), by rows, with a column for each coordinate.
+    /// Returns the derivatives of the elements of y(x): one row per element of y, one column per coordinate.
     pub(crate) fn rows_by<T: Scalar>(self, x: &[T], y: impl Fn(&[Dual<T>]) -> J::Of<Dual<T>>) -> Square<J, T> {
         let each = self.coordinates.each();
         let columns = each.of(|j| y(self.along(x, j).as_ref()));

@@ -124,8 +124,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
 }
 
-/// Counts functions of a robot in the reduced form, and in the seven steps if `both`. What is too large to be compiled
-/// is left out, with a line in `remarks`.
+/// Counts functions of a robot in the reduced form, and in the seven steps if `both` is true. Functions that are too
+/// large to compile are left out, with a line in `remarks`.
 pub(crate) fn counts(
     file: &Path,
     compiler: &Compiler<'_>,

@@ -1,4 +1,4 @@
-//! `rne search`: a reduced form with fewer operations.
+//! `rne search`: searches a reduced form with fewer operations.
 
 use std::fmt::Write as _;
 use std::fs::{File, OpenOptions};
@@ -94,29 +94,29 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome::text(summary(&plan, &searched, &left_out, &path, written)))
 }
 
-/// The robot and the functions of a search.
+/// The robot and the functions for which a search runs.
 struct Searched<'a> {
     file: &'a Path,
-    /// As it was read at the start.
+    /// The robot as it was read at the start.
     robot: &'a Robot,
-    /// Plan from which the search started.
+    /// The plan from which the search started.
     known: Known,
     fresh: bool,
 }
 
-/// Content of the plan file after a search.
+/// The content of the plan file after a search.
 struct Kept {
     plan: PlanFile,
-    /// Functions of the plan that was there whose graphs are not proved.
+    /// Functions of the previous plan that are dropped, because their graphs are not proved.
     left_out: Vec<Function>,
     written: Written,
 }
 
 impl Searched<'_> {
-    /// Writes what a search has found into the plan file, with what another search has written there meanwhile. The
-    /// robot file is locked from the reading to the writing, so of searches that end together each sees what those
-    /// before it have written; `between` is called then, for tests. Nothing is written where the robot has changed, or
-    /// where something stands in the place of the plan that no search may begin from.
+    /// Writes the result of a search into the plan file, merged with what another search has written there meanwhile.
+    /// The robot file is locked from reading to writing, so that of several searches that end together each sees the
+    /// results of those before it; `between` is called while it is locked, for tests. Nothing is written if the robot
+    /// has changed, or if a search could not begin from what is now at the place of the plan.
     fn keep(&self, mut found: PlanFile, between: impl FnOnce()) -> Result<Kept, Failure> {
         let path = plan_of(self.file);
         let _locked = locked(self.file);
@@ -136,7 +136,8 @@ impl Searched<'_> {
         Ok(Kept { plan: found, left_out: now.left_out, written })
     }
 
-    /// Whether what was found is of the robot as its file has it now; comments and names may have changed.
+    /// Checks that the robot file still has the robot for which the result was found; comments and names of joints may
+    /// have changed.
     fn is_unchanged(&self, found: &PlanFile) -> Result<(), Failure> {
         let is_same =
             |Checked { robot, .. }| robot.name == found.robot && rne_search::fingerprint(&robot) == found.fingerprint;
@@ -151,7 +152,7 @@ impl Searched<'_> {
     }
 }
 
-/// Why nothing is written in the place of a plan that has appeared or changed during the search.
+/// Makes the error for a plan that has appeared or changed during the search, so that nothing is written.
 fn meanwhile(path: &Path, failure: &Failure) -> Failure {
     let text = format!(
         "{}\n\n{} has changed during the search; rne does not overwrite it and does not write the result",
@@ -161,8 +162,8 @@ fn meanwhile(path: &Path, failure: &Failure) -> Failure {
     Failure { text, status: INPUT }
 }
 
-/// The robot file, locked for other searches until it is dropped. Where the system cannot lock it, the search is still
-/// worth its result. On Windows a lock would keep every reader out.
+/// Locks the robot file against other searches, until the returned file is dropped. `None` if the system cannot lock
+/// it, because the result is still useful then; and on Windows, where a lock would keep every reader out.
 fn locked(robot_file: &Path) -> Option<File> {
     if cfg!(windows) {
         return None;
@@ -172,7 +173,7 @@ fn locked(robot_file: &Path) -> Option<File> {
     Some(file)
 }
 
-/// The functions whose graphs are to be rewritten.
+/// Returns the functions whose graphs `--rewrite` rewrites.
 fn rewritten(arguments: &Arguments, robot: &Robot) -> Result<Vec<Function>, Failure> {
     let asked = &arguments.functions;
     let is_asked = |function: Function| match asked.as_slice() {
@@ -186,7 +187,7 @@ fn rewritten(arguments: &Arguments, robot: &Robot) -> Result<Vec<Function>, Fail
     if let Some(function) = functions.iter().find(|function| !function.can_be_rewritten()) {
         return Err(usage_error!("`{function}` has only the form seven_steps, so there is nothing to rewrite"));
     }
-    // a plan with a function that the robot does not have is refused by all that read it
+    // every reader would refuse a plan with a function that the robot does not have
     if let Some(error) = functions.iter().find_map(|function| function.check_for(robot).err()) {
         return Err(Failure::usage(error));
     }
@@ -220,7 +221,7 @@ fn watched(
         if shown.elapsed() > Duration::from_millis(100) {
             shown = Instant::now();
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)]
-            // 0 to 1000
+            // the position of the bar is from 0 to 1000
             bar.set_position((over.min(1.0) * STEPS as f64) as u64);
             bar.set_prefix(progress.phase);
             bar.set_message(format!("{} operations, {} plans", progress.best.total(), progress.plans));
@@ -284,11 +285,11 @@ fn summary(found: &PlanFile, searched: &Searched<'_>, left_out: &[Function], pat
     text
 }
 
-/// Builds watch the robot file; a new plan beside it is news to them.
+/// Updates the date of the robot file, which builds watch, so that they notice a new plan beside it.
 fn touch(robot_file: &Path) {
     let touched =
         |path: &Path| -> io::Result<()> { OpenOptions::new().append(true).open(path)?.set_modified(SystemTime::now()) };
-    // a robot file that cannot be touched is built anew when it changes
+    // if this fails, builds notice the plan only when the robot file changes
     let _ = touched(robot_file);
 }
 
@@ -300,7 +301,7 @@ mod tests {
 
     use super::*;
 
-    /// The robot and the plan of the box, in a folder of their own.
+    /// The robot and the plan of a test, in a folder of their own.
     struct Arm {
         folder: tempfile::TempDir,
         robot: Robot,
@@ -322,7 +323,7 @@ mod tests {
             self.folder.path().join("arm.yaml")
         }
 
-        /// Text of the file at the plan's path.
+        /// Returns the text of the file at the plan's path.
         fn written(&self) -> Option<String> {
             fs::read_to_string(plan_of(&self.file())).ok()
         }
@@ -331,7 +332,7 @@ mod tests {
             fs::write(plan_of(&self.file()), plan).expect("written");
         }
 
-        /// A plan that rewrites one function alone.
+        /// Returns a plan that rewrites only one function.
         fn found(&self, function: Function) -> PlanFile {
             let mut found = self.plan.clone();
             found.rewritten.retain(|&one, _: &mut Rewritten| one == function);
@@ -339,7 +340,7 @@ mod tests {
             found
         }
 
-        /// The end of a search that began without a plan.
+        /// Ends a search that began without a plan.
         fn keep(&self, found: PlanFile, between: impl FnOnce()) -> Result<Kept, Failure> {
             self.keep_as(false, found, between)
         }
@@ -350,7 +351,7 @@ mod tests {
         }
     }
 
-    /// The message of a search that must not write.
+    /// Returns the exit status and the message of a search that must not write.
     fn refused(kept: Result<Kept, Failure>) -> (u8, String) {
         let failure = kept.map(|_| ()).expect_err("nothing is written");
         let text = anstream::adapter::strip_str(&failure.text).to_string();
@@ -373,7 +374,7 @@ mod tests {
         }
         fs::remove_file(arm.file()).expect("removed");
         refused(arm.keep(arm.plan.clone(), || ()));
-        // a comment is no number
+        // a comment changes no number, so the result is still valid
         fs::write(arm.file(), format!("# a comment\n{text}")).expect("written");
         assert!(arm.keep(arm.plan.clone(), || ()).is_ok_and(|kept| kept.written == Written::Anew));
         assert_eq!(arm.written(), Some(arm.plan.to_yaml()));
@@ -389,7 +390,7 @@ mod tests {
             assert!(said.contains("arm.plan.yaml has changed during the search; rne does not overwrite it"), "{said}");
             assert_eq!(arm.written().as_deref(), Some(notes));
         }
-        // a fresh search replaces a plan that cannot be read, and nothing else
+        // a fresh search replaces a plan that cannot be read, but not a text that is no plan
         arm.write("my notes\n");
         refused(arm.keep_as(true, arm.plan.clone(), || ()));
         assert_eq!(arm.written().as_deref(), Some("my notes\n"));
@@ -398,7 +399,7 @@ mod tests {
         assert_eq!(arm.written(), Some(arm.plan.to_yaml()));
     }
 
-    /// A graph with a wrong sign, which looks as good as any, and claims to be better than all.
+    /// A graph with a wrong sign claims fewer operations than all others, and must not be merged.
     #[test]
     fn a_plan_that_is_not_proved_is_not_merged() {
         let arm = Arm::new();
@@ -428,7 +429,7 @@ mod tests {
             kept.map_or_else(|failure| panic!("{}", failure.text), drop);
         };
         std::thread::scope(|scope| {
-            // the others begin while the first one has read and not yet written; they wait for it
+            // the other searches begin after the first one has read and before it writes; they wait for it
             keep(functions[0], &mut || {
                 let other = File::open(arm.file()).expect("a robot");
                 assert!(cfg!(windows) || matches!(other.try_lock(), Err(std::fs::TryLockError::WouldBlock)));

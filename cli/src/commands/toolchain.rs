@@ -1,4 +1,4 @@
-//! The compiler for a microcontroller and the programs that read and run its code.
+//! Runs the compiler for a microcontroller, and the programs that read and execute its code.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,7 +13,7 @@ use rne_certify::listing;
 use crate::outcome::Failure;
 use crate::palette::TYPED;
 
-/// The Debian package of a program that rne starts without being told its name.
+/// Returns the Debian package of a program, for programs that rne starts although the user did not name them.
 fn package(program: &str) -> Option<&'static str> {
     match program {
         "qemu-system-arm" => Some("qemu-system-arm"),
@@ -24,7 +24,7 @@ fn package(program: &str) -> Option<&'static str> {
     }
 }
 
-/// Runs a program and returns the text that it prints; its errors are those of the command.
+/// Runs a program and returns the text that it prints. If the program fails, its error becomes that of the command.
 pub(crate) fn text(command: &mut Command) -> Result<String, Failure> {
     Ok(String::from_utf8_lossy(&output(command)?.stdout).into_owned())
 }
@@ -57,13 +57,13 @@ fn output(command: &mut Command) -> Result<Output, Failure> {
     }
 }
 
-/// The first line of `--version`; `None` where the program is not installed.
+/// Returns the first line of `--version`; `None` where the program is not installed.
 pub(crate) fn version_of(program: &str) -> Option<String> {
     let output = Command::new(program).arg("--version").output().ok().filter(|output| output.status.success())?;
     Some(String::from_utf8_lossy(&output.stdout).lines().next()?.trim().to_owned())
 }
 
-/// The first line of `--version`; an error says how to install the program.
+/// Returns the first line of `--version`; an error says how to install the program.
 pub(crate) fn version(program: &str) -> Result<String, Failure> {
     let said = text(Command::new(program).arg("--version"))?;
     let line = said.lines().next().map(str::trim).filter(|line| !line.is_empty());
@@ -74,7 +74,7 @@ pub(crate) fn version(program: &str) -> Result<String, Failure> {
     })
 }
 
-/// The version of GCC for Arm; an error says what another program is.
+/// Returns the version of GCC for Arm; an error says what the program is instead.
 pub(crate) fn version_of_gcc(program: &str) -> Result<String, Failure> {
     let version = version(program)?;
     let said = text(Command::new(program).arg("--version"))?;
@@ -98,7 +98,7 @@ pub(crate) fn version_of_gcc(program: &str) -> Result<String, Failure> {
     Err(usage_error!("{program} is no compiler for Arm: its target is {target}; {remedy}"))
 }
 
-/// The SHA-256 of a program.
+/// Returns the SHA-256 of a program's file.
 pub(crate) fn hash(program: &str) -> Option<String> {
     let folders = std::env::var_os("PATH")?;
     let path = if program.contains('/') {
@@ -109,7 +109,7 @@ pub(crate) fn hash(program: &str) -> Option<String> {
     Some(rne_certify::sha256(&fs::read(path).ok()?))
 }
 
-/// The program of GNU's binary utilities that belongs to a compiler: `arm-none-eabi-objdump` to `arm-none-eabi-gcc`.
+/// Returns the binutils program that belongs to a compiler, such as `arm-none-eabi-objdump` for `arm-none-eabi-gcc`.
 pub(crate) fn objdump_of(compiler: &str) -> String {
     match compiler.rsplit_once("gcc") {
         Some((prefix, _)) => format!("{prefix}objdump"),
@@ -117,14 +117,15 @@ pub(crate) fn objdump_of(compiler: &str) -> String {
     }
 }
 
-/// The functions of an image, with their sizes, and with the stack frames that the compiler recorded in files `.su`.
+/// Returns the functions of a linked program, with their sizes and the stack frames that the compiler recorded in files
+/// `.su`.
 pub(crate) fn image(objdump: &str, folder: &Path, elf: &str) -> Result<Image, Failure> {
     let read =
         |option: &str| text(Command::new(objdump).current_dir(folder).args([option, "--no-show-raw-insn"]).arg(elf));
     let mut listed = listing::functions(&read("--disassemble")?).map_err(Failure::input)?;
     let mut functions = BTreeMap::new();
     for line in read("--syms")?.lines() {
-        // 00000000 g     F .text    0000012c .hidden name
+        // a line of `objdump --syms`, such as: 00000000 g F .text 0000012c .hidden name
         let words: Vec<&str> = line.split_whitespace().collect();
         let (Some(at), Some(name)) = (words.iter().position(|word| *word == "F"), words.last()) else { continue };
         let size = words.get(at + 2).and_then(|size| u64::from_str_radix(size, 16).ok());
@@ -134,14 +135,14 @@ pub(crate) fn image(objdump: &str, folder: &Path, elf: &str) -> Result<Image, Fa
     }
     let frames = frames(folder);
     for (name, function) in &mut functions {
-        // rustc records none, so the instructions say it
+        // rustc records no stack frames, so they are computed from the instructions
         let of_listing = cycles::stack(&function.lines);
         function.stack = Some(frames.get(name).copied().unwrap_or(of_listing));
     }
     Ok(Image::new(functions))
 }
 
-/// The stack frames of functions in the files that `-fstack-usage` writes.
+/// Returns the stack frames of functions, from the files that `-fstack-usage` writes.
 fn frames(folder: &Path) -> BTreeMap<String, u64> {
     let mut frames = BTreeMap::new();
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -150,7 +151,7 @@ fn frames(folder: &Path) -> BTreeMap<String, u64> {
             continue;
         }
         for line in fs::read_to_string(&path).unwrap_or_default().lines() {
-            // my_arm.c:101:6:my_arm_inverse_dynamics	96	static
+            // a line with tabs between its three parts, such as: my_arm.c:101:6:my_arm_inverse_dynamics 96 static
             if let [place, bytes, ..] = line.split('\t').collect::<Vec<_>>().as_slice()
                 && let (Some((_, name)), Ok(bytes)) = (place.rsplit_once(':'), bytes.parse())
             {
@@ -161,7 +162,7 @@ fn frames(folder: &Path) -> BTreeMap<String, u64> {
     frames
 }
 
-/// The text that an image prints in QEMU, where an instruction takes 1024 ns.
+/// Returns the text that a program prints in QEMU, where each instruction takes 1024 ns.
 pub(crate) fn emulated(core: Core, folder: &Path, elf: &str) -> Result<String, Failure> {
     text(
         Command::new("qemu-system-arm")
@@ -171,7 +172,7 @@ pub(crate) fn emulated(core: Core, folder: &Path, elf: &str) -> Result<String, F
     )
 }
 
-/// The text that the addon `misra` of cppcheck prints about a source, which is written to the file of the folder.
+/// Writes a source into the folder, and returns what the addon `misra` of cppcheck prints about it.
 pub(crate) fn misra(folder: &Path, file: &str, source: &str) -> Result<String, Failure> {
     fs::write(folder.join(file), source).map_err(Failure::input)?;
     let output = output(Command::new("cppcheck").current_dir(folder).args([

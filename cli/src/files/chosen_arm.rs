@@ -1,4 +1,4 @@
-//! The arm of a command: from the file alone, with its rotors, or with other values of its parameters.
+//! The arm that a command line chooses: a file, optionally with rotors or with other values of its parameters.
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -24,17 +24,17 @@ pub(crate) struct Rotors {
 }
 
 impl Rotors {
-    /// The robot of a file.
+    /// Reads the robot of a file.
     pub(crate) fn robot(self, path: &Path, shape: Shape) -> Result<Robot, Failure> {
         Ok(self.of(robot_file::robot(path, shape)?))
     }
 
-    /// A robot that has been read.
+    /// Applies the option to a robot that has been read.
     pub(crate) fn of(self, robot: Robot) -> Robot {
         Robot { rotors: self.rotors, ..robot }
     }
 
-    /// A note where the option has no effect on a robot.
+    /// Returns a note if the option has no effect on a robot.
     pub(crate) fn note(self, robot: &Robot) -> String {
         if !self.rotors || robot.has_rotors() {
             return String::new();
@@ -46,7 +46,7 @@ impl Rotors {
     }
 }
 
-/// Refuses rotors as unknowns of an identification where the list `motors` has them: each is counted once.
+/// Refuses to identify rotors whose inertia the list `motors` already has, because it would be counted twice.
 pub(crate) fn check_unknown_rotors(robot: &Robot, is_asked: bool) -> Result<(), Failure> {
     if is_asked && robot.has_spinning_rotors() {
         return Err(usage_error!(
@@ -66,13 +66,13 @@ pub(crate) struct AtFrame {
 }
 
 impl AtFrame {
-    /// A robot seen from the frame.
+    /// Puts the frame in place of the robot's tip.
     pub(crate) fn of(&self, robot: Robot) -> Result<Robot, Failure> {
         let Some(name) = &self.frame else { return Ok(robot) };
         at_frame(robot, name)
     }
 
-    /// Whether a function can be taken at the frame.
+    /// Checks that a function can be computed at a frame.
     pub(crate) fn check(&self, function: Function) -> Result<(), Failure> {
         if self.frame.is_none() || function.of_frame().is_some() {
             return Ok(());
@@ -81,19 +81,19 @@ impl AtFrame {
     }
 }
 
-/// The error where no function can be taken at the frames of `--frame`.
+/// Makes the error for functions that cannot be computed at the frames of `--frame`.
 pub(crate) fn not_of_frames(why: impl Display) -> Failure {
     let with: Vec<&str> = Function::of_frames().map(Function::name).collect();
     usage_error!("{TYPED}--frame{TYPED:#} is for functions of a frame, and {why}; these are: {}", with.join(", "))
 }
 
-/// A robot seen from the frame with this name.
+/// Returns a robot with the frame of this name in place of its tip.
 pub(crate) fn at_frame(robot: Robot, name: &str) -> Result<Robot, Failure> {
     let frame = robot.frame(name).map_err(Failure::usage)?;
     Ok(robot.at_frame(frame))
 }
 
-/// A parameter of the file and its value here: `payload=2`.
+/// A parameter of the file and the value that the command line gives it: `payload=2`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Setting {
     pub(crate) name: String,
@@ -132,7 +132,7 @@ pub(crate) struct Carried {
 }
 
 impl Carried {
-    /// A robot with the payload as a part of the link with the tip.
+    /// Returns the robot with the payload added to the link that carries the tip.
     pub(crate) fn of(&self, robot: Robot) -> Result<Robot, Failure> {
         let Some(list) = &self.payload else { return Ok(robot) };
         let Payload { mass, com, inertia } = payload(list)?;
@@ -152,7 +152,7 @@ impl Carried {
         Ok(rne_convert::carrying_at(&robot, &frame, mass, com, inertia))
     }
 
-    /// Whether the payload is an argument of a function that takes one, not a part of a link.
+    /// Returns whether the payload can be an argument of a function: only if it is at the tip and not at another frame.
     pub(crate) const fn is_at_tip(&self) -> bool {
         self.payload.is_some() && self.payload_on.is_none()
     }
@@ -177,12 +177,12 @@ pub(crate) struct ChosenArm {
 }
 
 impl ChosenArm {
-    /// The file as it is named on the command line.
+    /// Returns the file as the command line names it.
     pub(crate) fn file(&self) -> &Path {
         &self.file
     }
 
-    /// Refuses a payload and rotors where they change nothing of a function.
+    /// Refuses a payload and rotors if they do not change the results of a function.
     pub(crate) fn check(&self, function: Function) -> Result<(), Failure> {
         if self.carried.payload.is_some() && !function.entry().feels_links {
             let with = Function::ALL.into_iter().filter(|other| other.with_payload().is_some()).map(Function::name);
@@ -204,12 +204,12 @@ impl ChosenArm {
         Ok(())
     }
 
-    /// The robot with the payload as a part of the link with the tip.
+    /// Returns the robot with the payload added to the link that carries the tip.
     pub(crate) fn robot_with_payload(&self, shape: Shape) -> Result<Robot, Failure> {
         self.carried.of(self.read(Frames::Dropped, shape)?)
     }
 
-    /// The robot without the payload, seen from a frame, and a note: `--rotors` without effect.
+    /// Returns the robot without the payload, with a frame in place of its tip; and a note if `--rotors` has no effect.
     pub(crate) fn robot_at(&self, at: &AtFrame) -> Result<(Robot, String), Failure> {
         let names_frame = at.frame.is_some() || self.carried.payload_on.is_some();
         let robot = self.read(if names_frame { Frames::Kept } else { Frames::Dropped }, Shape::Closed)?;
@@ -231,7 +231,7 @@ impl ChosenArm {
     }
 }
 
-/// The robot of a file with other values of its parameters.
+/// Reads the robot of a file with other values of its parameters.
 fn with_settings(path: &Path, settings: &[Setting], frames: Frames, shape: Shape) -> Result<Checked, Failure> {
     for (index, Setting { name, .. }) in settings.iter().enumerate() {
         if settings[..index].iter().any(|other| other.name == *name) {

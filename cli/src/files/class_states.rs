@@ -33,17 +33,17 @@ impl Chosen {
     }
 }
 
-/// Who has which state.
+/// The states of the students of a class.
 #[derive(Debug)]
 pub(crate) enum ClassStates {
     Everybody(Box<Situation>),
-    /// By the students' names; with the name of the file.
+    /// A state for each student, by name; and the name of the file.
     Each(BTreeMap<String, Situation>, String),
     Seed(u64),
 }
 
 impl ClassStates {
-    /// The state of a student.
+    /// Returns the state of a student.
     pub(crate) fn of(&self, student: &str, robot: &Robot) -> Result<Situation, Failure> {
         match self {
             Self::Everybody(state) => Ok(Situation::clone(state)),
@@ -56,7 +56,7 @@ impl ClassStates {
         }
     }
 
-    /// The students that the file of states names.
+    /// Returns the students that the file of states names.
     pub(crate) fn students(&self) -> Vec<String> {
         match self {
             Self::Each(states, _) => states.keys().cloned().collect(),
@@ -65,20 +65,20 @@ impl ClassStates {
     }
 }
 
-/// A free arm on a base at rest.
+/// Makes the situation of an arm without external wrench, on a base at rest.
 fn at(q: Vec<f64>, qd: Vec<f64>, qdd: Vec<f64>) -> Situation {
     Situation { q, qd, qdd, base: None, wrench: None, payload: None }
 }
 
-/// A state for a name: positions in steps of 0.05 rad or m within the limits of the file, rates and accelerations in
-/// steps of 0.1. No rate is zero, so that every term counts.
+/// Computes a state from a seed and a name: positions in steps of 0.05 rad or m within the limits of the file,
+/// velocities and accelerations in steps of 0.1. None of these is zero, so that every term counts.
 fn by_seed(robot: &Robot, seed: u64, student: &str) -> Situation {
-    // FNV-1a, of the seed and the name
+    // FNV-1a hash of the seed and the name
     let bytes = seed.to_le_bytes().into_iter().chain(student.bytes());
     let hash =
         bytes.fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
     let random = Random::new(hash, |number| number);
-    // from -1 to 1
+    // a random number from -1 to 1
     let number = || random.number(1.0);
     let step = |value: f64, per_unit: f64| (value * per_unit).round() / per_unit;
     let rate = |most: f64| {
@@ -93,7 +93,7 @@ fn by_seed(robot: &Robot, seed: u64, student: &str) -> Situation {
             None => (low, high),
         };
         let value = low + (high - low) * (number() + 1.0) / 2.0;
-        // a sine that is nearly 0 hides the term that it belongs to
+        // a position near 0 has a sine of nearly 0, which would hide the term with this sine
         let value = if value.abs() < 0.2 { 0.2_f64.copysign(value) } else { value };
         Some(step(value, 20.0)).filter(|value| (low..=high).contains(value)).unwrap_or(value.clamp(low, high))
     });
@@ -102,14 +102,14 @@ fn by_seed(robot: &Robot, seed: u64, student: &str) -> Situation {
     at(q, qd, qdd)
 }
 
-/// More than a file of states for a class has, in bytes.
+/// Largest size of a file of states for a class, in bytes.
 const LONGEST: usize = 4 << 20;
 
-/// The contents of a column of the file.
+/// What a column of the file contains.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Column {
     Name,
-    /// A list (q, qd, qdd) and a joint, both from 0.
+    /// A number: the index of its list (0 to 2 for q, qd, qdd), and its joint, counted from 0.
     Number(usize, usize),
 }
 
@@ -135,7 +135,7 @@ fn read(path: &Path, robot: &Robot) -> Result<ClassStates, Failure> {
         mistakes.push(0..0, "the file is empty: there is no header", Some(&help));
         return mistakes.finish(ClassStates::Seed(0));
     };
-    // a key for another robot is one mistake, not one for each column
+    // a file for another robot is reported once, not for each column
     is_for_arm_of(dof, header)
         .map_err(|joints| input_error!("{name}: the key is for an arm of {joints}; {} has {dof}", robot.name))?;
     let columns = columns(header, dof, &help, &mut mistakes);
@@ -161,7 +161,7 @@ fn read(path: &Path, robot: &Robot) -> Result<ClassStates, Failure> {
     mistakes.finish(of_everybody.map_or_else(|| ClassStates::Each(states, name.clone()), ClassStates::Everybody))
 }
 
-/// Whether a header has the columns of an arm of `dof` joints; otherwise the joints that it has, in words.
+/// Checks that a header has columns for `dof` joints; the error says in words how many joints it has.
 fn is_for_arm_of(dof: usize, header: &csv_table::Row<'_>) -> Result<(), String> {
     let joint = |cell: &Cell<'_>| -> Option<usize> {
         cell.text.to_ascii_lowercase().strip_prefix('q')?.trim_start_matches('d').parse().ok()
@@ -173,7 +173,8 @@ fn is_for_arm_of(dof: usize, header: &csv_table::Row<'_>) -> Result<(), String> 
     }
 }
 
-/// The student of a row, empty without a column of names, and the state; `None` if cells are missing or too many.
+/// Reads a row: the name of the student, empty if there is no such column, and the state. `None` if cells are missing
+/// or too many.
 fn of_row(
     row: &csv_table::Row<'_>,
     columns: &[Option<Column>],
@@ -198,7 +199,7 @@ fn of_row(
     Some((student, at(q, qd, qdd)))
 }
 
-/// The columns of a header; none if it has mistakes.
+/// Reads the columns of a header; none if it has mistakes.
 fn columns(header: &csv_table::Row<'_>, dof: usize, help: &str, mistakes: &mut Mistakes<'_>) -> Vec<Option<Column>> {
     let names = |list: usize| (1..=dof).map(move |joint| format!("{}{joint}", LISTS[list]));
     let all: Vec<(String, Column)> = std::iter::once(("name".to_owned(), Column::Name))
@@ -219,7 +220,7 @@ fn columns(header: &csv_table::Row<'_>, dof: usize, help: &str, mistakes: &mut M
             .filter(|(_, column)| !columns.contains(&Some(*column)))
             .map(|(name, _)| name.as_str())
             .collect();
-        // rates and accelerations are there for all joints or for none
+        // columns of velocities or accelerations must be there for all joints or for none
         if let (Some(first), true) = (missing.first(), symbol == "q" || missing.len() < dof) {
             let help = csv_table::other_separator(header).unwrap_or(help);
             mistakes.push(header.span.clone(), format!("there is no column `{first}`"), Some(help));

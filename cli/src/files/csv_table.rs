@@ -1,4 +1,5 @@
-//! Tables of comma-separated values: lines of cells, each with its place, so that a message can point at it.
+//! Reads tables of comma-separated values as lines of cells, each with its place in the file, so that messages can
+//! point at it.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -13,11 +14,11 @@ use crate::outcome::Failure;
 #[derive(Clone, Debug)]
 pub(crate) struct Cell<'a> {
     pub(crate) text: Cow<'a, str>,
-    /// The bytes of the file that it stands on.
+    /// The bytes of the file that the cell has.
     pub(crate) span: Range<usize>,
 }
 
-/// A line with something in it.
+/// A line with at least one cell that is not empty.
 #[derive(Clone, Debug)]
 pub(crate) struct Row<'a> {
     pub(crate) cells: Vec<Cell<'a>>,
@@ -28,35 +29,35 @@ pub(crate) struct Row<'a> {
 #[derive(Clone, Debug)]
 pub(crate) enum Line<'a> {
     Row(Row<'a>),
-    /// Without its `#`, and where it stands.
+    /// A comment without its `#`, and its place.
     Comment(&'a str, Range<usize>),
-    /// A quote opens here and does not close on its line.
+    /// A quote that opens at this place and is not closed on its line.
     OpenQuote(Range<usize>),
 }
 
-/// Mistakes in a file, as many as are read.
+/// The mistakes found in a file, up to a largest number.
 #[derive(Debug)]
 pub(crate) struct Mistakes<'a> {
     name: &'a str,
     text: &'a str,
     report: Option<Report>,
-    /// How many mistakes have the same remedy, in the order in which the remedies came first.
+    /// For each remedy, how many mistakes have it, in the order in which the remedies were first needed.
     alike: Vec<(String, usize)>,
 }
 
-/// Most mistakes that are reported.
+/// Largest number of mistakes that are reported.
 const TOLD: usize = 20;
 
-/// Most mistakes with one remedy that are reported; the others are counted. A file with another decimal mark has one in
-/// each cell.
+/// Largest number of mistakes with the same remedy that are reported; others are counted. A file with another decimal
+/// mark has such a mistake in each cell.
 const ALIKE: usize = 3;
 
-/// Characters of the bytes 0x80 to 0x9F in Windows-1252, after the index of the WHATWG Encoding Standard; five of these
-/// bytes have none.
+/// The characters of the bytes 0x80 to 0x9F in Windows-1252, from the index of the WHATWG Encoding Standard; five of
+/// these bytes have none.
 const WINDOWS: &str = "€\u{81}‚ƒ„…†‡ˆ‰Š‹Œ\u{8D}Ž\u{8F}\u{90}‘’“”•–—˜™š›œ\u{9D}žŸ";
 
-/// The name of a file and its text of at most `longest` bytes. A message calls the file `what`, and ends with `help`
-/// where the text is longer.
+/// Reads a file of at most `longest` bytes and returns its name and text. Messages call the file `what`; if it is
+/// longer, the message ends with `help`.
 pub(crate) fn read(path: &Path, what: &str, longest: usize, help: &str) -> Result<(String, String), Failure> {
     let name = input_file::name(path);
     let bytes =
@@ -68,8 +69,8 @@ pub(crate) fn read(path: &Path, what: &str, longest: usize, help: &str) -> Resul
     Ok((name, text))
 }
 
-/// The text of a file, without a byte order mark: in UTF-8, or as spreadsheets save `CSV` and `Unicode text`, in
-/// Windows-1252 and in UTF-16 with its mark.
+/// Decodes the text of a file, without a byte order mark: UTF-8, or the encodings in which spreadsheets save `CSV` and
+/// `Unicode text`, which are Windows-1252 and UTF-16 with its mark.
 ///
 /// # Errors
 /// A byte, with its line and column, that has no character in UTF-8 and none in Windows-1252; half a character of
@@ -127,7 +128,7 @@ impl<'a> Mistakes<'a> {
         }
     }
 
-    /// Whether the largest number of mistakes is reached, so that reading can end.
+    /// Returns whether the largest number of mistakes is reached, so that reading can end.
     pub(crate) fn are_enough(&self) -> bool {
         self.report.as_ref().is_some_and(|report| report.diagnostics.len() >= TOLD)
     }
@@ -136,7 +137,7 @@ impl<'a> Mistakes<'a> {
         self.report.is_some()
     }
 
-    /// The value, unless there were mistakes.
+    /// Returns the value, or an error with the mistakes if there were any.
     pub(crate) fn finish<T>(self, value: T) -> Result<T, Failure> {
         match self.report {
             Some(mut report) => {
@@ -155,8 +156,8 @@ impl<'a> Mistakes<'a> {
     }
 }
 
-/// The lines of a table: cells are separated by commas, or by semicolons where the first of them has no comma; comments
-/// begin with `#`; empty lines are left out.
+/// Splits a table into lines. Cells are separated by commas, or by semicolons if the first line with cells has no
+/// comma; comments begin with `#`; empty lines are left out.
 pub(crate) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     let mut separator = None;
     let mut start = 0;
@@ -180,7 +181,8 @@ pub(crate) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     })
 }
 
-/// Name of the separator that a header without the right columns may have; `None` if it has commas or semicolons.
+/// Returns help on the separator if a header without the right columns uses another one; `None` if it has commas or
+/// semicolons.
 pub(crate) fn other_separator(header: &Row<'_>) -> Option<&'static str> {
     let has = |separator: char| header.cells.iter().any(|cell| cell.text.contains(separator));
     let found = [
@@ -192,10 +194,10 @@ pub(crate) fn other_separator(header: &Row<'_>) -> Option<&'static str> {
     found.into_iter().find(|(separator, _)| has(*separator)).map(|(_, help)| help)
 }
 
-/// Message for a line of [`Line::OpenQuote`].
+/// The message for a line of [`Line::OpenQuote`].
 pub(crate) const OPEN_QUOTE: &str = "this quote is not closed on its line";
 
-/// The cells of a line that starts at `start`; or where a quote opens that does not close.
+/// Splits a line that starts at the byte `start` into cells; the error is the place of a quote that is not closed.
 fn cells(line: &str, start: usize, separator: char) -> Result<Vec<Cell<'_>>, usize> {
     let mut cells = Vec::new();
     let (mut from, mut quoted) = (0, None);
@@ -221,8 +223,8 @@ fn cells(line: &str, start: usize, separator: char) -> Result<Vec<Cell<'_>>, usi
     Ok(cells)
 }
 
-/// A number with a decimal point where it has a decimal comma, as spreadsheets write it in half of Europe: `0,5`.
-/// U+2212 is a minus sign, as they write it, too.
+/// Replaces a decimal comma by a point, because spreadsheets of many European countries write `0,5`; and U+2212, which
+/// they write too, by a minus sign.
 pub(crate) fn with_point(number: &str) -> Cow<'_, str> {
     if number.contains('\u{2212}') {
         let ascii = number.replace('\u{2212}', "-");
@@ -235,7 +237,7 @@ pub(crate) fn with_point(number: &str) -> Cow<'_, str> {
     Cow::Borrowed(number)
 }
 
-/// A text for a message: shortened, control characters escaped, in backticks.
+/// Formats a text for a message: shortened, control characters escaped, in backticks.
 pub(crate) fn quoted(text: &str) -> String {
     const LONGEST: usize = 40;
     let mut shown: String = text.chars().take(LONGEST).collect::<String>().escape_debug().to_string();

@@ -1,11 +1,11 @@
-//! Names of files that are written: the end of a name says the format, and no other is written into it.
+//! Checks names of output files: the extension says the format, and no other format is written into the file.
 
 use std::path::Path;
 
 use crate::outcome::Failure;
 use crate::palette::TYPED;
 
-/// A format that is written.
+/// A format of output files.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Format {
     Csv,
@@ -22,7 +22,7 @@ pub(crate) enum Format {
     Fmu,
 }
 
-/// Ends of names that say something, though nothing of it is written here.
+/// Extensions of other formats, which rne does not write.
 const OTHERS: [&str; 14] =
     ["bag", "cc", "cpp", "cxx", "db3", "jpg", "json", "mcap", "npz", "pdf", "png", "py", "toml", "xacro"];
 
@@ -42,7 +42,7 @@ impl Format {
         Self::Fmu,
     ];
 
-    /// Ends of names, the usual one first.
+    /// Returns the extensions of the format, the usual one first.
     const fn ends(self) -> &'static [&'static str] {
         match self {
             Self::Csv => &["csv"],
@@ -53,17 +53,17 @@ impl Format {
             Self::Svg => &["svg"],
             Self::Html => &["html", "htm"],
             Self::Rust => &["rs"],
-            // its header stands beside it
+            // the header of a C source is written beside it
             Self::C => &["c", "h"],
             Self::Ptx => &["ptx"],
-            // a header of C++ as well
+            // this code can also be included as a C++ header
             Self::Cuda => &["cuh", "cu", "hpp"],
             Self::Fmu => &["fmu"],
         }
     }
 }
 
-/// The format of a table that a name says, of those that can be written.
+/// Returns the format of a table from the name of its file; it must be one of `written`.
 pub(crate) fn format(path: &Path, written: &[Format]) -> Result<Format, Failure> {
     let end = end(path);
     if let Some(format) = written.iter().find(|format| format.ends().contains(&end.as_str())) {
@@ -78,7 +78,7 @@ pub(crate) fn format(path: &Path, written: &[Format]) -> Result<Format, Failure>
     Err(usage_error!("{has}; name a file that ends with {}", ends.join(" or ")))
 }
 
-/// Whether a name does not say another format than what is written. A name may say nothing.
+/// Checks that a name does not have the extension of another format. A name may have an unknown extension or none.
 pub(crate) fn check(path: &Path, written: Format) -> Result<(), Failure> {
     let end = end(path);
     let is_known = || OTHERS.into_iter().chain(Format::ALL.iter().flat_map(|format| format.ends().iter().copied()));
@@ -94,7 +94,7 @@ pub(crate) fn check(path: &Path, written: Format) -> Result<(), Failure> {
     ))
 }
 
-/// Extension of a file name in small letters; empty if the name has no extension.
+/// Returns the extension of a file name in small letters; empty if the name has no extension.
 fn end(path: &Path) -> String {
     path.extension().map_or_else(String::new, |end| end.to_string_lossy().to_lowercase())
 }

@@ -1,4 +1,4 @@
-//! Files that are read: regular ones, and streams that a shell has opened already.
+//! Opens files for reading: regular files, and streams that a shell has opened already.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -6,20 +6,20 @@ use std::path::Path;
 
 use rne_model::open_file;
 
-/// Whether a path is standard input, by the name that commands have for it or by that of the system.
+/// Returns whether a path is standard input: `-`, or the name that the system has for it.
 pub(crate) fn is_standard_input(path: &Path) -> bool {
     path == Path::new("-") || path == Path::new("/dev/stdin")
 }
 
-/// Whether a path is a stream that is open already: standard input, or what a shell puts in the place of `<(…)`.
-/// Nothing can stand beside it, such as a plan.
+/// Returns whether a path is a stream that is open already: standard input, or the path that a shell puts in place of
+/// `<(…)`. Other files, such as a plan, cannot be beside it.
 pub(crate) fn is_stream(path: &Path) -> bool {
     let folders = [Path::new("/dev/fd"), Path::new("/proc/self/fd")];
     is_standard_input(path) || path.parent().is_some_and(|folder| folders.contains(&folder))
 }
 
-/// The bytes of a file, and at most one more than `longest`, which tells that it is too long. Of what is no regular
-/// file only open streams are read: a pipe with a name would keep its reader waiting until somebody writes.
+/// Reads the bytes of a file, but at most one more than `longest`, which is enough to see that it is too long. Apart
+/// from regular files only open streams are read: a named pipe would block until somebody writes to it.
 pub(crate) fn read(path: &Path, longest: usize) -> io::Result<Vec<u8>> {
     let most = longest as u64 + 1;
     let mut bytes = Vec::new();
@@ -27,7 +27,7 @@ pub(crate) fn read(path: &Path, longest: usize) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// A file to be read, or an open stream.
+/// Opens a file for reading, or returns an open stream.
 pub(crate) fn open(path: &Path) -> io::Result<Box<dyn Read>> {
     if is_standard_input(path) {
         return Ok(Box::new(io::stdin().lock()));
@@ -36,7 +36,7 @@ pub(crate) fn open(path: &Path) -> io::Result<Box<dyn Read>> {
     Ok(Box::new(file?))
 }
 
-/// The name of a file in messages.
+/// Returns the name of a file in messages.
 pub(crate) fn name(path: &Path) -> String {
     if is_standard_input(path) { "<standard input>".to_owned() } else { path.display().to_string() }
 }

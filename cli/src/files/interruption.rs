@@ -1,7 +1,7 @@
-//! Ctrl-C, SIGTERM and SIGHUP: they end the program, and no temporary file is left behind.
+//! Handles Ctrl-C, SIGTERM and SIGHUP: they end the program, and its temporary files are removed first.
 //!
-//! A search may [`expect`] Ctrl-C instead: the first one ends the search, which keeps its best; the second one ends the
-//! program.
+//! A search may [`expect`] Ctrl-C instead: the first one ends the search, which keeps its best result; the second one
+//! ends the program.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -9,47 +9,47 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 use std::{fs, io, process};
 
-/// Whether the first Ctrl-C is a wish.
+/// Whether the first Ctrl-C only asks a search to stop.
 static EXPECTED: AtomicBool = AtomicBool::new(false);
 
-/// Set by Ctrl-C where it is expected.
+/// Set to true by the first Ctrl-C if it is expected.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// The temporary files and folders that are on the disk now.
+/// The temporary files and folders that exist now.
 static TEMPORARY: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-/// From now on the first Ctrl-C is a wish, if signals can be caught at all.
+/// From now on the first Ctrl-C only asks the command to stop, if the system allows to catch signals.
 pub(crate) fn expect() {
     EXPECTED.store(true, Ordering::Relaxed);
     catch();
 }
 
-/// Whether Ctrl-C was pressed.
+/// Returns whether the first Ctrl-C has asked the command to stop.
 pub(crate) fn is_wished() -> bool {
     INTERRUPTED.load(Ordering::Relaxed)
 }
 
-/// From now on a signal that ends the program removes the temporary files first. Called before the threads of the work
-/// start, for a thread of before would still be ended by the signal itself.
+/// From now on, a signal that ends the program removes the temporary files first. It must be called before other
+/// threads start, because a signal could end the program directly through a thread that was started before.
 pub(crate) fn catch() {
     static ONCE: Once = Once::new();
     ONCE.call_once(signals::catch);
 }
 
-/// The registered paths. While this is held no signal ends the program, so what is written or renamed meanwhile is
-/// done whole or not at all.
+/// Locks the list of temporary paths. While the lock is held no signal ends the program, so files that are written or
+/// renamed meanwhile are complete or unchanged.
 pub(crate) fn hold() -> MutexGuard<'static, BTreeSet<PathBuf>> {
-    // a panic elsewhere leaves the paths as they are
+    // after a panic in another thread the list is still valid
     TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A temporary file or folder that a signal removes. It outlives the file: a field after that of
-/// the file, or a variable before it.
+/// A temporary file or folder that a signal removes. It must be dropped after the file itself: as a later field, or as
+/// a variable declared before it.
 pub(crate) struct Registered(PathBuf);
 
 impl Registered {
-    /// Makes a temporary file or folder and registers its path in one step. Variables are dropped in reverse order, so
-    /// that of the file comes second.
+    /// Makes a temporary file or folder and registers its path in one step. In the returned pair the file comes second,
+    /// because variables are dropped in reverse order.
     pub(crate) fn new<T: AsRef<Path>>(make: impl FnOnce() -> io::Result<T>) -> io::Result<(Self, T)> {
         catch();
         let mut paths = hold();
@@ -66,10 +66,11 @@ impl Drop for Registered {
     }
 }
 
-/// Exit status of what Ctrl-C ended: 128 and the number of SIGINT.
+/// The exit status after Ctrl-C: 128 plus the number of SIGINT.
 const INTERRUPTED_STATUS: i32 = 130;
 
-/// Removes all temporary files and ends the program by `end`. The paths stay held until then: nothing new is written.
+/// Removes all temporary files and ends the program by `end`. The list stays locked until then, so that no new file
+/// appears.
 fn end_by(end: impl FnOnce()) -> ! {
     let paths = hold();
     for path in paths.iter() {
@@ -79,7 +80,7 @@ fn end_by(end: impl FnOnce()) -> ! {
     process::exit(INTERRUPTED_STATUS)
 }
 
-/// Handles Ctrl-C in a command that expects it; does nothing in others.
+/// Handles Ctrl-C in a command that expects it: the first one is recorded, the second one ends the program.
 fn expected_interrupt() {
     if EXPECTED.load(Ordering::Relaxed) && INTERRUPTED.swap(true, Ordering::Relaxed) {
         end_by(|| ());
@@ -94,16 +95,17 @@ mod signals {
 
     use super::{EXPECTED, Ordering, end_by, expected_interrupt};
 
-    /// Bytes: the thread does little.
+    /// Stack size of the thread that waits for signals, bytes; it does little.
     const STACK: usize = 256 << 10;
 
-    /// A thread waits for the signals; all threads that are started later block them, as this one does.
+    /// Starts a thread that waits for the signals. This thread and all threads started later block them.
     pub(super) fn catch() {
         let signals: SigSet = [Signal::SIGINT, Signal::SIGTERM, Signal::SIGHUP, Signal::SIGQUIT].into_iter().collect();
         if signals.thread_block().is_err() {
             return;
         }
-        // Beyond the limit of a file's size, writing then fails with an error, which is told, and ends nothing.
+        // Writing beyond the limit of file sizes then fails with an error, which is reported, and the signal does not
+        // end the program.
         let _ = SigSet::from(Signal::SIGXFSZ).thread_block();
         let waiting = move || {
             loop {
@@ -122,7 +124,7 @@ mod signals {
         if signal == Signal::SIGINT && EXPECTED.load(Ordering::Relaxed) {
             expected_interrupt();
         } else if !is_ignored(signal) {
-            // by the signal itself, so that a shell sees what has ended the program: 128 and the signal's number
+            // ended by the signal itself, so that a shell sees which signal it was (status 128 plus its number)
             end_by(|| {
                 let _ = SigSet::from(signal).thread_unblock();
                 let _ = raise(signal);
@@ -130,8 +132,8 @@ mod signals {
         }
     }
 
-    /// Whether whoever started the program wants the signal ignored, as `nohup` does. Linux hands an ignored signal to
-    /// a thread that waits for it; other systems do not.
+    /// Returns whether the parent process asked to ignore the signal, as `nohup` does. On Linux a waiting thread
+    /// receives also ignored signals; on other systems it does not.
     fn is_ignored(signal: Signal) -> bool {
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

@@ -1,4 +1,4 @@
-//! Files that are read and written.
+//! Reading and writing of files.
 
 pub(crate) mod chosen_arm;
 pub(crate) mod class_states;

@@ -1,5 +1,4 @@
-//! The logs of one arm. They are opened with the joints of its robot file, and a progress bar shows how far they were
-//! read.
+//! Opens the logs of one arm, with the joints of its robot file, and shows a progress bar while they are read.
 
 use std::fmt::Display;
 use std::path::PathBuf;
@@ -34,7 +33,7 @@ impl MotionLog {
         Self::opened(paths, robot, arguments, purpose).map_err(|error| failure(&error))
     }
 
-    /// Opens logs of a robot to compare them with a baseline, whose low-pass, Hz, they take.
+    /// Opens logs of a robot for comparison with a baseline; the low-pass filter gets the cut-off of the baseline, Hz.
     pub(crate) fn open_beside(
         paths: &[PathBuf],
         robot: &Robot,
@@ -42,7 +41,7 @@ impl MotionLog {
         cutoff: f64,
     ) -> Result<Self, Failure> {
         Self::opened(paths, robot, &arguments.with_cutoff(cutoff), Purpose::Watch).map_err(|error| match error {
-            // another low-pass is no remedy
+            // the cut-off is that of the baseline, so the help must not propose another one
             ArmLogError::Cutoff { longest, possible: Some(_), .. } => input_error!(
                 "{}: {}",
                 names(paths),
@@ -62,37 +61,37 @@ impl MotionLog {
         ArmLog::open_with_progress(paths, robot, &options, &mut reading::progress(false)).map(Self)
     }
 
-    /// The logs themselves.
+    /// Returns the underlying logs.
     pub(crate) fn log(&self) -> &ArmLog {
         &self.0
     }
 
-    /// The day of the first state, UTC, such as 2026-11-23; none where times do not count from 1970.
+    /// Returns the day of the first state, UTC, such as 2026-11-23; `None` if times do not count from 1970.
     pub(crate) fn day(&self) -> Option<String> {
         self.0.log().layout().utc(0.0).map(UtcTime::day)
     }
 
-    /// The logs through the filter with which a robot file is judged; runs that are too short for it are included.
+    /// Returns the logs with the filter for judging a robot file; runs that are too short for the filter are included.
     pub(crate) fn judged(&self) -> Result<Self, Failure> {
         self.0.judged(&mut reading::progress(false)).map(Self).map_err(|error| failure(&error))
     }
 
-    /// Hz: the low-pass of both sides of the equations of motion.
+    /// Returns the cut-off of the low-pass filter on both sides of the equations of motion, Hz.
     pub(crate) fn cutoff(&self) -> f64 {
         self.0.cutoff()
     }
 
-    /// Hz: the log's own filter.
+    /// Returns the cut-off of the filter with which the log itself is read, Hz.
     pub(crate) fn read_to(&self) -> f64 {
         self.0.read_to()
     }
 
-    /// Remarks on the log.
+    /// Returns the remarks on the log.
     pub(crate) fn remark(&self) -> String {
         self.remark_beside(&[])
     }
 
-    /// Remarks on the log that are not among others.
+    /// Returns the remarks on the log that are not among `others`.
     pub(crate) fn remark_beside(&self, others: &[ArmLogRemark]) -> String {
         let new = self.0.remarks().iter().filter(|remark| !others.contains(remark));
         let line = |remark: &ArmLogRemark| {
@@ -102,22 +101,22 @@ impl MotionLog {
         new.map(line).collect()
     }
 
-    /// Summary of the log, in words.
+    /// Returns a summary of the log in words.
     pub(crate) fn words(&self) -> String {
         self.0.summary()
     }
 
-    /// How many states there are.
+    /// Returns the number of states.
     pub(crate) fn states(&self) -> u64 {
         self.0.states()
     }
 
-    /// How many runs there are.
+    /// Returns the number of runs.
     pub(crate) fn runs(&self) -> u64 {
         self.0.runs()
     }
 
-    /// Hands the motions of a part to a function, up to the ends of runs.
+    /// Passes the motions of a part of the log to a function, one run after the other.
     pub(crate) fn pass<E: Display>(
         &self,
         part: Part,
@@ -134,7 +133,7 @@ fn stopped<E: Display>(error: PassError<E>) -> Failure {
     }
 }
 
-/// The failure for logs that cannot be watched; `words` name them.
+/// Makes the error for logs that cannot be watched; `words` name the logs.
 pub(crate) fn watch_failure(error: &WatchError, words: &str) -> Failure {
     match error {
         WatchError::Log(error) => failure(error),
@@ -143,7 +142,7 @@ pub(crate) fn watch_failure(error: &WatchError, words: &str) -> Failure {
     }
 }
 
-/// The failure for an error of the logs of an arm.
+/// Makes the error for logs of an arm that cannot be used.
 pub(crate) fn failure(error: &ArmLogError) -> Failure {
     let text = error_sentence(error);
     if error.is_of_request() { Failure::usage(text) } else { Failure::input(text) }

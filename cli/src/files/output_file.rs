@@ -1,4 +1,4 @@
-//! Files that are written: whole or not at all, and of several that belong together all or none.
+//! Writes files completely or not at all; of several files that belong together, all or none.
 
 use std::fmt::Write as _;
 use std::fs::{self, File};
@@ -14,22 +14,22 @@ use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TYPED};
 use crate::render::layout::shortened;
 
-/// The existing entry at the path of a file that will be written.
+/// What is at the path of a file that will be written.
 pub(crate) enum Existing {
     Nothing,
     Text(String),
-    /// A file that is no text, or longer than any that is generated.
+    /// A file that is not text, or is longer than any generated file.
     Other,
     Folder,
-    /// A device, a pipe, a socket.
+    /// A device, a pipe or a socket.
     Special,
     Unreadable(io::Error),
 }
 
-/// Far more than the code of the largest robot.
+/// Largest size of an existing text that is read, in bytes: far more than the code of the largest robot.
 const LONGEST: u64 = 64 << 20;
 
-/// Whether writing changed anything.
+/// Whether writing a file changed it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Written {
     Anew,
@@ -51,14 +51,14 @@ pub(crate) fn existing(path: &Path) -> Existing {
     }
 }
 
-/// The text of a file, which may grow while it is read.
+/// Reads the text of a file; the length is limited, because the file may grow meanwhile.
 fn text(file: File) -> io::Result<String> {
     let mut text = String::new();
     file.take(LONGEST).read_to_string(&mut text)?;
     Ok(text)
 }
 
-/// Whether two paths lead to one existing file.
+/// Returns whether two paths lead to the same existing file.
 pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
     match (fs::canonicalize(a), fs::canonicalize(b)) {
         (Ok(a), Ok(b)) => a == b,
@@ -66,7 +66,7 @@ pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// Whether two paths lead to one file, which may not be there yet.
+/// Returns whether two paths lead to the same file, which may not exist yet.
 pub(crate) fn will_be_same(a: &Path, b: &Path) -> bool {
     let folder = |path: &Path| {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -76,13 +76,13 @@ pub(crate) fn will_be_same(a: &Path, b: &Path) -> bool {
     a == b || is_same(a, b) || is_one_name()
 }
 
-/// Writes a file through a temporary one beside it, so that a reader finds the old text or the new one. A file that has
-/// the text already keeps its date, so nothing is built again.
+/// Writes a file through a temporary one beside it, so that a reader finds either the old text or the new one. A file
+/// that already has this text keeps its date, so that no build runs again.
 pub(crate) fn replace(path: &Path, text: &str) -> Result<Written, Failure> {
     Ok(replace_all(&[(path, text)])?[0])
 }
 
-/// Replaces files that belong together: none of them changes before all are written to temporary files beside them.
+/// Replaces files that belong together: none changes before all are written to temporary files beside them.
 pub(crate) fn replace_all<P: AsRef<Path>, T: AsRef<str>>(files: &[(P, T)]) -> Result<Vec<Written>, Failure> {
     let mut written = Vec::with_capacity(files.len());
     let mut replacements = Vec::new();
@@ -99,7 +99,7 @@ pub(crate) fn replace_all<P: AsRef<Path>, T: AsRef<str>>(files: &[(P, T)]) -> Re
     Ok(written)
 }
 
-/// Writes files that belong together; what was done, for the reader.
+/// Writes files that belong together; returns a message on what was done.
 pub(crate) fn write_all<P: AsRef<Path>, T: AsRef<str>>(files: &[(P, T)]) -> Result<String, Failure> {
     let written = replace_all(files)?;
     let mut remark = String::new();
@@ -113,20 +113,20 @@ pub(crate) fn write_all<P: AsRef<Path>, T: AsRef<str>>(files: &[(P, T)]) -> Resu
     Ok(remark)
 }
 
-/// A file beside the one whose place it takes when it is whole; it is gone when it is not kept.
+/// A temporary file beside the one that it will replace; it is removed if it is not kept.
 pub(crate) struct Replacement {
     file: NamedTempFile,
-    /// A signal removes the file too.
+    /// The registration by which a signal also removes the temporary file.
     registered: Registered,
     path: PathBuf,
-    /// Permissions of the existing file; `None` if there is no file.
+    /// The permissions of the existing file; `None` if there is none.
     permissions: Option<fs::Permissions>,
 }
 
 impl Replacement {
-    /// An empty one.
+    /// Makes an empty replacement for the file at a path.
     pub(crate) fn begin(path: &Path) -> io::Result<Self> {
-        // The file behind a symbolic link, not the link.
+        // If the path is a symbolic link, its target is replaced, not the link.
         let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let permissions = fs::metadata(&path).ok().map(|metadata| metadata.permissions());
         if permissions.as_ref().is_some_and(fs::Permissions::readonly) {
@@ -136,7 +136,7 @@ impl Replacement {
         Ok(Self { file, registered, path, permissions })
     }
 
-    /// One that has a text already.
+    /// Makes a replacement that already contains a text.
     fn with(path: &Path, text: &str) -> io::Result<Self> {
         let replacement = Self::begin(path)?;
         replacement.file.as_file().write_all(text.as_bytes())?;
@@ -144,17 +144,18 @@ impl Replacement {
         Ok(replacement)
     }
 
-    /// The file, to be written and read, from its beginning.
+    /// Returns the temporary file, open for writing and reading from its beginning.
     pub(crate) fn file(&self) -> io::Result<File> {
         self.file.reopen()
     }
 
-    /// Takes the place of the file.
+    /// Puts the temporary file in the place of the file.
     pub(crate) fn keep(self) -> io::Result<()> {
         Self::keep_all(vec![self]).map_err(|(_, error)| error)
     }
 
-    /// All take their places. Where one cannot, the files that were not there before are removed again.
+    /// Puts all temporary files in their places. If one of them fails, the files that did not exist before are removed
+    /// again.
     fn keep_all(replacements: Vec<Self>) -> Result<(), (PathBuf, io::Error)> {
         for Self { file, path, permissions, .. } in &replacements {
             let ready = match permissions {
@@ -164,7 +165,7 @@ impl Replacement {
             ready.and_then(|()| file.as_file().sync_all()).map_err(|error| (path.clone(), error))?;
         }
         let mut new: Vec<PathBuf> = Vec::new();
-        // forgotten when no signal waits any more
+        // dropped only after the lock is released
         let mut forgotten = Vec::new();
         let held = interruption::hold();
         let mut kept = Ok(());
@@ -189,14 +190,14 @@ impl Replacement {
     }
 }
 
-/// Writes a file that people may edit afterwards: one that is there stays, unless `force` says otherwise, and
-/// `sources`, which were read for it, stay in any case. Returns what was done, for the reader.
+/// Writes a file that people may edit afterwards. An existing file is not overwritten without `force`; the files
+/// `sources`, which were read for it, never are. Returns a message on what was done.
 pub(crate) fn write_new(path: &Path, text: &str, sources: &[&Path], force: bool) -> Result<String, Failure> {
     check_new(path, Some(text), sources, force)?;
     write_all(&[(path, text)])
 }
 
-/// Writes bytes in place of a file that [`check_new`] allows; what was done, for the reader.
+/// Writes bytes to a file for which [`check_new`] was successful; returns a message on what was done.
 pub(crate) fn write_bytes(path: &Path, bytes: &[u8]) -> Result<String, Failure> {
     let written = Replacement::begin(path).and_then(|replacement| {
         replacement.file()?.write_all(bytes)?;
@@ -218,8 +219,8 @@ pub(crate) struct Output {
 }
 
 impl Output {
-    /// Writes a text, which was made of `source`, to the file or for standard output. A file that exists is not
-    /// changed, as [`write_new`] has it.
+    /// Writes a text, which was made from the file `source`, to the output file or to standard output. An existing file
+    /// is not overwritten without `--force`, as in [`write_new`].
     pub(crate) fn deliver(
         &self,
         format: Format,
@@ -237,17 +238,18 @@ impl Output {
     }
 }
 
-/// Whether a path names standard output.
+/// Returns whether a path means standard output.
 pub(crate) fn is_standard_output(path: &Path) -> bool {
     path == Path::new("-") || path == Path::new("/dev/stdout")
 }
 
-/// Whether the file of a picture is a file: standard output has the account.
+/// Refuses standard output as the file of a picture, because the report is printed there.
 pub(crate) fn check_picture(path: Option<&Path>) -> Result<(), Failure> {
     check_file(path, "--plot", "picture.svg")
 }
 
-/// Whether what an option names is a file, such as the example: standard output has the account.
+/// Refuses standard output as the file of an option, because the report is printed there; `example` is a name for the
+/// message.
 pub(crate) fn check_file(path: Option<&Path>, option: &str, example: &str) -> Result<(), Failure> {
     if path.is_some_and(is_standard_output) {
         return Err(usage_error!("{TYPED}{option}{TYPED:#} needs the name of a file, such as {example}"));
@@ -255,9 +257,10 @@ pub(crate) fn check_file(path: Option<&Path>, option: &str, example: &str) -> Re
     Ok(())
 }
 
-/// Whether a file may be written: none stands there, or one with this text, or `force` says so, and none of `sources`.
+/// Checks that a file may be written: it does not exist, already has this text, or `force` allows to overwrite it; and
+/// it is none of `sources`.
 pub(crate) fn check_new(path: &Path, text: Option<&str>, sources: &[&Path], force: bool) -> Result<(), Failure> {
-    // before the work starts its threads
+    // signals must be caught before the command starts threads
     interruption::catch();
     let shown = path.display();
     if sources.iter().any(|source| is_same(path, source)) {
@@ -276,8 +279,9 @@ pub(crate) fn check_new(path: &Path, text: Option<&str>, sources: &[&Path], forc
     Ok(())
 }
 
-/// Whether a file can be written, before there is anything to write: where it cannot, nobody should wait for the work
-/// that makes it. A text of the same kind, that `begins` as the new one will, may be the same: [`write_new`] knows.
+/// Checks that a file can be written before the work whose result it gets, so that nobody waits in vain. An existing
+/// text that begins as the new one will is accepted, because it may turn out to be the same; [`write_new`] compares
+/// them.
 pub(crate) fn check_place(
     path: &Path,
     (format, begins): (Format, &str),
@@ -292,20 +296,20 @@ pub(crate) fn check_place(
     check_name(path, format)
 }
 
-/// Whether a new file of a format can be written, before there is anything to write.
+/// Checks that a new file of a format can be written, before its contents are computed.
 pub(crate) fn check_new_place(path: &Path, format: Format, sources: &[&Path], force: bool) -> Result<(), Failure> {
     check_new(path, None, sources, force)?;
     check_name(path, format)
 }
 
-/// Whether a file can have its name and stand in its folder.
+/// Checks that the name of a file fits its format, and that its folder accepts new files.
 fn check_name(path: &Path, format: Format) -> Result<(), Failure> {
     file_name::check(path, format)?;
-    // a file beside it, which is gone at once
+    // creates a temporary file beside it and removes it at once
     Replacement::begin(path).map(drop).map_err(|error| unwritable(path, &error))
 }
 
-/// Why what is at the place of a file cannot be read.
+/// Makes the error for an existing file that cannot be read.
 pub(crate) fn unreadable(path: &Path, error: &io::Error) -> Failure {
     if error.kind() == ErrorKind::InvalidFilename {
         return unwritable(path, error);
@@ -313,8 +317,8 @@ pub(crate) fn unreadable(path: &Path, error: &io::Error) -> Failure {
     input_error!("{} cannot be read: {error}", path.display())
 }
 
-/// Error for a file that cannot be written: the system does not allow its name, its folder is missing, or the system's
-/// own message. It never names the temporary file.
+/// Makes the error for a file that cannot be written: the system does not allow its name, its folder is missing, or
+/// else the message of the system. It never contains the name of the temporary file.
 pub(crate) fn unwritable(path: &Path, error: &io::Error) -> Failure {
     let shown = path.display();
     if error.kind() == ErrorKind::InvalidFilename {
@@ -329,9 +333,9 @@ pub(crate) fn unwritable(path: &Path, error: &io::Error) -> Failure {
         Some(folder) => {
             input_error!("{shown} cannot be written: there is no folder {}; make it first", folder.display())
         }
-        // the message of a temporary file has its name
+        // a message of the system with the path of the temporary file is replaced
         None if error.get_ref().is_some_and(|inner| inner.to_string().contains(" at path ")) => {
-            // the folder exists, but refuses new files, as /proc does
+            // for example /proc, a folder that exists but refuses new files
             let why = match error.kind() {
                 ErrorKind::NotFound => "the system does not allow a new file in this folder".to_owned(),
                 kind => kind.to_string(),
@@ -342,9 +346,9 @@ pub(crate) fn unwritable(path: &Path, error: &io::Error) -> Failure {
     }
 }
 
-/// A temporary file in the same folder, so that renaming it is one step. With the permissions that any new file has.
+/// Makes a temporary file in the same folder, so that renaming it is one step. It has the permissions of any new file.
 fn beside(path: &Path) -> io::Result<NamedTempFile> {
-    // of a long name the beginning, for the name of the temporary file is longer
+    // a long name is shortened, because the name of the temporary file is longer
     const LONGEST_NAME: usize = 40;
     let name =
         path.file_name().ok_or_else(|| io::Error::new(ErrorKind::InvalidInput, "this is not a name of a file"))?;

@@ -1,4 +1,4 @@
-//! A folder of files that is written whole or not at all.
+//! Writes a folder of files completely or not at all.
 
 use std::fs;
 use std::io::{self, ErrorKind};
@@ -9,7 +9,7 @@ use crate::files::output_file::{is_standard_output, unreadable, unwritable};
 use crate::outcome::Failure;
 use crate::palette::TYPED;
 
-/// Checks that there is nothing at the path of a new folder for `what`.
+/// Checks that nothing exists at the path of a new folder; `what` says in words what it is for.
 pub(crate) fn is_free(folder: &Path, what: &str) -> Result<(), Failure> {
     let shown = folder.display();
     if is_standard_output(folder) {
@@ -31,7 +31,7 @@ pub(crate) fn is_free(folder: &Path, what: &str) -> Result<(), Failure> {
     }
 }
 
-/// Makes a folder and the folders above it; a folder that exists is not changed.
+/// Makes a folder and the folders above it; an existing folder is not changed.
 pub(crate) fn make(folder: &Path) -> Result<(), Failure> {
     let shown = folder.display();
     fs::create_dir_all(folder).map_err(|error| match error.kind() {
@@ -39,7 +39,7 @@ pub(crate) fn make(folder: &Path) -> Result<(), Failure> {
             let file = folder.ancestors().find(|part| part.exists()).unwrap_or(folder);
             usage_error!("{} is not a folder and is not changed; name another folder", file.display())
         }
-        // all folders above are made, but this one refuses new entries, as /proc does
+        // all folders above exist, but this one refuses new entries, as /proc does
         ErrorKind::NotFound => {
             input_error!("{shown} cannot be written: the system does not allow a new file in this folder")
         }
@@ -50,8 +50,8 @@ pub(crate) fn make(folder: &Path) -> Result<(), Failure> {
 /// A path that could not be written, and the reason.
 type Unwritable = (PathBuf, io::Error);
 
-/// Writes files, by their paths in a folder that is empty or not there yet. They are written into a temporary folder
-/// on the same disk, and moved when all are whole.
+/// Writes files, given by their paths in a folder that is empty or does not exist. They are written into a temporary
+/// folder on the same disk, and moved when all are complete.
 pub(crate) fn write(folder: &Path, files: &[(PathBuf, String)]) -> Result<(), Unwritable> {
     let (root, rest) = first_missing(folder);
     let of_folder = |error| (folder.to_owned(), error);
@@ -70,7 +70,7 @@ pub(crate) fn write(folder: &Path, files: &[(PathBuf, String)]) -> Result<(), Un
     let mut moved: Vec<PathBuf> = Vec::new();
     for entry in entries.map_err(of_folder)? {
         let place = root.join(entry.file_name());
-        // what somebody else has put there meanwhile stays
+        // files that somebody else has put there meanwhile are not overwritten
         let is_moved = match fs::symlink_metadata(&place) {
             Ok(_) => Err(io::Error::from(ErrorKind::AlreadyExists)),
             Err(_) => fs::rename(entry.path(), &place),
@@ -86,7 +86,7 @@ pub(crate) fn write(folder: &Path, files: &[(PathBuf, String)]) -> Result<(), Un
     Ok(())
 }
 
-/// Splits a folder's path into the part that exists and the rest.
+/// Splits the path of a folder into the part that exists and the rest.
 fn first_missing(folder: &Path) -> (PathBuf, PathBuf) {
     let root = folder.ancestors().find(|part| part.is_dir()).unwrap_or(Path::new(""));
     let rest = folder.strip_prefix(root).unwrap_or(folder);
@@ -121,7 +121,7 @@ mod tests {
         assert_eq!((names(empty.path()), names(&folder)), (vec!["deep".to_owned()], vec![".b".into(), "a".into()]));
         assert_eq!(fs::read_to_string(folder.join(".b/c")).expect("a file"), ".b/c");
 
-        // into one that is there and empty
+        // writing into an existing, empty folder
         let there = empty.path().join("there");
         fs::create_dir(&there).expect("a folder");
         write(&there, &files(&["a", ".b/c"])).expect("written");
@@ -131,12 +131,12 @@ mod tests {
     #[test]
     fn what_cannot_be_whole_leaves_nothing() {
         let empty = tempfile::tempdir().expect("a folder");
-        // a file of that name is a folder too: the second one cannot be written
+        // `a` would have to be a file and a folder, so the second file cannot be written
         let (path, _) = write(&empty.path().join("deep/er"), &files(&["a", "a/b"])).expect_err("no place");
         assert_eq!(path, empty.path().join("deep/er/a/b"));
         assert_eq!(names(empty.path()), Vec::<String>::new());
 
-        // what is there already is no place for a file
+        // an existing folder `b` is no place for a file `b`
         fs::create_dir(empty.path().join("b")).expect("a folder");
         write(empty.path(), &files(&["a", "b", "c"])).expect_err("no place");
         assert_eq!(names(empty.path()), ["b"]);

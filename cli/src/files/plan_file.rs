@@ -1,4 +1,4 @@
-//! Plan files beside robot files.
+//! Reads, checks and uses plan files beside robot files.
 
 use std::cell::OnceCell;
 use std::io::ErrorKind;
@@ -17,29 +17,30 @@ use crate::files::input_file::is_stream;
 use crate::files::output_file::{self, Existing, Replacement, unwritable};
 use crate::outcome::Failure;
 
-/// The robot files among paths: a plan goes with its robot, and a pattern such as `robots/*.yaml` means both.
+/// Returns the robot files among paths. Plans are skipped, because each is read with its robot, and a pattern such as
+/// `robots/*.yaml` includes both.
 pub(crate) fn robots(paths: &[PathBuf]) -> impl Iterator<Item = &PathBuf> {
     let all_are_plans = paths.iter().all(|path| robot_of(path).is_some());
     paths.iter().filter(move |path| all_are_plans || robot_of(path).is_none())
 }
 
-/// A plan file with what messages need of it.
+/// A plan file, with its name and text for messages.
 #[derive(Clone, Debug)]
 pub(crate) struct Read {
-    /// Name of the file in messages.
+    /// The name of the file in messages.
     pub(crate) name: String,
     pub(crate) text: String,
     pub(crate) plan: PlanFile,
 }
 
 impl Read {
-    /// A plan as it would be read after it was written.
+    /// Makes a plan as reading its written file would give it.
     pub(crate) fn of(path: &Path, plan: &PlanFile) -> Self {
         Self { name: path.display().to_string(), text: plan.to_yaml(), plan: plan.clone() }
     }
 }
 
-/// The plan file of a robot file, if there is one.
+/// Reads the plan file of a robot file, if there is one.
 pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<Read>, Failure> {
     if is_stream(robot_file) {
         return Ok(None);
@@ -62,19 +63,19 @@ pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<Read>, Fai
     Ok(Some(Read { name, text, plan }))
 }
 
-/// Plan from which a search starts.
+/// The plan from which a search starts.
 #[derive(Debug)]
 pub(crate) struct Known {
-    /// The text of the plan file, where there is one.
+    /// The text of the plan file; `None` if there is no such file.
     pub(crate) text: Option<String>,
-    /// Part of it that is proved.
+    /// The part of the plan that is proved.
     pub(crate) plan: Option<PlanFile>,
-    /// Functions whose graphs are not proved, where that is no error.
+    /// Functions whose graphs are not proved, if this is not an error.
     pub(crate) left_out: Vec<Function>,
 }
 
-/// The plan from which a search starts. The compiler proves that its programs compute the functions of the robot. What
-/// it cannot prove is an error, but a `fresh` search starts without it.
+/// Reads the plan from which a search starts. The compiler proves that its programs compute the functions of the robot.
+/// A program that it cannot prove is an error, except for a `fresh` search, which starts without it.
 pub(crate) fn known(robot_file: &Path, robot: &Robot, fresh: bool) -> Result<Known, Failure> {
     if fresh {
         let text = match output_file::existing(&plan_of(robot_file)) {
@@ -91,8 +92,9 @@ pub(crate) fn known(robot_file: &Path, robot: &Robot, fresh: bool) -> Result<Kno
     Ok(Known { text: Some(read.text), plan: Some(read.plan), left_out: Vec::new() })
 }
 
-/// The plan that a fresh search starts from: what can be proved of one that fits, and the functions whose graphs
-/// cannot. Nothing of one that is stale or broken. What is no plan at all stays.
+/// Reads the plan from which a `fresh` search starts: the part of a fitting plan that can be proved, and the functions
+/// whose graphs cannot. A plan that is out of date or broken is ignored. A file that is no plan is an error, so that it
+/// is not overwritten.
 fn to_replace(robot_file: &Path, robot: &Robot) -> Result<(Option<PlanFile>, Vec<Function>), Failure> {
     let path = plan_of(robot_file);
     match output_file::existing(&path) {
@@ -103,7 +105,7 @@ fn to_replace(robot_file: &Path, robot: &Robot) -> Result<(Option<PlanFile>, Vec
             };
             let compiles = |(function, plans): &(Function, PlanSet)| compiled(robot, *function, plans.clone()).is_ok();
             let mut described = plan.described(robot).into_iter();
-            // a plan that cannot be proved is as good as none
+            // if the torques of a plan cannot be proved, nothing of it is used
             if !described.next().is_some_and(|torques| compiles(&torques)) {
                 return Ok((None, plan.rewritten.into_keys().collect()));
             }
@@ -118,7 +120,7 @@ fn to_replace(robot_file: &Path, robot: &Robot) -> Result<(Option<PlanFile>, Vec
     }
 }
 
-/// Whether a plan can be written there: better known before a search than after it.
+/// Checks that a plan can be written, before the search and not after it.
 pub(crate) fn is_writable(path: &Path) -> Result<(), Failure> {
     if path.is_dir() {
         return Err(input_error!("{} is a folder; the plan cannot be written", path.display()));
@@ -130,12 +132,12 @@ fn compiled(robot: &Robot, function: Function, plans: PlanSet) -> Result<Program
     codegen::Compiler::new(robot).with_plans(plans).compile(function, Form::Reduced)
 }
 
-/// An error of the compiler at its place in the plan file, with what helps.
+/// Makes an error of the compiler at its place in the plan file, with a remedy.
 fn located(name: &str, text: &str, described: (Function, &PlanSet), error: &CompileError) -> Failure {
     Failure::plan(PlanFile::located(name, text, described, error), Remedy::SearchAfresh)
 }
 
-/// Whether all programs that a plan file describes can be proved; an error is at its place in the plan file.
+/// Checks that all programs that a plan file describes can be proved; an error is at its place in the plan file.
 pub(crate) fn is_proved(robot: &Robot, Read { name, text, plan }: &Read) -> Result<(), Failure> {
     plan.described(robot).into_iter().try_for_each(|(function, plans)| {
         let program = compiled(robot, function, plans.clone());
@@ -143,8 +145,8 @@ pub(crate) fn is_proved(robot: &Robot, Read { name, text, plan }: &Read) -> Resu
     })
 }
 
-/// Compiles the programs that a plan file describes, and proves them; each function, whether it was
-/// rewritten, and its operations. What a build would refuse is an error at its place in the plan file.
+/// Compiles and proves the programs that a plan file describes. Returns each function, whether it is rewritten, and its
+/// number of operations. A program that a build would refuse is an error at its place in the plan file.
 pub(crate) fn verify(robot: &Robot, Read { name, text, plan }: &Read) -> Result<Vec<(Function, bool, usize)>, Failure> {
     let count = |(function, plans): (Function, PlanSet)| {
         let program = compiled(robot, function, plans.clone())
@@ -155,7 +157,7 @@ pub(crate) fn verify(robot: &Robot, Read { name, text, plan }: &Read) -> Result<
     plan.described(robot).into_iter().map(count).collect()
 }
 
-/// An arm whose functions run over many states, by its plan file if it has one.
+/// Makes an arm whose functions run over many states, compiled with its plan file if it has one.
 pub(crate) fn compiled_arm(file: &Path, robot: &Robot) -> Result<CompiledArm, Failure> {
     let arm = CompiledArm::from_robot(robot);
     Ok(match read(file, robot)? {
@@ -164,14 +166,14 @@ pub(crate) fn compiled_arm(file: &Path, robot: &Robot) -> Result<CompiledArm, Fa
     })
 }
 
-/// Compiles the functions of one robot, by its plan file if it has one, which is read when it is needed.
+/// Compiles the functions of one robot, with its plan file if it has one, which is read when it is first needed.
 pub(crate) struct Compiler<'a> {
     robot: &'a Robot,
     file: &'a Path,
     without: &'a [Trick],
     target: Target,
     planned: OnceCell<codegen::Compiler<'a>>,
-    /// The plan file, for errors in it.
+    /// The plan file, for errors that are located in it.
     read: OnceCell<Read>,
 }
 
@@ -180,29 +182,29 @@ impl<'a> Compiler<'a> {
         Self { robot, file, without: &[], target: Target::Latency, planned: OnceCell::new(), read: OnceCell::new() }
     }
 
-    /// For a robot that is part of this program, with the text of its plan.
+    /// Makes a compiler for a robot that is part of this program, with the text of its plan.
     pub(crate) fn built_in(file: &'a Path, robot: &'a Robot, plan: &str) -> Result<Self, Failure> {
         let name = plan_of(file).display().to_string();
         let plan = PlanFile::read(&name, plan, robot).map_err(|report| Failure::plan(report, Remedy::SearchAfresh))?;
         Ok(Self { planned: OnceCell::from(codegen::Compiler::new(robot).with_plans(plan)), ..Self::new(file, robot) })
     }
 
-    /// Without the plan file, which is for the robot of the file: for a robot with other numbers.
+    /// Makes a compiler that ignores the plan file, for a robot whose numbers differ from those of its file.
     pub(crate) fn without_file(file: &'a Path, robot: &'a Robot) -> Self {
         Self { planned: OnceCell::from(codegen::Compiler::new(robot)), ..Self::new(file, robot) }
     }
 
-    /// Without some tricks of the reduced form; the other choices of its plan stay.
+    /// Omits some tricks of the reduced form; the other choices of its plan stay.
     pub(crate) fn without(self, tricks: &'a [Trick]) -> Self {
         Self { without: tricks, ..self }
     }
 
-    /// With the programs arranged for another target.
+    /// Arranges the programs for another target.
     pub(crate) fn for_target(self, target: Target) -> Self {
         Self { target, ..self }
     }
 
-    /// The choices of the plan file, or those that a build makes by itself.
+    /// Returns the choices of the plan file, or those that a build makes by itself.
     pub(crate) fn plans(&self) -> Result<&PlanSet, Failure> {
         Ok(self.planned()?.plans())
     }
@@ -223,19 +225,19 @@ impl<'a> Compiler<'a> {
 
     pub(crate) fn compile(&self, function: Function, form: Form) -> Result<Program, Failure> {
         let program = self.compiled(function, form)?.map_err(|error| self.failure(function, form, &error));
-        // where the mass matrix is badly conditioned, frames near the arm lose digits, too; that of a base without mass
-        // is always singular
+        // measures lost digits, because with a badly conditioned mass matrix even code with frames near the arm loses
+        // some; the matrix of a floating base without mass is always singular
         let is_measured = function.inverts_mass() && !function.is_of_floating_base();
         program.map(|program| if is_measured { codegen::measured(self.robot, program) } else { program })
     }
 
-    /// How the constants of a program in the reduced form are computed from the numbers of the robot file.
+    /// Returns how the constants of a program in the reduced form are computed from the numbers of the robot file.
     pub(crate) fn derivation(&self, program: &Program) -> Result<Option<codegen::Derivation>, Failure> {
         let derivation = self.planned()?.derivation(program);
         derivation.map_err(|error| self.failure(program.function, program.form, &error))
     }
 
-    /// An error of the compiler, at its place in the plan file where that is the cause.
+    /// Makes an error of the compiler; at its place in the plan file, if the plan is the cause.
     pub(crate) fn failure(&self, function: Function, form: Form, error: &CompileError) -> Failure {
         match (form, self.read.get(), self.planned.get()) {
             (Form::Reduced, Some(read), Some(compiler))
@@ -248,7 +250,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// The program, or the error of its compilation.
+    /// Compiles a function; returns the program, or the error of its compilation.
     pub(crate) fn compiled(&self, function: Function, form: Form) -> Result<Result<Program, CompileError>, Failure> {
         let bar = self.sign_of_life(format!("{}: {function}, {form}", self.robot.name));
         let compiled = match form {
@@ -259,7 +261,7 @@ impl<'a> Compiler<'a> {
         Ok(compiled)
     }
 
-    /// On a terminal, what an arm that is not done at once is at.
+    /// Shows on a terminal which function is being compiled, for arms with which this takes long.
     fn sign_of_life(&self, what: String) -> ProgressBar {
         const SOON_DONE: usize = 8;
         if self.robot.dof() <= SOON_DONE {

@@ -1,16 +1,17 @@
-//! How far a log was read, as a bar.
+//! Shows how much of a log has been read, as a progress bar.
 
 use std::io::{self, IsTerminal as _};
 
 use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 use rne_logs::{Log, LogError, Survey};
 
-/// Surveys a log below a bar.
+/// Surveys a log and shows a progress bar.
 pub(crate) fn survey(log: &Log, is_result_shown: bool) -> Result<Survey, LogError> {
     log.survey(progress(is_result_shown))
 }
 
-/// A bar on a terminal, unless that shows the result meanwhile. It is cleared when it is dropped.
+/// Makes a progress bar on a terminal, unless the result is shown there at the same time. It is cleared when it is
+/// dropped.
 pub(crate) fn bar(word: &str, is_result_shown: bool) -> ProgressBar {
     if is_result_shown && io::stdout().is_terminal() {
         return ProgressBar::hidden();
@@ -22,13 +23,14 @@ pub(crate) fn bar(word: &str, is_result_shown: bool) -> ProgressBar {
     }
 }
 
-/// Shows shares of a log, 0 to 1, in a bar, until the function is dropped.
+/// Returns a function that shows the part of a log that was read, 0 to 1, in a progress bar, until the function is
+/// dropped.
 pub(crate) fn progress(is_result_shown: bool) -> impl FnMut(f64) {
     let bar = bar("read", is_result_shown);
     move |share| show(&bar, share)
 }
 
-/// Shows a share of 0 to 1.
+/// Sets a progress bar to a part from 0 to 1.
 pub(crate) fn show(bar: &ProgressBar, share: f64) {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of 0 to 1")]
     let thousandths = (share.clamp(0.0, 1.0) * 1000.0) as u64;

@@ -1,4 +1,4 @@
-//! Reading robot files, and what to say when that fails.
+//! Reads robot files, and makes messages for files that cannot be read.
 
 use std::path::Path;
 
@@ -11,36 +11,36 @@ use crate::palette::{TITLE, TYPED};
 use crate::remedy::in_options;
 use crate::terminal::{note_of_file, remark};
 
-/// The robots that a command takes.
+/// The kinds of robots that a command accepts.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Shape {
-    /// Serial arms. A tree is refused at its line.
+    /// Serial arms. A tree is refused at its line of the file.
     Chain,
-    /// Serial arms and trees. Couplings are refused at their line.
+    /// Serial arms and trees. Couplings are refused at their line of the file.
     #[allow(dead_code)] // TODO
     Tree,
-    /// Serial arms and trees, whose joints may follow others. Closed loops are refused at their line.
+    /// Serial arms and trees, whose joints may follow others. Closed loops are refused at their line of the file.
     Coupled,
     /// Every robot that a file can describe.
     Closed,
 }
 
-/// A valid robot with its lints. The path `-` is standard input.
+/// Reads a valid robot with its warnings and notes. The path `-` is standard input.
 pub(crate) fn read(path: &Path, shape: Shape) -> Result<Checked, Failure> {
     read_with(path, &[], Frames::Dropped, shape)
 }
 
-/// The links of a URDF as named frames. A robot file has the frames of its list in any case.
+/// Whether the links of a URDF become named frames. A robot file always has the frames of its own list.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Frames {
-    /// For `--frame`.
+    /// They become named frames, for `--frame`.
     Kept,
     Dropped,
-    /// As before; and the robot is whole where the file does not say which arm is meant.
+    /// They do not; and the whole robot is read if the file does not say which arm is meant.
     DroppedOfAll,
 }
 
-/// Reads a robot file with other values of its parameters.
+/// Reads a robot file, with other values of its parameters.
 pub(crate) fn read_with(
     path: &Path,
     settings: &[(&str, f64)],
@@ -50,7 +50,7 @@ pub(crate) fn read_with(
     Ok(read_by(path, (settings, &[]), frames, shape)?.0)
 }
 
-/// A valid robot some of whose parameters stay free until run time, and the bytes of its file.
+/// Reads a valid robot, some of whose parameters stay free until run time, and the bytes of its file.
 pub(crate) fn read_with_run_time(
     path: &Path,
     names: &[&str],
@@ -60,7 +60,7 @@ pub(crate) fn read_with_run_time(
     read_by(path, (&[], names), frames, shape)
 }
 
-/// Other values of parameters, and the parameters that stay free until run time.
+/// Other values of parameters; and the parameters that stay free until run time.
 type Parameters<'a> = (&'a [(&'a str, f64)], &'a [&'a str]);
 
 fn read_by(
@@ -71,14 +71,14 @@ fn read_by(
 ) -> Result<(Checked, Vec<u8>), Failure> {
     let (name, bytes) = yaml(path, frames)?;
     let checked = checked(&name, &bytes, parameters, shape)?;
-    // of all robots, as `rne check` wants them, it prints every lint
+    // only `rne check` reads this way, and it prints every lint itself
     if frames != Frames::DroppedOfAll {
         note_warnings(path, &checked.lints, parameters.0);
     }
     Ok((checked, bytes))
 }
 
-/// A robot file, or the one that an import makes, with the name that messages call it.
+/// Reads a robot file, or imports a URDF as one; returns its name in messages and its bytes.
 fn yaml(path: &Path, frames: Frames) -> Result<(String, Vec<u8>), Failure> {
     Ok(match open(path)? {
         Opened::RobotFile(name, bytes) => (name, bytes),
@@ -86,8 +86,8 @@ fn yaml(path: &Path, frames: Frames) -> Result<(String, Vec<u8>), Failure> {
     })
 }
 
-/// A valid robot whose parameters stay free until run time, but for those that cannot, such as angles, and those that
-/// are defined through others that are free.
+/// Reads a valid robot whose parameters stay free until run time, except for those that cannot, such as angles, and
+/// those that are defined through other free parameters.
 pub(crate) fn read_with_free_parameters(path: &Path, shape: Shape) -> Result<Checked, Failure> {
     let (name, bytes) = yaml(path, Frames::Dropped)?;
     let constant = checked(&name, &bytes, (&[], &[]), shape)?;
@@ -103,7 +103,7 @@ pub(crate) fn read_with_free_parameters(path: &Path, shape: Shape) -> Result<Che
     checked(&name, &bytes, (&[], &free), shape)
 }
 
-/// A robot by what its file is, with the name that messages call it.
+/// A description of a robot by its kind, with its name in messages.
 enum Opened {
     RobotFile(String, Vec<u8>),
     Urdf(String, String),
@@ -117,7 +117,7 @@ fn open(path: &Path) -> Result<Opened, Failure> {
         Ok(Description::RobotFile(bytes)) => Ok(Opened::RobotFile(input_file::name(path), bytes)),
         Ok(Description::Urdf(bytes)) => match String::from_utf8(bytes) {
             Ok(text) => Ok(Opened::Urdf(input_file::name(path), text)),
-            // which is refused as a robot file is
+            // bytes that are not UTF-8 are refused later, by the reader of robot files
             Err(error) => Ok(Opened::RobotFile(input_file::name(path), error.into_bytes())),
         },
         Ok(_) => Err(input_error!("{} is not a robot file", path.display())),
@@ -125,8 +125,8 @@ fn open(path: &Path) -> Result<Opened, Failure> {
     }
 }
 
-/// The robot file of the one arm of a URDF, as `rne import` makes it. A note names the ends of the arm, because the
-/// user may mean another arm.
+/// Imports the only arm of a URDF as `rne import` does. A note names the ends of the arm, because the user may mean
+/// another one.
 fn imported(name: &str, text: &str, frames: Frames) -> Result<String, Failure> {
     let options = Options { frames: frames == Frames::Kept, ..Options::default() };
     let mut imported = rne_convert::import(name, text, &options);
@@ -144,7 +144,7 @@ fn imported(name: &str, text: &str, frames: Frames) -> Result<String, Failure> {
         imported = rne_convert::import(name, text, &options);
     }
     let imported = imported.map_err(|report| {
-        // the options that the help names are those of `rne import`
+        // the help names options of `rne import`, so it must say so
         let mut failure = Failure::from(&report);
         failure.text = format!(
             "{}\n\n{name} is a URDF or an MJCF file. `{TYPED}rne import {name} -o FILE.yaml{TYPED:#}` and its options \
@@ -167,7 +167,7 @@ fn imported(name: &str, text: &str, frames: Frames) -> Result<String, Failure> {
     Ok(imported.text.clone())
 }
 
-/// A line for each remark of an import.
+/// Writes a line for each remark of an import.
 pub(crate) fn notes(remarks: &[Remark]) -> String {
     let line = |remark: &Remark| {
         let word = if remark.is_warning { "warning" } else { "note" };
@@ -186,7 +186,7 @@ fn checked(name: &str, bytes: &[u8], (settings, run_time): Parameters<'_>, shape
     let reader = plain().run_time(run_time);
     let reader = settings.iter().fold(reader, |reader, &(parameter, value)| reader.setting(parameter, value));
     reader.read(bytes).map_err(|report| {
-        // the file is at fault, unless it is in order by itself and has no such parameter
+        // the command line is at fault if the file alone is valid and has no such parameter, else the file is
         let names: Vec<&str> = settings.iter().map(|(parameter, _)| *parameter).chain(run_time.to_vec()).collect();
         let alone = if names.is_empty() { None } else { plain().read(bytes).ok() };
         let has = |alone: &Checked, name: &str| alone.robot.parameters.iter().any(|(known, _)| known == name);
@@ -197,7 +197,7 @@ fn checked(name: &str, bytes: &[u8], (settings, run_time): Parameters<'_>, shape
     })
 }
 
-/// Why there is no robot file.
+/// Makes the error for a description that cannot be opened.
 pub(crate) fn not_opened(error: &OpenError) -> Failure {
     match error {
         OpenError::Plan { .. } => Failure::usage(error),
@@ -208,7 +208,7 @@ pub(crate) fn not_opened(error: &OpenError) -> Failure {
     }
 }
 
-/// Says that a robot file has warnings, which change what every command computes; commands do their work all the same.
+/// Notes that a robot file has warnings, because they concern the results of every command.
 pub(crate) fn note_warnings(path: &Path, lints: &Report, settings: &[(&str, f64)]) {
     let count = lints.warnings().count();
     let Some(first) = lints.warnings().next() else { return };
@@ -220,7 +220,7 @@ pub(crate) fn note_warnings(path: &Path, lints: &Report, settings: &[(&str, f64)
             "{TITLE}note{TITLE:#}: {warnings} in the robot file; {TYPED}rne check {path}{TYPED:#} {shows}\n"
         ));
     } else {
-        // of other values of parameters the file alone says nothing
+        // the warnings are those with these values of parameters, which `rne check` would not show
         let settings: Vec<String> = settings.iter().map(|(name, value)| format!("{name} = {value}")).collect();
         let (settings, message) = (settings.join(", "), &first.message);
         let first = if count == 1 { "" } else { "; the first" };
@@ -228,13 +228,13 @@ pub(crate) fn note_warnings(path: &Path, lints: &Report, settings: &[(&str, f64)
     }
 }
 
-/// A valid robot. `rne check` prints its lints; all other commands count its warnings.
+/// Reads a valid robot. `rne check` prints its warnings and notes; all other commands only count the warnings.
 pub(crate) fn robot(path: &Path, shape: Shape) -> Result<Robot, Failure> {
     Ok(read(path, shape)?.robot)
 }
 
-/// A valid robot of a robot file, for commands that write a file beside it. A URDF is refused with the command that
-/// imports it.
+/// Reads a valid robot from a robot file, for commands that write a file beside it. For a URDF the error names the
+/// command that imports it.
 pub(crate) fn robot_in_yaml(path: &Path) -> Result<Checked, Failure> {
     let (name, bytes) = match open(path)? {
         Opened::RobotFile(name, bytes) => (name, bytes),
@@ -243,7 +243,7 @@ pub(crate) fn robot_in_yaml(path: &Path) -> Result<Checked, Failure> {
     checked(&name, &bytes, (&[], &[]), Shape::Coupled)
 }
 
-/// A path as a shell reads it back.
+/// Quotes a path so that a shell reads it back.
 pub(crate) fn shell(path: &Path) -> String {
     let text = path.display().to_string();
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-+=:,@".contains(c);

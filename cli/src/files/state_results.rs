@@ -1,4 +1,4 @@
-//! Where the results of many states go, as they are computed.
+//! Writes the results of many states while they are computed.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -11,12 +11,13 @@ use crate::files::file_name::{self, Format};
 use crate::files::output_file::{self, Replacement};
 use crate::outcome::Failure;
 
-/// CSV or an array of numpy, as results come. The header of an array, which tells how many states there are, is written
-/// last, in the place that was kept for it.
+/// CSV or a numpy array, written while results are computed. The header of an array contains the number of states, so
+/// it is written last, at the place reserved for it.
 pub(crate) enum Results {
     Csv {
         out: BufWriter<Box<dyn Write>>,
-        /// The names of the columns, until they are written: where nothing can be computed, nothing is.
+        /// The line with the names of the columns, until it is written: if no state can be computed, nothing is
+        /// written.
         header: Option<String>,
         is_terminal: bool,
         width: usize,
@@ -31,7 +32,7 @@ pub(crate) enum Results {
 }
 
 impl Results {
-    /// Begins a file, or standard output; the files that are `read` are not written. A row has these outputs.
+    /// Opens a file or standard output; files that are `read` are not overwritten. Each row has the numbers `outputs`.
     pub(crate) fn open(path: Option<&Path>, read: &[&Path], force: bool, outputs: &[String]) -> Result<Self, Failure> {
         let (header, width) = (Some(outputs.join(",") + "\n"), outputs.len());
         let Some(path) = path else {
@@ -81,7 +82,7 @@ impl Results {
         }
     }
 
-    /// All have been written: what is a file appears.
+    /// Ends the writing: a file now appears at its place.
     pub(crate) fn finish(mut self) -> io::Result<()> {
         self.write(&[])?;
         match self {
@@ -100,7 +101,7 @@ impl Results {
     }
 }
 
-/// Writing that ended; what is already written of a stream stays, files do not appear.
+/// Makes the error for results that cannot be written. Text that went to a stream stays there; a file does not appear.
 pub(crate) fn stopped(error: &io::Error) -> Failure {
     input_error!("the results cannot be written: {error}")
 }

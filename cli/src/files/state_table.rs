@@ -1,4 +1,4 @@
-//! Tables of states in files, CSV or arrays of numpy, that are read in parts.
+//! Reads tables of states from files, CSV or numpy arrays, in parts.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, ErrorKind, Read};
@@ -14,29 +14,29 @@ use crate::outcome::Failure;
 use crate::palette::TITLE;
 use crate::terminal::remark;
 
-/// States of a part: some megabytes, whatever the file's size.
+/// Number of states in a part: some megabytes, however large the file is.
 pub(crate) const PART: usize = 16_384;
 
 /// A table of numbers that is read in parts.
 pub(crate) struct Table {
-    /// How many states there are, where the file says so.
+    /// The number of states, if the file says it.
     pub(crate) states: Option<u64>,
     name: String,
     rows: Rows,
     restricted: Restricted,
 }
 
-/// The arguments whose numbers may not be any, with their first columns.
+/// The arguments whose numbers are restricted in range, each with the index of its first column.
 #[derive(Clone, Default)]
 pub(crate) struct Restricted(pub(crate) Vec<(&'static str, usize)>);
 
 impl Restricted {
-    /// The mistake of a row, whose columns have these names.
+    /// Returns the message for a number of a row that is not allowed; `name` gives the names of the columns.
     fn mistake(&self, row: &[f64], name: impl Fn(usize) -> String) -> Option<String> {
         self.0.iter().find_map(|&(argument, first)| {
             let number = |element: usize| row.get(first + element).copied();
             let mistake = OutOfRange::check(argument, number).err()?;
-            // the moments of a payload come after its mass and its centre of mass
+            // the mistake is in the inertia of a payload, which comes after its mass and its centre of mass, 4 columns
             let first = if matches!(mistake, OutOfRange::Moment(_)) { first + 4 } else { first };
             Some(format!("{}: {mistake}", name(first)))
         })
@@ -51,14 +51,14 @@ enum Rows {
     Npy {
         numbers: Box<dyn Iterator<Item = io::Result<f64>>>,
         width: usize,
-        /// How many states were read.
+        /// The number of states that were read.
         read: usize,
     },
 }
 
 impl Table {
-    /// Opens a file that has these columns: by name in CSV, in this order in an array. A column that is missing in CSV
-    /// may have its other name.
+    /// Opens a file that must have these columns: by name in CSV, in this order in an array. In CSV a column may have
+    /// its other name instead.
     pub(crate) fn open(
         path: &Path,
         columns: &[String],
@@ -78,7 +78,7 @@ impl Table {
             Box::new(open_file(path).map_err(unreadable)?)
         };
         let mut file: Box<dyn BufRead> = Box::new(BufReader::with_capacity(1 << 18, file));
-        // a pipe may give a few bytes at first
+        // a pipe may return only a few bytes at first
         let first = file.fill_buf().map_err(unreadable)?;
         if first.starts_with(&[0xFF, 0xFE]) || first.starts_with(&[0xFE, 0xFF]) {
             return Err(input_error!("{name} looks like UTF-16; save the file as UTF-8"));
@@ -121,7 +121,7 @@ impl Table {
                 }
             }
         }
-        // as `q3` beside `q1` and `q2`: such a table is probably that of another robot
+        // such as `q3` when only `q1` and `q2` are needed: the table is probably that of another robot
         let beyond = |column: &str| {
             let stem = column.trim_end_matches(|c: char| c.is_ascii_digit());
             let is_wanted = |other: &String| other.trim_end_matches(|c: char| c.is_ascii_digit()) == stem;
@@ -156,7 +156,7 @@ impl Table {
         Ok(Self { states: Some(states), name, rows, restricted: Restricted::default() })
     }
 
-    /// Appends the rows of the next part; how many there are.
+    /// Appends the rows of the next part; returns their number.
     pub(crate) fn read(&mut self, rows: &mut Vec<f64>) -> Result<usize, Failure> {
         let (name, restricted) = (&self.name, &self.restricted);
         match &mut self.rows {
@@ -216,7 +216,7 @@ impl Table {
     }
 }
 
-/// Columns of a header that may be the column asked for.
+/// Returns columns of a header that may mean the missing column.
 fn instead(column: &str, header: &[String]) -> String {
     let only = match header {
         [only] => only.as_str(),
@@ -229,8 +229,8 @@ fn instead(column: &str, header: &[String]) -> String {
     }
 }
 
-/// Message for digits that become infinite or zero by rounding. The word `inf` is a number, because a log may contain
-/// it if nothing was measured.
+/// Returns a message for digits whose number becomes infinite or zero by rounding. The word `inf` is accepted as a
+/// number, because a log may contain it where nothing was measured.
 fn misfit(number: f64, cell: &[u8]) -> Option<&'static str> {
     let mut mantissa = cell.split(|byte| matches!(byte, b'e' | b'E')).next().unwrap_or_default().iter();
     if number.is_infinite() && mantissa.clone().any(u8::is_ascii_digit) {

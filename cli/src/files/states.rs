@@ -1,4 +1,5 @@
-//! A function over a file of states: read in parts, computed by the machine, written as it is computed.
+//! Computes a function over a file of states: it is read in parts, computed in parallel by compiled code, and written
+//! meanwhile.
 
 use std::io::{self, ErrorKind, IsTerminal as _};
 use std::path::Path;
@@ -19,18 +20,18 @@ use crate::palette::{GOOD, QUIET};
 use crate::values::closure;
 use crate::values::limits::Degrees;
 
-/// A file of states, and where its results go.
+/// A file of states, and the place for its results.
 pub(crate) struct Job<'a> {
     pub(crate) robot_file: &'a Path,
     pub(crate) arm: &'a CompiledArm,
     pub(crate) function: Function,
     pub(crate) states: &'a Path,
-    /// Output file; `None` is standard output.
+    /// The output file; `None` means standard output.
     pub(crate) out: Option<&'a Path>,
     pub(crate) force: bool,
 }
 
-/// The columns of a table of states: the elements of the function's arguments.
+/// Returns the columns of a table of states: the elements of the function's arguments.
 fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
     let axes = ["x", "y", "z"];
     let payload = ["m", "cx", "cy", "cz", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz"];
@@ -38,7 +39,7 @@ fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
         match name {
             "payload" => payload.map(str::to_owned).into(),
             "parameters" => arm.robot().run_time.names.clone(),
-            // as the options of `rne eval`
+            // named like the options of `rne eval`
             "twist" => ["base_velocity", "base_omega"]
                 .iter()
                 .flat_map(|part| axes.map(|axis| format!("{part}_{axis}")))
@@ -55,7 +56,7 @@ fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
             "base_rotation" => {
                 axes.into_iter().flat_map(|row| axes.map(|column| format!("{name}_{row}{column}"))).collect()
             }
-            // as the options of `rne eval`
+            // named like the options of `rne eval`
             "omega" => axes.map(|axis| format!("base_omega_{axis}")).into(),
             "step" => vec!["duration".to_owned()],
             "q" | "passive" | "qd" | "qdd" | "tau" | "multipliers" | "sin" | "cos" => {
@@ -67,8 +68,8 @@ fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
     compiled.arguments().iter().flat_map(headings).collect()
 }
 
-/// Other names of the same columns: elements of joints as `rne log` names them in a table, by the names of the robot's
-/// joints, and the duration of a step and the velocity of a base by their names in generated code.
+/// Returns other names of these columns. Elements of joints may have the names that `rne log` writes, with the joint
+/// names of the robot; the duration of a step and the velocity of a base may have their names in generated code.
 fn named_columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<Option<String>> {
     let joints: Vec<String> = arm.robot().independent_joints().map(|joint| joint.name.clone()).collect();
     let headings = |&(name, elements): &(&str, usize)| -> Vec<Option<String>> {
@@ -82,7 +83,7 @@ fn named_columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<Option<S
     compiled.arguments().iter().flat_map(headings).collect()
 }
 
-/// The arguments whose numbers may not be any, with their first columns.
+/// Returns the arguments whose numbers are restricted in range, each with the index of its first column.
 fn restricted(compiled: &CompiledFunction) -> Restricted {
     let mut at = 0;
     let places = compiled.arguments().iter().map(|&(name, elements)| {
@@ -92,8 +93,8 @@ fn restricted(compiled: &CompiledFunction) -> Restricted {
     Restricted(places.filter(|(name, _)| OutOfRange::elements(name) > 0).collect())
 }
 
-/// The columns of its results: torques and accelerations by their symbols, others by the function's name and their
-/// places in it, from 1, as those of a matrix by row and column.
+/// Returns the columns of the results: torques and accelerations by their symbols, others by the name of the function
+/// and their indices from 1; elements of a matrix by row and column.
 fn results(function: Function, arm: &CompiledArm) -> Vec<String> {
     let symbol = match function {
         _ if function.returns_accelerations() => Some("qdd"),
@@ -129,7 +130,7 @@ impl Job<'_> {
         let progress = progress(self.states, table.states, results.is_terminal());
         let start = Instant::now();
         let (mut states, mut remarks) = (0_usize, Remarks::default());
-        // positions come first, and those of dependent joints behind them
+        // positions come first, followed by those of dependent joints
         let of = |place: usize, of: &str| {
             compiled.arguments().get(place).map_or(0, |&(name, elements)| if name == of { elements } else { 0 })
         };
@@ -151,7 +152,7 @@ impl Job<'_> {
             }
             let room = &mut numbers[..count * outputs.len()];
             let wrong = |error| match error {
-                // counted from the first part
+                // `state` is counted within this part, so the states before it are added
                 EvaluationError::OutOfRange { mistake, state, .. } => {
                     input_error!("{}: state {}: {mistake}", name(self.states), states + state)
                 }
@@ -160,7 +161,7 @@ impl Job<'_> {
             self.arm.run(self.function, count, &arguments, Destination::Rows(room)).map_err(wrong)?;
             remarks.results.see(states, room.chunks(outputs.len().max(1)), is_not_finite);
             match results.write(room) {
-                // the reader has read enough
+                // the reader of a pipe has read enough, which is no error
                 Err(error) if error.kind() == ErrorKind::BrokenPipe => return Ok(Outcome::default()),
                 written => written.map_err(|error| state_results::stopped(&error))?,
             }
@@ -175,7 +176,7 @@ impl Job<'_> {
         Ok(Outcome::remark(self.account(states, start.elapsed()) + &remarks.text()))
     }
 
-    /// How many states were computed, and how fast.
+    /// Returns a line on how many states were computed, and how fast.
     fn account(&self, states: usize, elapsed: Duration) -> String {
         #[allow(clippy::cast_precision_loss)] // of a rate, three digits are printed
         let rate = states as f64 / elapsed.as_secs_f64().max(1e-9);
@@ -192,16 +193,16 @@ impl Job<'_> {
     }
 }
 
-/// The states of which something is true that a user should know.
+/// Counts states with a property that the user should know of.
 #[derive(Default)]
 struct Seen {
     count: usize,
-    /// From 1.
+    /// The number of the first such state, counted from 1; 0 if there is none.
     first: usize,
 }
 
 impl Seen {
-    /// Looks at the states that follow `before` others.
+    /// Counts states that have the property; they come after `before` other states.
     fn see<'a>(&mut self, before: usize, states: impl Iterator<Item = &'a [f64]>, is_so: impl Fn(&[f64]) -> bool) {
         for (index, numbers) in states.enumerate() {
             if is_so(numbers) {
@@ -211,7 +212,7 @@ impl Seen {
         }
     }
 
-    /// A note, with what is true of one state, and of several: the words before the state and after it.
+    /// Returns a note. Both arguments are the words before and after the state: for one such state, then for several.
     fn remark(&self, [of, is]: [&str; 2], [of_many, are]: [&str; 2]) -> String {
         match self {
             Self { count: 0, .. } => String::new(),
@@ -225,7 +226,8 @@ fn is_not_finite(numbers: &[f64]) -> bool {
     !numbers.iter().all(|number| number.is_finite())
 }
 
-/// The largest residual of the equations of closed loops whose joints a table has with six digits, m.
+/// Largest residual of the equations of closed loops that is accepted, m: positions with six digits cause such
+/// residuals.
 const CLOSED: f64 = 1e-5;
 
 /// Remarks on the states of a table.
@@ -238,7 +240,7 @@ struct Remarks {
 }
 
 impl Remarks {
-    /// Looks at rows of arguments, whose first columns are positions, then those of dependent joints.
+    /// Examines rows of arguments, whose first columns are positions, followed by those of dependent joints.
     fn see(&mut self, arm: &CompiledArm, before: usize, width: usize, rows: &[f64], (dof, passive): (usize, usize)) {
         self.given.see(before, rows.chunks(width), is_not_finite);
         rows.chunks(width).for_each(|row| self.degrees.see(arm.robot(), &row[..dof]));
@@ -262,7 +264,7 @@ impl Remarks {
     }
 }
 
-/// A bar on a terminal that shows nothing else.
+/// Makes a progress bar on a terminal, unless the results are shown there.
 fn progress(states: &Path, count: Option<u64>, is_result_shown: bool) -> ProgressBar {
     if is_result_shown || is_standard_input(states) && io::stdin().is_terminal() {
         return ProgressBar::hidden();

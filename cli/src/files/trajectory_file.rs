@@ -1,4 +1,4 @@
-//! Trajectories in files: columns t, q1, …, qd1, …, qdd1, … of CSV.
+//! Reads trajectories from CSV files with the columns t, q1, …, qd1, …, qdd1, ….
 
 use std::ops::Range;
 use std::path::Path;
@@ -10,19 +10,19 @@ use rne_plot::{Trajectory, TrajectoryError};
 use crate::files::csv_table::{self, Cell, Line, Mistakes, OPEN_QUOTE, Row, lines, other_separator, quoted};
 use crate::outcome::Failure;
 
-/// Ten minutes of a six-joint arm at a hundred hertz, with all digits, are as long.
+/// Largest size of a file, in bytes: enough for ten minutes of a six-joint arm at a hundred hertz, with all digits.
 const LONGEST: usize = 24 << 20;
 
-/// A picture has a thousand pixels.
+/// Largest number of samples, because a picture is only a thousand pixels wide.
 const MOST: usize = 200_000;
 
-/// A trajectory, and in words what of it was derived.
+/// A trajectory, and words on which parts were derived from others.
 pub(crate) struct Given {
     pub(crate) trajectory: Trajectory,
     pub(crate) derived: &'static str,
 }
 
-/// Where the columns of a trajectory stand in the file; of each joint, base to tip.
+/// The indices of the columns of a trajectory; for each quantity one per joint, base to tip.
 struct Columns {
     time: usize,
     q: Vec<usize>,
@@ -30,7 +30,7 @@ struct Columns {
     qdd: Option<Vec<usize>>,
 }
 
-/// Reads the trajectory of a robot.
+/// Reads the trajectory of a robot from a file.
 pub(crate) fn read(path: &Path, robot: &Robot) -> Result<Given, Failure> {
     let (name, text) = &csv_table::read(path, "trajectory", LONGEST, "; give a file with a part of the samples")?;
     let mut mistakes = Mistakes::new(name, text);
@@ -38,7 +38,7 @@ pub(crate) fn read(path: &Path, robot: &Robot) -> Result<Given, Failure> {
     mistakes.finish(given)?.ok_or_else(|| Failure::input("this is not a trajectory"))
 }
 
-/// The trajectory of a text; `None` where the text has mistakes.
+/// Reads the trajectory from a text; `None` if the text has mistakes.
 fn given(text: &str, robot: &Robot, mistakes: &mut Mistakes<'_>) -> Option<Given> {
     let dof = robot.dof();
     let help =
@@ -89,7 +89,7 @@ fn given(text: &str, robot: &Robot, mistakes: &mut Mistakes<'_>) -> Option<Given
     Some(Given { trajectory: trajectory.ok()?, derived })
 }
 
-/// The lines below the header: where each starts, and its numbers.
+/// Reads the lines below the header; returns for each where it starts, and its numbers.
 fn samples<'a>(
     table: impl Iterator<Item = Result<Row<'a>, Range<usize>>>,
     header: &Row<'_>,
@@ -120,7 +120,8 @@ fn names(quantity: &str, dof: usize) -> Vec<String> {
     (1..=dof).map(|joint| format!("{quantity}{joint}")).collect()
 }
 
-/// The columns, all of a quantity or none: by the numbers of the joints, or by their names as `rne log` writes them.
+/// Finds the columns of each quantity, for all joints or for none: by the numbers of the joints, or by their names as
+/// `rne log` writes them.
 fn columns(header: &Row<'_>, joints: &[String], help: &str, mistakes: &mut Mistakes<'_>) -> Option<Columns> {
     let dof = joints.len();
     let known: Vec<String> =
@@ -175,7 +176,7 @@ fn columns(header: &Row<'_>, joints: &[String], help: &str, mistakes: &mut Mista
 }
 
 impl Columns {
-    /// Whether a column is one of them.
+    /// Returns for each column of the file whether it is used.
     fn asked(&self, columns: usize) -> Vec<bool> {
         let all = [Some(&self.q), self.qd.as_ref(), self.qdd.as_ref()];
         let mut asked = vec![false; columns];
@@ -186,7 +187,7 @@ impl Columns {
     }
 }
 
-/// The numbers of a line, column by column; 0 for a column that is not asked for, and for a cell without a number.
+/// Reads the numbers of a line, column by column; 0 for a column that is not used, and for a cell without a number.
 fn numbers(header: &Row<'_>, row: &Row<'_>, asked: &[bool], mistakes: &mut Mistakes<'_>) -> Vec<f64> {
     if row.cells.len() != header.cells.len() {
         let message =

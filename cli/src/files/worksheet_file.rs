@@ -1,7 +1,7 @@
-//! Worksheets that are read: a row per joint, step, quantity and component, as CSV and as JSON.
+//! Reads worksheets, CSV or JSON, with a row for each joint, step, quantity and component.
 //!
-//! `rne eval --trace` and `rne worksheet` write them by [`worksheet_text`](super::worksheet_text); any part of one can
-//! be read.
+//! `rne eval --trace` and `rne worksheet` write them with [`worksheet_text`](super::worksheet_text); a file may also
+//! have only a part of the rows.
 
 mod csv;
 mod json;
@@ -19,37 +19,37 @@ use crate::files::worksheet_file::values::Reading;
 use crate::files::worksheet_text::FORMAT;
 use crate::outcome::Failure;
 
-/// A worksheet of 64 joints has half a megabyte.
+/// Largest size of a file, in bytes; a worksheet of 64 joints has half a megabyte.
 const LONGEST: usize = 4 << 20;
 
-/// More rows than any worksheet has for a joint.
+/// Largest number of rows per joint, more than any worksheet has.
 const MOST: usize = 200;
 
-/// The columns that each row needs.
+/// The columns that a worksheet must have.
 const NEEDED: [&str; 3] = ["joint", "quantity", "value"];
 
 /// A worksheet that a student filled in.
 #[derive(Debug, Default)]
 pub(crate) struct Filled {
     pub(crate) values: Vec<GivenValue>,
-    /// The axes that the file names.
+    /// The axes in which the file says that its vectors are.
     pub(crate) axes: Option<Axes>,
-    /// The student whom the file names.
+    /// The student named in the file.
     pub(crate) student: Option<String>,
-    /// The steps that the file asks for, where it names them.
+    /// The steps that the student should fill in, if the file names them.
     pub(crate) steps: Option<Vec<u8>>,
-    /// The cells that the file asks for, joint and step, where it names them.
+    /// The cells that the student should fill in, as joint and step, if the file names them.
     pub(crate) cells: Option<Vec<(usize, u8)>>,
 }
 
 impl Filled {
-    /// The values of q, q̇ or q̈, a number for each joint; `None` if one of them is not given.
+    /// Returns the values of q, q̇ or q̈, a number for each joint; `None` if one of them is not given.
     pub(crate) fn given(&self, quantity: Quantity, dof: usize) -> Option<Vec<f64>> {
         let of_joint = |joint| self.values.iter().find(|given| given.quantity == quantity && given.joint == joint);
         (1..=dof).map(|joint| of_joint(joint).map(|given| given.value)).collect()
     }
 
-    /// Whether the worksheet gives this state.
+    /// Returns whether the worksheet gives this state.
     pub(crate) fn is_at(&self, at: &Situation) -> bool {
         [(Quantity::Q, &at.q), (Quantity::Qd, &at.qd), (Quantity::Qdd, &at.qdd)].into_iter().all(|(quantity, own)| {
             let given = self.given(quantity, own.len());
@@ -58,7 +58,7 @@ impl Filled {
     }
 }
 
-/// Contents of the first line of a worksheet.
+/// What the first line of a worksheet says.
 #[derive(Default)]
 struct Head {
     student: Option<String>,
@@ -66,13 +66,13 @@ struct Head {
     cells: Option<Vec<(usize, u8)>>,
 }
 
-/// The cells of a row, by their columns.
+/// The cells of a row, by the names of their columns.
 type Cells<'a> = BTreeMap<&'static str, Cell<'a>>;
 
-/// The cells of a row, and the bytes of the file that it stands on.
+/// The cells of a row, and the bytes of the file that the row has.
 type SheetRow<'a> = (Cells<'a>, Range<usize>);
 
-/// Reads a worksheet of a robot. `axes` are those asked for; without any, the file's count.
+/// Reads a worksheet of a robot. `axes` are those of the command line; if it gives none, those of the file are used.
 pub(crate) fn read(path: &Path, robot: &Robot, axes: Option<Axes>) -> Result<Filled, Failure> {
     let (name, text) = &csv_table::read(path, "worksheet", LONGEST, ": is this a worksheet?")?;
     let keys = ["convention:", "joints:", "format:"];
@@ -98,7 +98,7 @@ fn too_many(span: &Range<usize>, robot: &Robot, mistakes: &mut Mistakes<'_>) {
     mistakes.push(span.clone(), message, Some("give each component of each joint only once"));
 }
 
-/// Refuses a worksheet of another format.
+/// Refuses a worksheet with another version of the format.
 fn is_of_format(format: &str, span: &Range<usize>, mistakes: &mut Mistakes<'_>) {
     if format != FORMAT.to_string() {
         let message = format!("this worksheet has format {format}; this rne reads format {FORMAT}");
@@ -106,7 +106,7 @@ fn is_of_format(format: &str, span: &Range<usize>, mistakes: &mut Mistakes<'_>) 
     }
 }
 
-/// Refuses a worksheet of another robot.
+/// Refuses a worksheet for another robot.
 fn is_of_robot(name: &str, span: &Range<usize>, robot: &Robot, mistakes: &mut Mistakes<'_>) {
     if name != robot.name {
         let message = format!("this worksheet is for {}, and the robot file is for {}", quoted(name), robot.name);
@@ -114,7 +114,7 @@ fn is_of_robot(name: &str, span: &Range<usize>, robot: &Robot, mistakes: &mut Mi
     }
 }
 
-/// The steps of which a file has no value, in words: `steps 3 and 5`.
+/// Lists the steps of which a file has no value, in words: `steps 3 and 5`.
 pub(crate) fn steps_in_words(steps: &[u8]) -> Option<String> {
     let steps: BTreeSet<u8> = steps.iter().copied().collect();
     let words: Vec<String> = steps.iter().map(ToString::to_string).collect();

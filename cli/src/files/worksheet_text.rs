@@ -1,4 +1,4 @@
-//! Worksheets that are written: a row per joint, step, quantity and component, as CSV and as JSON.
+//! Writes worksheets as CSV or JSON, with a row for each joint, step, quantity and component.
 
 use std::fmt::Write as _;
 
@@ -10,10 +10,10 @@ use serde::Serialize;
 use crate::outcome::Failure;
 use crate::render::worksheet::Narrowed;
 
-/// The version of the format of worksheets, in CSV and in JSON.
+/// The version of the CSV and JSON formats of worksheets, which a reader compares before it reads on.
 pub(super) const FORMAT: u32 = 1;
 
-/// The columns of CSV, the keys of a row in JSON.
+/// The columns in CSV, and the keys of a row in JSON.
 pub(super) const COLUMNS: [&str; 7] = ["joint", "step", "quantity", "component", "value", "unit", "frame"];
 
 /// One number of a worksheet.
@@ -29,7 +29,7 @@ struct Row {
 }
 
 impl Row {
-    /// Appends a line of CSV with a text for the value.
+    /// Appends a line of CSV with the text `value` in the column of values.
     fn write(&self, text: &mut String, separator: char, value: &str) {
         let Self { joint, step, quantity, component, unit, frame, .. } = self;
         let s = separator;
@@ -55,7 +55,7 @@ fn rows(sheet: &Worksheet, narrowed: Narrowed) -> impl Iterator<Item = Row> {
     sheet.lines.iter().filter(move |line| narrowed.has(line)).flat_map(of_line)
 }
 
-/// The worksheet as CSV.
+/// Writes the worksheet as CSV.
 pub(crate) fn csv(robot: &Robot, sheet: &Worksheet, narrowed: Narrowed) -> String {
     let mut text = format!("# rne worksheet, format {FORMAT}, robot {}\n{}\n", robot.name, COLUMNS.join(","));
     for row in rows(sheet, narrowed) {
@@ -64,7 +64,7 @@ pub(crate) fn csv(robot: &Robot, sheet: &Worksheet, narrowed: Narrowed) -> Strin
     text
 }
 
-/// The numbers of the arm as comments, so that nobody needs the robot file to solve the sheet.
+/// Writes the numbers of the arm as comments, so that a student does not need the robot file.
 fn arm(robot: &Robot) -> String {
     let Heading { frames, ends, table, .. } = Heading::of(robot);
     let mut lines: Vec<String> = frames.lines().map(str::to_owned).chain(ends).collect();
@@ -86,7 +86,7 @@ fn arm(robot: &Robot) -> String {
     format!("# {}\n", lines.join("\n# "))
 }
 
-/// The axes of the vectors as a comment: in a standard table those of link i are not those of frame i.
+/// Writes the axes of the vectors as a comment: in a standard table the axes of link i are not those of frame i.
 fn axes(robot: &Robot, axes: Axes) -> String {
     let of_table = match (axes, robot.convention) {
         (Axes::Link, Convention::Standard) => "; frame i of the table is these axes turned by alpha_i about x",
@@ -95,20 +95,20 @@ fn axes(robot: &Robot, axes: Axes) -> String {
     format!("# axes of the vectors: {} = {}{of_table}\n", axes.name(), axes.explained())
 }
 
-/// The largest value of a quantity of all joints.
+/// Returns the largest magnitude of a quantity over all joints.
 fn scale(sheet: &Worksheet, quantity: &str) -> f64 {
     let of_quantity = sheet.lines.iter().filter(|line| line.quantity.name() == quantity);
     of_quantity.flat_map(|line| &line.values).fold(0.0, |most, value| most.max(value.abs()))
 }
 
-/// A right value with eight significant digits; what rounding leaves of a zero is 0.
+/// Writes a right value with eight significant digits; a rounding error of zero becomes 0.
 fn answer(value: f64, scale: f64) -> String {
     let value = if value.abs() <= 1e-12 * scale { 0.0 } else { value };
     exact_digits(format!("{value:.7e}").parse().unwrap_or(value))
 }
 
-/// A student's worksheet as CSV: the arm and the state are filled in, and with `answers` everything else, too. `comma`
-/// writes numbers with a decimal comma and semicolons between the columns.
+/// Writes a student's worksheet as CSV, with the arm and the state filled in, and with `answers` also everything else.
+/// `comma` means a decimal comma in numbers, and semicolons between the columns.
 pub(crate) fn of_student(
     robot: &Robot,
     sheet: &Worksheet,
@@ -119,7 +119,7 @@ pub(crate) fn of_student(
 ) -> String {
     let separator = if comma { ';' } else { ',' };
     let columns = COLUMNS.join(separator.encode_utf8(&mut [0; 4]));
-    // with a byte order mark a spreadsheet reads the file as UTF-8: units have m/s²
+    // because of the byte order mark, a spreadsheet reads the file as UTF-8, which units such as m/s² need
     let mut text = format!("\u{feff}# rne worksheet, format {FORMAT}, robot {}", robot.name);
     if steps.len() < 7 {
         let steps: Vec<String> = steps.iter().map(ToString::to_string).collect();
@@ -141,7 +141,7 @@ pub(crate) fn of_student(
     text
 }
 
-/// The worksheet as JSON has it, beside the result of the function: a row on each line.
+/// Writes the worksheet and the result of the function as JSON, with a row on each line.
 pub(crate) fn json(
     robot: &Robot,
     sheet: &Worksheet,

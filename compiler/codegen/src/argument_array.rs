@@ -7,7 +7,7 @@ use crate::program::Program;
 /// An argument array and the names of its elements; `None` for an element that is not used.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArgumentArray {
-    /// The array's name in emitted code: `q`, `qd`, `force`, ….
+    /// The array's name in emitted code, such as `q`, `qd` or `force`.
     pub name: &'static str,
     /// Its elements, in order.
     pub elements: Vec<Option<Name>>,
@@ -18,7 +18,7 @@ pub struct ArgumentArray {
 }
 
 impl ArgumentArray {
-    /// The lengths of the arrays that it is made of, the outer one first; none for a number.
+    /// The lengths of the nested arrays that it consists of, the outer one first; none for a number.
     #[must_use]
     pub fn lengths(&self) -> Vec<usize> {
         match self.row {
@@ -28,7 +28,7 @@ impl ArgumentArray {
         }
     }
 
-    /// The places of an element in these arrays.
+    /// The indices of an element in the nested arrays, the outer one first.
     #[must_use]
     pub fn places(&self, element: usize) -> Vec<usize> {
         match self.row {
@@ -52,8 +52,8 @@ impl Program {
         arguments(self)
     }
 
-    /// The names that renderers give to variables of their own: arguments, results, what is not used. No number of a
-    /// program has one of them; the first of two variables of one name would be lost.
+    /// The names that renderers give to variables of their own: arguments, results, unused elements. No number of a
+    /// program may have one of them, because the second of two variables of one name would hide the first.
     #[doc(hidden)]
     pub fn reserved_names(&self) -> impl Iterator<Item = &'static str> {
         let arrays = self.arrays_without_parameters().into_iter().map(|array| array.name);

@@ -21,18 +21,18 @@ pub(crate) struct Coordinates {
     follows: Vec<Option<Vec<(usize, f64)>>>,
     /// The dependent joints of closed loops.
     passive: Vec<usize>,
-    /// For each joint the coordinates with which it moves, and by what their rates are multiplied; `None` for a
-    /// coordinate.
+    /// For each joint, the coordinates with which it moves, and the factors of their rates; `None` for a coordinate.
     moves: Vec<Option<Vec<(usize, Ratio)>>>,
-    /// For each rotor the joints with which it turns, and the link that carries it; `None` for the base.
+    /// For each rotor, the joints with which it turns, and the link that carries it; `None` for the base.
     rotors: Vec<(Vec<usize>, Option<usize>)>,
 }
 
-/// By what a rate is multiplied where another joint moves with it.
+/// The factor by which the rate of one joint enters the rate of another joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ratio {
     factor: f64,
-    /// The element of the map of closed loops: the places of a dependent joint and of a coordinate.
+    /// The element of the map of closed loops that multiplies `factor`: the indices of a dependent joint and of a
+    /// coordinate.
     of_loop: Option<[usize; 2]>,
 }
 
@@ -44,7 +44,8 @@ impl Ratio {
     }
 }
 
-/// The coordinates with which a joint moves: those of the loops of a dependent joint.
+/// Returns the coordinates with which a joint moves, and the factors; a dependent joint moves with the coordinates of
+/// its loops.
 fn moved(
     (robot, linked): (&Robot, &[Vec<usize>]),
     joints: &[usize],
@@ -67,7 +68,8 @@ fn moved(
     }
 }
 
-/// The joints of loops that share joints: each list has those of loops that determine each other.
+/// Returns the joints of closed loops in groups: loops that share joints determine each other, so they are in one
+/// group.
 fn linked(robot: &Robot, follows: &[Option<Vec<(usize, f64)>>]) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for closed in &robot.closed.loops {
@@ -98,7 +100,7 @@ impl Coordinates {
         Self { joints, follows, passive, moves, rotors }
     }
 
-    /// Joints none of which follows another.
+    /// The coordinates of joints of which none follows another.
     pub(crate) fn of_free_joints(joints: usize) -> Self {
         Self {
             joints: (0..joints).collect(),
@@ -124,7 +126,8 @@ impl Coordinates {
         self.moves[joint].is_none()
     }
 
-    /// The joints by whose positions a joint turns, and their ratios: it is one of these where it follows no other.
+    /// Returns the joints whose positions determine that of a joint, and their ratios; the joint itself if it follows
+    /// no other.
     pub(crate) fn followed(&self, joint: usize) -> Vec<(usize, f64)> {
         self.follows[joint].clone().unwrap_or_else(|| vec![(joint, 1.0)])
     }
@@ -134,13 +137,15 @@ impl Coordinates {
         self.joints.len() == self.follows.len()
     }
 
-    /// The name of what a joint needs: a torque, or one part of those of the joints that it follows or that follow it.
+    /// Returns the name of the torque of a joint: a result if no joint is coupled to it, else one part of the torques
+    /// of the coupled joints.
     pub(crate) fn name_of_torque(&self, joint: usize) -> Name {
         let is_alone = self.has(joint) && self.followers(joint).next().is_none();
         Name::scalar(if is_alone { Quantity::Torque } else { Quantity::AxisTorque }, joint + 1)
     }
 
-    /// Position, rate or acceleration of a joint: an argument of the function, or that of a follower.
+    /// Returns position, rate or acceleration of a joint: an argument of the function, or a sum of arguments if the
+    /// joint follows others.
     pub(crate) fn of_joint<'s>(&self, builder: &'s Builder, quantity: Quantity, joint: usize) -> Symbol<'s> {
         let argument = |joint: usize| {
             let name = Name::scalar(quantity, joint + 1);
@@ -165,7 +170,7 @@ impl Coordinates {
         quantity.of_follower().map_or_else(sum, |quantity| builder.by(None, || line.define(quantity).by(sum())))
     }
 
-    /// The acceleration of a joint where no coordinate accelerates, Ġ q̇; `None` where closed loops do not move it.
+    /// Returns the acceleration Ġ q̇ of a joint if no coordinate accelerates; `None` if closed loops do not move it.
     pub(crate) fn bias<'s>(&self, builder: &'s Builder, joint: usize) -> Option<Symbol<'s>> {
         let place = |joint: usize| self.passive.iter().position(|&other| other == joint);
         let terms = self
@@ -175,7 +180,8 @@ impl Coordinates {
         terms.reduce(|sum, term| sum + term)
     }
 
-    /// The torque or force of the actuator of a joint: an argument; a follower has no actuator.
+    /// Returns the torque or force of the actuator of a joint: an argument, or zero for a follower, which has no
+    /// actuator.
     pub(crate) fn applied<'s>(&self, builder: &'s Builder, joint: usize) -> Symbol<'s> {
         match self.moves[joint] {
             None => builder.argument(Name::scalar(Quantity::AppliedTorque, joint + 1)),
@@ -183,8 +189,8 @@ impl Coordinates {
         }
     }
 
-    /// Gᵀ x, one element for each coordinate, from one for each joint. `plus` adds two of them, `times` multiplies
-    /// one by a ratio.
+    /// Returns Gᵀ x, one element for each coordinate, from one element for each joint. `plus` adds two elements,
+    /// `times` multiplies an element by a ratio.
     pub(crate) fn gathered<T: Clone>(
         &self,
         of_joints: &[T],
@@ -202,8 +208,8 @@ impl Coordinates {
         self.joints.iter().map(of_coordinate).collect()
     }
 
-    /// One number for each coordinate and then for each dependent joint, from one for each joint: couplings alone are
-    /// gathered.
+    /// Returns one number for each coordinate and then for each dependent joint, from one for each joint. The numbers
+    /// of joints that follow others by couplings are added to those of the joints that they follow.
     pub(crate) fn of_tree<'s>(&self, of_joints: &[Symbol<'s>]) -> Vec<Symbol<'s>> {
         let of_joint = |&joint: &usize| {
             let followers = self.follows.iter().enumerate().flat_map(|(follower, follows)| {
@@ -215,17 +221,17 @@ impl Coordinates {
         self.joints.iter().chain(&self.passive).map(of_joint).collect()
     }
 
-    /// Gives a result its name, where it is gathered from several joints: what one of them has loses that name.
+    /// Gives a result its name, if it is gathered from several joints. A part of it from one joint loses this name.
     pub(crate) fn named<'s>(&self, name: Name, result: Symbol<'s>) -> (Name, Symbol<'s>) {
         (name, if self.is_every_joint() { result } else { result.builder.name(name, result) })
     }
 
-    /// Gᵀ τ
+    /// Gᵀ τ, one torque for each coordinate.
     pub(crate) fn torques<'s>(&self, of_joints: &[Symbol<'s>]) -> Vec<Symbol<'s>> {
         self.gathered(of_joints, |a, b| a + b, scaled)
     }
 
-    /// Gᵀ A G of a matrix by rows.
+    /// Gᵀ A G of a matrix A, by rows.
     pub(crate) fn matrix<'s>(&self, of_joints: &[Vec<Symbol<'s>>]) -> Vec<Vec<Symbol<'s>>> {
         let rows: Vec<_> = of_joints.iter().map(|row| self.torques(row)).collect();
         let plus = |a: Vec<Symbol<'s>>, b: Vec<Symbol<'s>>| a.into_iter().zip(b).map(|(a, b)| a + b).collect();
@@ -233,7 +239,7 @@ impl Coordinates {
         self.gathered(&rows, plus, times)
     }
 
-    /// The upper half of Gᵀ M G, from that of M: row i holds the elements (i, i) to (i, n).
+    /// The upper half of Gᵀ M G, from that of M: row i has the elements (i, i) to (i, n).
     pub(crate) fn upper_half<'s>(&self, builder: &'s Builder, upper: Vec<Vec<Symbol<'s>>>) -> Vec<Vec<Symbol<'s>>> {
         if self.is_every_joint() {
             return upper;
@@ -255,8 +261,8 @@ impl Coordinates {
         self.joints.iter().enumerate().map(row).collect()
     }
 
-    /// Whether the motion of one coordinate can move a link that the other moves, one that such a link carries, or a
-    /// rotor there: the mass matrix has an element for both then. `parents` are the links that carry the joints.
+    /// Whether the mass matrix can have an element that is not zero for two coordinates: both can move the same link,
+    /// or a rotor that one turns and the other turns or carries. `parents` are the links that carry the joints.
     pub(crate) fn meet(&self, parents: &[Option<usize>], [one, other]: [usize; 2]) -> bool {
         let moves = |joint: usize, other: usize| {
             std::iter::successors(Some(other), |&link| parents[link]).any(|link| link == joint)

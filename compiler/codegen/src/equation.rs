@@ -1,7 +1,8 @@
-//! Formulas component by component as they were written, before anything folds: what every term became and why.
+//! Formulas of all components as they were written, before folding, with what every term became and why.
 //!
-//! A [`Program`](crate::Program) has the code that is left. Its equations say what the code is left of:
-//! `w2_x = rot2_xx * w1_x + rot2_yx * w1_y + ..`, where the base does not move and a turn leaves an axis alone.
+//! The code of a [`Program`](crate::Program) is what remains of its equations after folding. An equation has all terms,
+//! such as `w2_x = rot2_xx * w1_x + rot2_yx * w1_y + ..`, and says which ones vanish because the base does not move or
+//! a rotation leaves an axis alone.
 
 use crate::ir::{Causes, Fold, Name, Operator, Place, Sign};
 
@@ -16,7 +17,7 @@ pub struct Equation {
     pub term: Term,
 }
 
-/// A term of a formula with what folding made of it.
+/// A term of a formula, with the result of folding.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Term {
     /// Another component, an argument or a number of the table.
@@ -42,9 +43,9 @@ pub struct Operation {
     pub operator: Operator,
     /// Left and right.
     pub operands: [Term; 2],
-    /// Its fate in the code.
+    /// How it was folded.
     pub fold: Fold,
-    /// All that makes it a zero, or leaves one operand alone; `None` where nothing of the arm does.
+    /// All causes that make it zero or equal to one operand; `None` if nothing of the arm is a cause.
     pub causes: Option<Causes>,
     /// The name that its value has in the code, if it has one.
     pub name: Option<(Name, Sign)>,

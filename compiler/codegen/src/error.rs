@@ -49,9 +49,9 @@ pub enum CompileError {
     TooLarge {
         /// The function.
         function: Function,
-        /// Joints of the robot.
+        /// Degrees of freedom of the robot.
         dof: usize,
-        /// The most operations that are compiled.
+        /// The largest number of operations that is compiled.
         most: usize,
     },
     /// A function that returns numbers of every link, for a robot some of whose joints follow others: its arrays have

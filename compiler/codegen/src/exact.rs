@@ -21,7 +21,7 @@ impl ExactFunction {
         Self::with(robot, function, Embedding::default())
     }
 
-    /// Writes a function whose constants are read in the fields as told.
+    /// Writes a function whose constants are mapped into the fields by `embedding`.
     pub(crate) fn with(robot: &Robot, function: Function, embedding: Embedding) -> Self {
         let builder = Builder::untraced(Policy::Structure, embedding, function);
         let outputs = formulate::outputs(&builder, robot).into_iter().map(|(_, at)| at).collect();
@@ -34,7 +34,7 @@ impl ExactFunction {
         self.at_point(&SamplePoint::new(self.graph.embedding(), point))
     }
 
-    /// The argument of a name at a point.
+    /// The value of the argument with this name at a point.
     #[must_use]
     pub fn argument(&self, point: u64, name: Name) -> Residue {
         SamplePoint::new(self.graph.embedding(), point).argument(Input::new(name))
@@ -45,7 +45,7 @@ impl ExactFunction {
         self.graph.outputs.iter().map(|at| at.residue(&residues)).collect()
     }
 
-    /// Whether the formulas divide by what is zero at a point.
+    /// Whether the formulas divide by zero at a point.
     pub(crate) fn divides_by_zero(&self, point: &SamplePoint) -> bool {
         let residues = self.residues(point);
         self.graph.nodes().any(|(_, op)| matches!(op, Op::Quotient(_, b) if residues[b.index()].is_zero()))

@@ -1,4 +1,5 @@
-//! The values of a program as they are written: a value with a name by that name, another one where it is used.
+//! The values of a program as they are written: a value with a name by this name, a value without one as an expression
+//! where it is used.
 
 use crate::ir::{Name, Operator};
 use crate::values::{Negated, Value, ValueId, Values};
@@ -8,7 +9,7 @@ use crate::values::{Negated, Value, ValueId, Values};
 pub struct Expression<'p> {
     values: &'p Values,
     id: ValueId,
-    /// Whether it is printed where it is computed; elsewhere its name stands for it.
+    /// Whether it is written where it is computed; elsewhere only its name is written.
     is_definition: bool,
 }
 
@@ -17,7 +18,7 @@ pub struct Expression<'p> {
 pub enum ExpressionKind<'p> {
     /// The name of an argument, a constant or an earlier statement.
     Variable(Name),
-    /// The constant 0, where a function returns one.
+    /// The constant 0, for a result that is zero.
     Zero,
     /// -a
     Negative(Expression<'p>),
@@ -30,13 +31,13 @@ pub enum ExpressionKind<'p> {
 }
 
 impl Values {
-    /// A value where it is used.
+    /// Returns a value as it is written where it is used.
     #[must_use]
     pub fn used(&self, id: ValueId) -> Expression<'_> {
         Expression { values: self, id, is_definition: false }
     }
 
-    /// A value where it is computed.
+    /// Returns a value as it is written where it is computed.
     #[must_use]
     pub fn defined(&self, id: ValueId) -> Expression<'_> {
         Expression { values: self, id, is_definition: true }
@@ -61,12 +62,12 @@ impl<'p> Expression<'p> {
                 ExpressionKind::Fused(fused.factors.map(used), used(fused.addend), fused.negated)
             }
             (_, Value::BySign(operands)) => ExpressionKind::BySign(operands.map(used)),
-            // leaves have names, but for the zero
+            // leaves have names, except the constant 0
             (None, Value::Argument | Value::Constant(_) | Value::Sine(_) | Value::Cosine(_)) => ExpressionKind::Zero,
         }
     }
 
-    /// The expression and all that stand inside it, from left to right.
+    /// The expression and all expressions inside it, from left to right.
     pub fn parts(self) -> impl Iterator<Item = Self> {
         let mut open = vec![self];
         std::iter::from_fn(move || {
@@ -82,7 +83,7 @@ impl<'p> Expression<'p> {
         })
     }
 
-    /// The names that stand in it.
+    /// The names in the expression.
     pub fn names(self) -> impl Iterator<Item = Name> {
         self.parts().filter_map(|part| if let ExpressionKind::Variable(name) = part.kind() { Some(name) } else { None })
     }

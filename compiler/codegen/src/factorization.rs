@@ -1,4 +1,4 @@
-//! Operations of the factors of a mass matrix, by the tree of the robot alone.
+//! Counts the operations that factor a mass matrix into L D Lᵀ, from the tree of the robot alone.
 
 use rne_model::Robot;
 
@@ -17,7 +17,7 @@ pub struct Factorization {
 }
 
 impl Factorization {
-    /// Counts the mass matrix by which a function solves: with six rows of the base, if that floats in it.
+    /// Counts the mass matrix that a function solves with; it has six more rows if the base floats in the function.
     #[must_use]
     pub fn of(robot: &Robot, function: Function) -> Self {
         let coordinates = Coordinates::of(robot);

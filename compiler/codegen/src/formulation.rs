@@ -8,12 +8,12 @@ use crate::ir::{Builder, Cost, Embedding, Name, Policy, Traced};
 use crate::program::Scales;
 use crate::reduced::near_origins;
 
-/// A function as a graph that has not been lowered: what it returns, by name, and the graph of that with its trace.
+/// A function as a graph before lowering: the names of its results, and the graph with its trace.
 #[allow(missing_debug_implementations)] // a graph of thousands of nodes
 pub struct Formulation {
     pub(crate) names: Vec<Name>,
     pub(crate) traced: Traced,
-    /// The factors of lengths and forces, where it measures them in units of the arm.
+    /// The factors of lengths and forces, if the formulas measure them in units of the arm.
     pub(crate) scales: Vec<Scales>,
 }
 
@@ -23,13 +23,13 @@ impl Formulation {
         Self::on(Builder::traced(policy, Embedding::default(), function), robot, function)
     }
 
-    /// The seven steps with joints near the arm, which no table needs to have there.
+    /// The seven steps with joint origins near the arm, even if those of the table are far away.
     pub(crate) fn near(robot: &Robot, function: Function) -> Self {
         let builder = Builder::traced(Policy::Structure, Embedding::default(), function);
         Self::on(builder.moving_origins(), robot, function)
     }
 
-    /// The seven steps with the formulas as they are before anything folds.
+    /// The seven steps, with a record of the formulas before folding.
     pub(crate) fn explained(robot: &Robot, function: Function) -> Self {
         Self::on(Builder::explained(Policy::Structure, Embedding::default(), function), robot, function)
     }
@@ -42,20 +42,20 @@ impl Formulation {
         Self { names, traced: builder.finish(outputs), scales: Vec::new() }
     }
 
-    /// The plain formulas with every value computed once, however often and in whatever way they compute it: the
-    /// reduced form of what has no recursion of its own.
+    /// The plain formulas with every value computed once, even if they compute it several times in different ways. This
+    /// is the reduced form of a function without a recursion of its own.
     #[must_use]
     pub fn numbered(robot: &Robot, function: Function) -> Self {
         let plain = Self::plain(Policy::Value, robot, function);
         Self { traced: plain.traced.numbered(), ..plain }
     }
 
-    /// How its constants are read in the fields of the proof.
+    /// How its constants are mapped into the prime fields of the proof.
     pub(crate) fn embedding(&self) -> Embedding {
         self.traced.graph.embedding()
     }
 
-    /// Its operations.
+    /// The number of its operations.
     #[must_use]
     pub fn cost(&self) -> Cost {
         self.traced.graph.cost(&mut Vec::new())

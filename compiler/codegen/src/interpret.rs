@@ -6,7 +6,7 @@ use crate::ir::{Component, Name, Operator, Quantity, all_names_of};
 use crate::program::Program;
 use crate::values::{Contraction, Negated, Value, ValueId, Values};
 
-/// The arguments of a function. What a function does not use may be empty or zero.
+/// The arguments of a function. Arguments that a function does not use may be empty or zero.
 #[derive(Clone, Copy, Debug)]
 pub struct Arguments<'a, T> {
     /// Joint positions, rad or m.
@@ -30,7 +30,7 @@ pub struct Arguments<'a, T> {
     pub wrenches: &'a [[T; 6]],
     /// ω₀, ω̇₀, c̈₀ of the base and gravity, in frame 0.
     pub base: [[T; 3]; 4],
-    /// Velocity of the origin of frame 0; the angular one is that of `base`.
+    /// Velocity of the origin of frame 0, in axes of frame 0; the angular velocity is in `base`.
     pub velocity: [T; 3],
     /// Pose of frame 0 in the world: rotation by rows, origin.
     pub pose: [T; 12],
@@ -78,11 +78,11 @@ pub struct Interpreter {
     outputs: Vec<ValueId>,
 }
 
-/// A number of the interpreter.
+/// A number type with which the interpreter can compute.
 pub trait Real:
     Copy + Neg<Output = Self> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
-    /// `positive` where it is above 0, `negative` where it is below, else 0.
+    /// Returns `positive` if the number is above 0, `negative` if it is below, else 0.
     #[must_use]
     fn by_sign(self, positive: Self, negative: Self) -> Self;
 }
@@ -105,7 +105,7 @@ macro_rules! real {
 real!(f32, f64);
 
 impl Interpreter {
-    /// Takes the values of a program.
+    /// Makes the interpreter of a program.
     #[must_use]
     pub fn new(program: &Program) -> Self {
         Self {
@@ -129,8 +129,8 @@ impl Interpreter {
         self.run_named(input, |_, value| Some(constant(value)), &sin_cos)
     }
 
-    /// As [`Interpreter::run`], with arguments and constants by their names: the name of a constant that is just 0 is
-    /// `None`.
+    /// Runs the program as [`Interpreter::run`] does, but asks for arguments and constants by their names; a constant
+    /// that is only 0 has no name.
     pub(crate) fn run_named<T: Real>(
         &self,
         input: impl Fn(Name) -> Option<T>,
@@ -171,7 +171,7 @@ impl Interpreter {
 }
 
 impl<T: Copy> Arguments<'_, T> {
-    /// The argument with this name. Arguments that are sines and cosines belong to the joint positions.
+    /// Returns the argument with this name. A sine or cosine as an argument is that of a joint position.
     fn input(&self, name: Name, joints: [&[usize]; 2], sin_cos: impl Fn(T) -> (T, T)) -> Option<T> {
         let [coordinates, passive] = joints;
         let place = || coordinates.binary_search(&name.joint).ok();
@@ -207,7 +207,7 @@ impl<T: Copy> Arguments<'_, T> {
             let array = match name.quantity {
                 Quantity::Position => self.q,
                 Quantity::Rate => self.qd,
-                // no function has both
+                // no function has both, so `tau` is used for either
                 Quantity::AppliedTorque | Quantity::Multiplier => self.tau,
                 Quantity::Duration => return Some(self.step),
                 Quantity::Parameter => return self.parameters.get(name.joint.checked_sub(1)?).copied(),

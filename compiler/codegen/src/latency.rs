@@ -1,15 +1,15 @@
-//! How long the chains of operations are that a call waits for, on a processor that computes independent ones side by
-//! side.
+//! The lengths of the chains of operations that a call waits for, on a processor that computes independent operations
+//! in parallel.
 //!
-//! A fused multiply-add is one instruction, but a sum that waits for its last term waits longer for it than for an
-//! addition. So a product is fused where that is sooner, or where nothing waits for the sum.
+//! A fused multiply-add is one instruction, but it takes longer than an addition after the last term of a sum. So a
+//! product is fused if the sum is then known sooner, or if no result waits for the sum.
 
 use crate::ir::Operator;
 use crate::program::Program;
 use crate::values::{Contraction, Value, ValueId};
 
-/// Cycles of a multiplication and of a fused multiply-add: a model, near to the processors of servers and desktops of
-/// these years.
+/// Cycles of a multiplication and of a fused multiply-add: a model, close to current processors of servers and
+/// desktops.
 pub(crate) const PRODUCT: usize = 4;
 
 /// Cycles of an addition.
@@ -18,10 +18,10 @@ pub(crate) const SUM: usize = 3;
 /// Cycles of a division.
 const QUOTIENT: usize = 14;
 
-/// Number of cycles until sines and cosines are computed.
+/// Cycles from the call until sines and cosines are computed.
 const TURN: usize = 50;
 
-/// A sum with no more time to spare than this is waited for.
+/// A result waits for a sum if the sum could be at most this many cycles later without delaying the result.
 const SPARE: usize = 4;
 
 /// Cycles of an operation.
@@ -33,8 +33,8 @@ pub(crate) const fn cycles(operator: Operator) -> usize {
     }
 }
 
-/// Cycles from the operands of a value to the value. Arguments are there from the beginning, and angles count with
-/// their sines.
+/// Cycles from the operands of a value to the value. Arguments are known from the beginning, and the time of angles is
+/// part of that of their sines.
 pub(crate) const fn cycles_of(value: Value) -> usize {
     match value {
         Value::Argument | Value::Constant(_) | Value::Same(_) | Value::Negative(_) => 0,
@@ -45,7 +45,8 @@ pub(crate) const fn cycles_of(value: Value) -> usize {
     }
 }
 
-/// When the values of a program are there, in cycles from the call on, and how long what follows takes.
+/// For each value of a program, the cycles from the call until it is known, and the cycles from there to the last
+/// result.
 #[derive(Debug)]
 pub(crate) struct Latency {
     known: Vec<usize>,
@@ -53,7 +54,7 @@ pub(crate) struct Latency {
     total: usize,
 }
 
-/// How long the two ways to add a product take.
+/// The cycles from the call to the sum in the two ways to add a product: fused, or by a product and a sum.
 struct Ways {
     fused: usize,
     apart: usize,
@@ -93,12 +94,13 @@ impl Latency {
         latency
     }
 
-    /// How long what follows a value takes.
+    /// Cycles from a value to the last result that needs it.
     pub(crate) fn rest(&self, id: ValueId) -> usize {
         self.rests[id.index()]
     }
 
-    /// Whether it is faster to fuse the product of a contraction with the addend; `rest` is the wait after the sum.
+    /// Whether it is faster to fuse the product of a contraction with the addend; `rest` is the number of cycles after
+    /// the sum.
     pub(crate) fn is_fused(&self, contraction: &Contraction, rest: usize) -> bool {
         let Ways { fused, apart } = self.ways(contraction);
         fused <= apart || apart + rest + SPARE < self.total
@@ -110,7 +112,7 @@ impl Latency {
         Ways { fused: addend.max(factors) + PRODUCT, apart: addend.max(factors + PRODUCT) + SUM }
     }
 
-    /// Notes that `rest` follows a value.
+    /// Notes that `rest` cycles follow a value.
     fn follow(&mut self, id: ValueId, rest: usize) {
         let known = &mut self.rests[id.index()];
         *known = rest.max(*known);

@@ -1,4 +1,4 @@
-//! The symbolic compiler: a robot in, straight-line code out.
+//! The symbolic compiler: it turns a robot into straight-line code.
 //!
 //! [`Compiler`] is the only entry point. It writes a function of the robot as a graph of sums and products (the
 //! formulas of the seven steps are in `formulate/seven_steps.rs`), folds terms that are exactly zero or one, drops
@@ -9,7 +9,7 @@
 //! Robot → formulate → ir::Graph → value numbering, rewriting → lower → Program → fma, latency → prove
 //! ```
 //!
-//! Data in, data out: nothing here opens a file or prints.
+//! This crate neither opens files nor prints.
 #![warn(missing_debug_implementations)]
 #![forbid(unsafe_code)]
 // Symbolic matrices are passed by value, so that code reads like formulas.

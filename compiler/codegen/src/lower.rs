@@ -326,7 +326,7 @@ impl<'w> Lowering<'w> {
         matches!(self.written.graph.op(at), Op::Constant(_)) && self.magnitude(at) == 0.0
     }
 
-    /// The magnitude of a constant.
+    /// The value of a constant without its sign.
     fn magnitude(&self, at: Ref) -> f64 {
         self.written.graph.number(at.magnitude()).map_or(0.0, Number::to_f64)
     }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use rne_model::did_you_mean;
 
-/// An enum with all its variants in order, their names, and the variant of a name.
+/// Defines an enum with a list of its variants, their names, and the variant of a name.
 macro_rules! named {
     ($(#[$doc:meta])* $type:ident, $what:literal {
         $($(#[$variant_doc:meta])* $variant:ident = $name:expr),* $(,)?
@@ -37,7 +37,7 @@ pub struct UnknownName {
 
 impl fmt::Display for UnknownName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        /// Words that a reader takes in at a glance.
+        /// Largest number of valid words that a message lists.
         const FEW: usize = 20;
         let Self { found, what, allowed } = self;
         write!(f, "`{found}` is not a valid {what}; ")?;

@@ -12,18 +12,19 @@ use crate::program::{Program, Proof};
 use crate::proof::{self, Reference};
 use crate::reduced::near_origins;
 
-/// Sums and products of a function that are compiled: `inverse_dynamics_derivatives` of an arm of 40 joints in which
-/// nothing folds. Its text is some 15 MB.
+/// Largest number of sums and products of a function that is compiled: that of `inverse_dynamics_derivatives` for an
+/// arm of 40 joints in which nothing folds. Its text has about 15 MB.
 pub(crate) const LARGEST: usize = 500_000;
 
 /// The purpose that a program is arranged for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Target {
-    /// The shortest wait for the result of one call ([`fma::ordered_for_latency`]); the fewest instructions where a
-    /// program is so long that they matter more.
+    /// The shortest wait for the result of one call ([`fma::ordered_for_latency`]); the fewest instructions if a
+    /// program is so long that they count more.
     #[default]
     Latency,
-    /// The fewest instructions of a machine with fused multiply-add ([`fma::contracted`]), as batches want.
+    /// The fewest instructions on a processor with fused multiply-add ([`fma::contracted`]), for batches of many
+    /// states.
     Throughput,
 }
 
@@ -37,12 +38,13 @@ impl Target {
 }
 
 impl Formulation {
-    /// The reduced form that it is, with its constants, not proved.
+    /// Lowers the formulas to a program in the reduced form, which is not proved. Also returns its exact constants.
     pub(crate) fn lowered(self, robot: &Robot, function: Function) -> Result<(Program, Exactly), CompileError> {
         lower(&Heading { robot, function, form: Form::Reduced }, self.traced, &self.names)
     }
 
-    /// The reduced form that it is: lowered, arranged for a target, and proved to be that of the seven steps.
+    /// Lowers the formulas to a program in the reduced form, arranges it for a target, and proves that it is the
+    /// function of the seven steps.
     pub(crate) fn proved(
         self,
         function: Function,
@@ -68,10 +70,10 @@ impl<'r> Reference<'r> {
         Self::to(robot, seven_steps_within(LARGEST, robot, function, &[], false)?)
     }
 
-    /// As [`Reference::of`]; the program is that of the seven steps.
+    /// As [`Reference::of`], with the program of the seven steps as an argument.
     ///
     /// # Errors
-    /// When what it is compared with cannot be compiled.
+    /// When a further program for the comparison cannot be compiled.
     pub(crate) fn to(robot: &'r Robot, seven_steps: Program) -> Result<Self, CompileError> {
         let compiled = |function| {
             let heading = Heading { robot, function, form: Form::SevenSteps };
@@ -83,7 +85,7 @@ impl<'r> Reference<'r> {
         Self::new(robot, seven_steps, is_far, compiled)
     }
 
-    /// The evidence that a formulation, arranged as a build arranges it, is that of the seven steps.
+    /// Returns the evidence that a formulation, arranged as in a build, is the function of the seven steps.
     ///
     /// # Errors
     /// When it is another function, or rounds too badly.
@@ -92,8 +94,8 @@ impl<'r> Reference<'r> {
         Ok(formulation.proved(function, Target::Latency, self)?.proof.unwrap_or_default())
     }
 
-    /// Whether a formulation can be proved, and how many times less precise than the seven steps it is in single
-    /// precision, on the average of random states; `None` when it is another function.
+    /// Returns how many times less precise a formulation is in single precision than the seven steps, on the average of
+    /// random states; `None` if it is another function.
     ///
     /// # Errors
     /// When it cannot be lowered.
@@ -110,8 +112,8 @@ impl<'r> Reference<'r> {
     }
 }
 
-/// A function by the seven steps, if they are not more than `most` operations; behind its own outputs stands every
-/// component of the quantities in `keep`. With `explains` it tells its formulas before folding, too.
+/// Compiles a function by the seven steps, if they have at most `most` operations. After its own outputs it returns
+/// every component of the quantities in `keep`. With `explains` it also keeps its formulas before folding.
 pub(crate) fn seven_steps_within(
     most: usize,
     robot: &Robot,

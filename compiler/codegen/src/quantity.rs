@@ -15,7 +15,7 @@ pub enum Step {
     Velocity,
     /// 4: acceleration of the centre of mass c̈.
     Acceleration,
-    /// 5: acceleration of gravity g, carried into the link's frame.
+    /// 5: acceleration of gravity g, rotated into the link's frame.
     Gravity,
     /// 6: forces and moments f, n.
     Wrenches,
@@ -169,8 +169,8 @@ macro_rules! quantities {
         $quantity:ident: $prefix:literal, $indices:ident, $step:literal, $has_statements:literal, $letter:literal,
         $unit:literal, $meaning:literal;
     )*) => {
-        /// A quantity of the recursion. Vectors of link i are in frame i, in form P of the lecture: frame i is at joint
-        /// i, fixed to link i.
+        /// A quantity of the recursion. Vectors of link i are in axes of frame i in form P (proximal): this frame is at
+        /// joint i and fixed to link i.
         #[allow(rustdoc::broken_intra_doc_links)] // [ω]× is no link
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Quantity {
@@ -337,8 +337,8 @@ quantities! {
     Scaled:                     "sol",       Joint,     8, true,  "", "", "the same divided by D";
     ActuatorTorque:             "act",       Joint,     8, false, "", "", "what the motor adds";
 
-    // Of a link with a first moment but no mass. New quantities come here, at the end, because the random numbers of
-    // sample points depend on the index of a quantity.
+    // Quantities of a link with a first moment but no mass. They are not among the rows above, because the random
+    // numbers of sample points depend on the index of a quantity.
     MasslessMoment:             "mc",        Vector,    0, false, "h", "kg m",
         "first moment of a link without mass";
     OmegaCrossMoment:           "wxh",       Vector,    6, false, "(ω×h)", "kg m/s", "ω × h";

@@ -5,12 +5,13 @@ use std::fmt;
 use crate::error::CompileError;
 use crate::function::Function;
 
-/// No program is emitted whose torques differ more, relative to the largest.
+/// Largest difference of torques from the seven steps, relative to the largest torque, with which a program is emitted.
 const LARGEST_ROUNDING: f64 = 1e-11;
 
-/// Accelerations are as much less precise as the matrices that they are solved with are badly conditioned: the mass
-/// matrix of the PUMA 560 without the inertia of its rotors has 10⁵. Contacts that hold more than the robot can move
-/// have 10⁸, as their damping is 10⁻⁸ beside numbers near 1.
+/// Largest difference of accelerations from the seven steps, relative to the largest one. Accelerations lose precision
+/// by the condition number of the matrix that they are solved with: 10⁵ for the mass matrix of the PUMA 560 without the
+/// inertia of its rotors, and 10⁸ for contacts that hold more than the robot can move, as their damping is 10⁻⁸ beside
+/// numbers near 1.
 const LARGEST_ROUNDING_OF_ACCELERATIONS: f64 = 1e-7;
 
 /// The largest rounding error of a program that is emitted.
@@ -18,7 +19,8 @@ pub(crate) const fn largest_rounding(function: Function) -> f64 {
     if function.inverts_mass() { LARGEST_ROUNDING_OF_ACCELERATIONS } else { LARGEST_ROUNDING }
 }
 
-/// The largest error in single precision, in parts of the largest number that a function returns, that needs no words.
+/// The largest error in single precision, in parts of the largest number that a function returns, that is not reported
+/// to users.
 pub(crate) const fn largest_loss(function: Function) -> f64 {
     if function.inverts_mass() { 1e-2 } else { 1e-4 }
 }
@@ -28,7 +30,7 @@ pub(crate) const fn largest_loss(function: Function) -> f64 {
 pub struct Refusal {
     /// The form that was refused.
     pub attempt: Attempt,
-    /// Why.
+    /// The reason for the refusal.
     pub reason: Reason,
 }
 
@@ -36,9 +38,9 @@ pub struct Refusal {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Attempt {
-    /// Any way at all.
+    /// Any reduced form.
     Any,
-    /// By the choices of the plan, without some of them.
+    /// By the choices of the plan, with some of them left out.
     Planned(LeftOut),
     /// The plain formulas with every value computed once.
     EveryValueOnce,

@@ -1,12 +1,12 @@
-//! The order of the statements in which few values are alive at once.
+//! Chooses an order of the statements in which few values are alive at once.
 //!
 //! A value is alive from its statement to the last statement that uses it. A processor has 16 or 32 registers; values
 //! beyond them are stored on the stack and loaded again, which takes instructions, and code that is longer than the
-//! nearest cache, 32 KB, is fetched anew in every call. The order of the recursion keeps many values alive: those of
-//! all links on the way out, until the way back uses them, and those of all columns of a matrix.
+//! first-level cache, 32 KB, is fetched again in every call. The order of the recursion keeps many values alive: those
+//! of all links from the outward pass until the inward pass uses them, and those of all columns of a matrix.
 //!
-//! The order here is greedy: of all statements whose operands are known, that one is next which is the last to use most
-//! of its operands. Among equals it is the first of the given order. No value changes, so no bit of a result does.
+//! The order here is greedy. Of all statements whose operands are known, the next one is the last user of the most
+//! operands; among equals it is the first in the given order. Values do not change, so no bit of a result changes.
 
 use std::collections::BinaryHeap;
 
@@ -14,11 +14,12 @@ use crate::function::Form;
 use crate::program::{Order, Program};
 use crate::values::ValueId;
 
-/// A statement that comes this far before another one in the given order comes first, even if it ends one life less.
+/// A statement that is this many places before another one in the given order comes first, even if it ends the life of
+/// one value less.
 const FAR: i64 = 500;
 
-/// The program with its statements in an order in which few values are alive at once. It follows no recursion any more.
-/// Code of the seven steps keeps their order.
+/// Returns the program with its statements in an order in which few values are alive at once. This order follows no
+/// recursion. Code of the seven steps keeps its order.
 ///
 /// ```
 /// use rne_codegen::ordered_for_registers;
@@ -61,7 +62,7 @@ struct Lives {
     operands: Vec<Vec<usize>>,
     /// For each statement, the statements that use its value.
     users: Vec<Vec<usize>>,
-    /// How many of these are not placed yet.
+    /// For each statement, how many of its `users` are not placed yet.
     uses: Vec<usize>,
 }
 
@@ -102,7 +103,7 @@ impl Lives {
         found
     }
 
-    /// The statements in order.
+    /// Returns the indices of the statements in the new order.
     fn order(mut self) -> Vec<usize> {
         let mut missing: Vec<usize> = self.operands.iter().map(Vec::len).collect();
         let is_known = (0..missing.len()).filter(|&index| missing[index] == 0);
@@ -110,7 +111,8 @@ impl Lives {
         let mut order = Vec::with_capacity(missing.len());
         let mut is_placed = vec![false; missing.len()];
         while let Some((rank, index)) = ready.pop() {
-            // a rank grows when other uses of its operands are placed; the statement is there again with its new rank
+            // the rank of a statement grows when other users of its operands are placed; it is then in the queue again
+            // with its new rank
             if is_placed[index] || rank != self.rank(index) {
                 continue;
             }
@@ -130,8 +132,8 @@ impl Lives {
         order
     }
 
-    /// The more lives a statement ends, the higher; and higher, the earlier it stands in the given order. What is only
-    /// returned is stored at once and never alive.
+    /// The rank of a statement, by which the next one is chosen: higher if it ends the lives of more values, then if it
+    /// is earlier in the given order. A value that is only returned counts as one more, because it is stored at once.
     fn rank(&self, index: usize) -> i64 {
         let ended = self.operands[index].iter().filter(|&&operand| self.uses[operand] == 1).count();
         let ended = ended + usize::from(self.users[index].is_empty());

@@ -1,7 +1,7 @@
 //! The values of a program in one list, in the order in which they are computed.
 //!
-//! Every pass and every renderer reads this list: the target's arrangement and fusing write it anew, machines and
-//! native code take it as it is, text nests a value without a name where it is used
+//! Every pass and every renderer reads this list. The arrangement for a target and fusing write a new list, machines
+//! and native code use it as it is, and text writes a value without a name inside the expression that uses it
 //! ([`Expression`](crate::Expression)).
 
 use crate::ir::{Name, Operator};
@@ -12,7 +12,7 @@ pub struct ValueId(u32);
 
 impl ValueId {
     /// The value at a place in the list.
-    #[allow(clippy::cast_possible_truncation)] // `push` counts them
+    #[allow(clippy::cast_possible_truncation)] // `push` refuses a larger index
     pub(crate) const fn at(index: usize) -> Self {
         Self(index as u32)
     }
@@ -29,7 +29,7 @@ impl ValueId {
 pub enum Value {
     /// An argument of the function.
     Argument,
-    /// A number. Without a name it is the constant 0, where a function returns one.
+    /// A number. Without a name it is the constant 0, for a result that is zero.
     Constant(f64),
     /// The sine of an angle.
     Sine(ValueId),
@@ -50,9 +50,9 @@ pub enum Value {
 /// A sum or difference with a product, x y + z, which a processor may compute by one instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contraction {
-    /// x and y.
+    /// The factors x and y.
     pub factors: [ValueId; 2],
-    /// z.
+    /// The addend z.
     pub addend: ValueId,
     /// The part that a difference negates; `None` for a sum.
     pub negated: Option<Negated>,
@@ -61,9 +61,9 @@ pub struct Contraction {
 /// The part of a contraction that is negated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Negated {
-    /// x.
+    /// The factor x, as in z - x y.
     Factor,
-    /// z.
+    /// The addend z, as in x y - z.
     Addend,
 }
 
@@ -80,7 +80,7 @@ impl Value {
         operands.into_iter().flatten()
     }
 
-    /// The same value with other operands.
+    /// Returns the value with each operand changed by `change`.
     #[must_use]
     pub fn map(self, mut change: impl FnMut(ValueId) -> ValueId) -> Self {
         match self {
@@ -124,7 +124,7 @@ impl Values {
         self.list[id.index()]
     }
 
-    /// The name of a value; `None` where it is written out where it is used.
+    /// The name of a value; `None` if its expression is written where it is used.
     #[must_use]
     pub fn name(&self, id: ValueId) -> Option<Name> {
         self.names[id.index()]
@@ -146,17 +146,17 @@ impl Values {
         id
     }
 
-    /// Computes a value otherwise.
+    /// Replaces the way in which a value is computed.
     pub fn replace(&mut self, id: ValueId, value: Value) {
         self.list[id.index()] = value;
     }
 
-    /// The first values.
+    /// A copy of the first `count` values.
     pub(crate) fn first(&self, count: usize) -> Self {
         Self { list: self.list[..count].to_vec(), names: self.names[..count].to_vec() }
     }
 
-    /// Names a value. What has a name, or is a number, gets another one.
+    /// Names a value. If it has a name or is a number, a new value that is equal gets the name.
     pub(crate) fn named(&mut self, name: Name, id: ValueId) -> ValueId {
         if self.name(id).is_some() || matches!(self.get(id), Value::Constant(_)) {
             return self.push(Some(name), Value::Same(id));
@@ -165,8 +165,8 @@ impl Values {
         id
     }
 
-    /// A sum or difference with a product in it that nothing else uses, and that product; of two products the right
-    /// one.
+    /// Returns the contraction of a sum or difference with a product that nothing else uses, and this product; of two
+    /// products the right one.
     #[must_use]
     pub fn contraction(&self, id: ValueId) -> Option<(Contraction, ValueId)> {
         let Value::Binary(operator @ (Operator::Sum | Operator::Difference), a, b) = self.get(id) else { return None };

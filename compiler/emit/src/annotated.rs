@@ -47,13 +47,13 @@ impl Annotated {
         self.text.push_str(text);
     }
 
-    /// The text alone.
+    /// Returns the text without the kinds.
     #[must_use]
     pub fn as_str(&self) -> &str {
         &self.text
     }
 
-    /// The text piece by piece; `None` for words, operators and brackets.
+    /// Returns the text in pieces, each with its kind; `None` for words, operators and brackets.
     pub fn pieces(&self) -> impl Iterator<Item = (Option<Part>, &str)> {
         let ends = self.spans.iter().map(|(range, _)| range.end);
         let between = std::iter::once(0).chain(ends).zip(&self.spans).flat_map(|(from, (range, part))| {

@@ -10,13 +10,13 @@ use super::syntax::Syntax;
 /// The position of an operand in an expression.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Position {
-    /// Left of + or -.
+    /// Left operand of + or -.
     Summand,
-    /// Right of + or -.
+    /// Right operand of + or -.
     RightSummand,
-    /// Left of ·.
+    /// Left operand of · or /.
     Factor,
-    /// Right of ·.
+    /// Right operand of · or /.
     RightFactor,
     /// After a unary minus.
     Negated,

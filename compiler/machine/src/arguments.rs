@@ -132,7 +132,7 @@ macro_rules! arguments {
         }
 
         /// The places of the arguments in `arrays`.
-        #[allow(non_camel_case_types)] // they are called as the arguments
+        #[allow(non_camel_case_types)] // the variants have the names of the arguments
         enum Place { $($name,)* parameters }
 
         impl<'a, T> Arguments<'a, T> {

@@ -12,7 +12,7 @@ use crate::arguments::Array;
 pub enum WrongSize {
     /// The array has another number of numbers.
     Numbers {
-        /// The number of numbers that the function needs; for strided numbers at least so many.
+        /// The number of numbers that the function needs; strided arrays may have more.
         needed: usize,
         /// The number of numbers that were given.
         given: usize,

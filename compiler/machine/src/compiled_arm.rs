@@ -215,7 +215,6 @@ impl CompiledArm {
     /// [`jacobian`](Self::jacobian), are then about this frame. Other functions do not change. `name` is that of a
     /// frame in the list `frames` of the robot file, or that of a joint for its link frame. If the same frame is
     /// requested again, the same arm is returned, with its compiled functions.
-    /// again gives the same arm, compiled.
     ///
     /// # Errors
     /// When neither a frame nor a joint has this name.

@@ -68,7 +68,7 @@ impl CompiledFunction {
         &self.program
     }
 
-    /// Returns the machine code of the program.
+    /// Returns the program in the form that the machine executes.
     #[must_use]
     pub fn machine(&self) -> &Machine {
         &self.machine

@@ -44,14 +44,14 @@
 //!   among the inputs, an output by its index among the outputs, constants by the places they were given. Both lengths
 //!   are compared before every call, and the constants belong to the function. It calls nothing. Inputs do not change
 //!   while outputs are written: one is borrowed shared, the other mutably.
-//! - **Stack.** A long program keeps kilobytes there. Every page is touched in order (`enable_probestack`), as in code
-//!   of rustc, so that a stack that is too small ends at its guard page.
-//! - **Lifetime.** [`Pages`] has the memory of the function and is freed with the [`Native`], the pointer's only owner,
-//!   which hands it to nobody. A call borrows the `Native`. (On Windows Cranelift frees nothing.)
-//! - **Threads.** The function changes nothing but the outputs. What has its memory stands in a mutex that nobody
-//!   locks, so that the compiler sees by itself that a `Native` is `Send` and `Sync`.
-//! - **Instructions.** Cranelift asks the processor what it has, and is refused where it lacks the fused multiply-add
-//!   of the vector unit.
+//! - **Stack.** A long program needs kilobytes of stack. It touches every page in order (`enable_probestack`), as code
+//!   of rustc does, so that a stack that is too small ends at its guard page.
+//! - **Lifetime.** [`Pages`] has the memory of the function and is freed with the [`Native`], the only owner of the
+//!   pointer, which gives it to nobody. A call borrows the `Native`. (On Windows Cranelift frees nothing.)
+//! - **Threads.** The function changes nothing but the outputs. The owner of its memory is in a mutex that nobody
+//!   locks, so that the compiler itself derives that a `Native` is `Send` and `Sync`.
+//! - **Instructions.** Cranelift detects the instructions of the processor. If the processor lacks the fused
+//!   multiply-add of the vector unit, no function is compiled.
 #![allow(unsafe_code)]
 
 use core::fmt;
@@ -252,7 +252,7 @@ pub enum NativeError {
 }
 
 impl NativeError {
-    #[allow(clippy::needless_pass_by_value)] // errors, as they are mapped
+    #[allow(clippy::needless_pass_by_value)] // by value, as `map_err` passes an error
     fn processor(why: impl fmt::Display) -> Self {
         Self::Processor(why.to_string())
     }
@@ -295,7 +295,7 @@ mod tests {
         let unit = VectorUnit::all().next().expect("that of the target");
         let oldest = cranelift_native::builder_with_options(false).expect("a processor that Cranelift knows");
         if Kernel::of::<f64>(unit).is_fused && cfg!(target_arch = "x86_64") {
-            return; // these tests were compiled for a newer one
+            return; // these tests were compiled for a newer processor
         }
         let native = Native::<f64>::with(unit, &program, &oldest).expect("native code");
         let mut random = fastrand::Rng::with_seed(9);

@@ -85,7 +85,7 @@ macro_rules! methods {
             /// # Errors
             /// When an argument does not have one element per joint or tip, when it is
             /// [out of range](crate::OutOfRange), or when the function cannot be compiled for this robot.
-            #[allow(clippy::too_many_arguments)] // those of the table
+            #[allow(clippy::too_many_arguments)] // the arguments are those of the table of functions
             pub fn $name<'a, T: Number>(
                 &self,
                 $($argument: argument_type!($kind),)*

@@ -42,7 +42,7 @@ impl OutOfRange {
     /// Refuses numbers that an argument cannot have. `number` returns an element of the argument by its index.
     ///
     /// # Errors
-    /// Says what is wrong with the numbers.
+    /// When the argument cannot have these numbers; the error says why.
     pub fn check(argument: &str, number: impl Fn(usize) -> Option<f64>) -> Result<(), Self> {
         let at = |element| number(element).unwrap_or(f64::NAN);
         match argument {
@@ -65,7 +65,7 @@ impl OutOfRange {
     /// squares must be 1 to within 2e-3. `index` counts the joints that do not depend on others, from 0.
     ///
     /// # Errors
-    /// Has the joint and both numbers.
+    /// When no angle has them; the error has the joint and both numbers.
     pub fn check_turn(index: usize, turn: [f64; 2]) -> Result<(), Self> {
         let [sin, cos] = turn;
         let is_none = (sin * sin + cos * cos - 1.0).abs() > 2e-3;

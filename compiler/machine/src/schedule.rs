@@ -8,7 +8,7 @@ use rne_runtime::machine::{Code, Instruction, NOWHERE, Operation, Slot, Turn};
 use crate::dataflow::Dataflow;
 use crate::selection::{Place, constants, operation};
 
-/// One action of the schedule.
+/// One action of the generated code; a list of them is in the order of execution.
 #[derive(Clone, Copy, Debug)]
 enum Event {
     /// Computes a value, or loads an input or a constant, into the accumulator.

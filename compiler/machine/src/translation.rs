@@ -51,7 +51,7 @@ pub(crate) mod sealed {
 
 /// Returns of how many numbers one instruction computes sines and cosines: as many as a vector register of Cranelift
 /// has, if every processor of the family has vector registers.
-#[allow(clippy::cast_possible_truncation)] // 16 bytes
+#[allow(clippy::cast_possible_truncation)] // at most 16
 const fn lanes<T>() -> u8 {
     if cfg!(any(target_arch = "x86_64", target_arch = "aarch64")) { 16 / size_of::<T>() as u8 } else { 1 }
 }
@@ -254,7 +254,7 @@ impl<T: Number> Translation<'_, T> {
             };
             let Some(turn) = dataflow.angles.iter().position(|of| *of == angle) else { continue };
             let (register, lane) = (turn / usize::from(lanes), turn % usize::from(lanes));
-            #[allow(clippy::cast_possible_truncation)] // of a register
+            #[allow(clippy::cast_possible_truncation)] // a register has few lanes
             let result = self.lane(results[register][which], lane as u8, lanes);
             self.computed[id.index()] = Some(result);
         }

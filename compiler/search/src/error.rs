@@ -11,9 +11,9 @@ use rne_model::Report;
 pub enum SearchError {
     /// An arm with run-time parameters has no plan.
     RunTimeParameters,
-    /// A function that should be rewritten has the seven steps alone.
+    /// A function that should be rewritten has no form but the seven steps.
     Irreducible(Function),
-    /// The plan that was found, or the one at hand, cannot be compiled or proved.
+    /// The plan that was found, or the plan that was given, cannot be compiled or proved.
     Compile(CompileError),
     /// The plan that was found differs from the one that is read back from its text.
     NotWritten,

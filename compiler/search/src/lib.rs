@@ -24,7 +24,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Data in, data out: nothing here opens a file, asks a clock or prints.
+//! This crate neither opens files, nor asks a clock, nor prints.
 #![warn(missing_debug_implementations)]
 #![forbid(unsafe_code)]
 

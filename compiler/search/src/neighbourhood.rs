@@ -13,7 +13,7 @@ pub(crate) enum Part {
     Joint(usize),
 }
 
-/// The plans beside a plan, of one robot.
+/// Finds plans of one robot that differ little from a given plan.
 #[derive(Clone, Debug)]
 pub struct Neighbourhood(OpenChoices);
 
@@ -24,8 +24,9 @@ impl Neighbourhood {
         Self(Descent::new(robot, &[]).open_choices().clone())
     }
 
-    /// Plans that differ in one choice, in all gauges of one joint, in all of frame N of one joint, or in what a group
-    /// of parallel axes shares; of joints that are alike, one alone or all together.
+    /// Returns plans that differ in one choice, in all regrouping targets of one joint, in all choices of frame N of
+    /// one joint, or in what a group of parallel axes shares. Of joints of the same structure, one changes alone, or
+    /// all change together.
     #[must_use]
     pub fn neighbours(&self, plan: &Plan) -> Vec<Plan> {
         let alone = self.parts(false).into_iter().map(|part| (part, false));
@@ -33,8 +34,8 @@ impl Neighbourhood {
         alone.chain(together).flat_map(|(part, together)| self.beside(plan, part, together)).collect()
     }
 
-    /// Parts for which a descent chooses, one after the other. Of joints that choose together, the first one stands for
-    /// all.
+    /// Returns the parts of the robot for which a descent chooses, one after the other. Of joints that choose together,
+    /// only the first one is a part.
     pub(crate) fn parts(&self, together: bool) -> Vec<Part> {
         let joints = self.0.joints.iter().enumerate();
         let first = joints.filter(|(index, joint)| !together || joint.alike.first() == Some(index));
@@ -46,7 +47,7 @@ impl Neighbourhood {
         self.0.joints.iter().any(|joint| joint.alike.len() > 1)
     }
 
-    /// How many other joints are like this one.
+    /// Returns how many other joints have the same structure as this one.
     fn followers(&self, part: Part) -> usize {
         match part {
             Part::Arm => 0,
@@ -54,7 +55,8 @@ impl Neighbourhood {
         }
     }
 
-    /// Plans in which one part makes other choices, and, where they choose together, the joints that are like it.
+    /// Returns plans in which one part makes other choices; with `together`, joints of the same structure make the same
+    /// choices.
     pub(crate) fn beside(&self, plan: &Plan, part: Part, together: bool) -> Vec<Plan> {
         let mut list = Vec::new();
         match part {
@@ -69,7 +71,7 @@ impl Neighbourhood {
         if together { list.into_iter().map(|other| self.everywhere(plan, other)).collect() } else { list }
     }
 
-    /// The change from one plan to another, made at all joints that are alike.
+    /// Makes the change from one plan to another at all joints of the same structure.
     fn everywhere(&self, from: &Plan, to: Plan) -> Plan {
         to.followed(from, |index| &self.0.joints[index].alike)
     }
@@ -105,7 +107,8 @@ impl Neighbourhood {
         }
     }
 
-    /// Scales of lengths and of forces to try, from all lengths and from the matter of some joints.
+    /// Returns the scales of lengths and of forces to try: from all lengths, and from masses and first moments of the
+    /// links of some joints. `None` keeps a scale.
     fn scales(&self, joints: &[usize]) -> Vec<[Option<Scale>; 2]> {
         let lengths = self.0.lengths.iter().chain(&[Scale::Default, Scale::One]);
         let of_lengths = lengths
@@ -197,7 +200,8 @@ impl Neighbourhood {
         (index + 1..joints.len()).find(|&next| !joints[next].is_parallel).unwrap_or(joints.len()) - 1
     }
 
-    /// All that a group of parallel axes can share, with its offsets as they are, innermost or outermost.
+    /// Adds all combinations of what a group of parallel axes can share, with its origins as they are, innermost or
+    /// outermost.
     fn of_group(&self, plan: &Plan, index: usize, list: &mut Vec<Plan>) {
         let starts = index + 1 < self.0.joints.len()
             && !self.0.joints[index].is_parallel
@@ -259,7 +263,7 @@ impl Neighbourhood {
         }
     }
 
-    /// Makes one to three random changes.
+    /// Returns a plan with one to three random changes.
     #[must_use]
     pub fn random(&self, plan: &Plan, rng: &mut fastrand::Rng) -> Plan {
         let mut other = plan.clone();
@@ -269,11 +273,11 @@ impl Neighbourhood {
                 left -= 1;
             }
         }
-        // mostly, what is alike chooses alike
+        // in two of three cases, joints of the same structure change together
         if self.has_alike() && rng.u32(..3) > 0 { self.everywhere(plan, other) } else { other }
     }
 
-    /// Makes one random change; false when it came to nothing.
+    /// Makes one random change; returns false if nothing could be changed.
     fn change(&self, plan: &mut Plan, rng: &mut fastrand::Rng) -> bool {
         let index = rng.usize(..self.0.joints.len());
         let row = &self.0.joints[index];

@@ -9,15 +9,16 @@ use crate::neighbourhood::Neighbourhood;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Progress {
-    /// Plans counted so far.
+    /// Number of plans whose operations have been counted so far.
     pub plans: usize,
     /// Operations of the best plan so far.
     pub best: Cost,
-    /// Words for the part of the search that is running.
+    /// The name of the part of the search that is running.
     pub phase: &'static str,
 }
 
-/// Asked now and then how much of the time is over, 0 to 1; `None` ends the search with what it has.
+/// Returns which part of the time is over, 0 to 1. The search calls it now and then; `None` ends the search with its
+/// result so far.
 pub type Clock<'a> = &'a mut dyn FnMut(&Progress) -> Option<f64>;
 
 /// A search over the plans of one robot.
@@ -28,11 +29,12 @@ pub(crate) struct Exploration<'v> {
     pub(crate) pool: Vec<(usize, Plan)>,
 }
 
-/// The end of a search: out of time.
+/// The error that ends a search when its time is over.
 pub(crate) struct Over;
 
 impl<'v> Exploration<'v> {
-    /// With the choices that a build makes by itself tried first; no plan becomes the best that `veto` is true of.
+    /// Starts a search with the choices that a build makes by itself; no plan for which `veto` is true becomes the
+    /// best.
     pub(crate) fn new(robot: &Robot, veto: impl Fn(&Plan) -> bool + 'v) -> Self {
         let mut plans = Descent::new(robot, &[]);
         plans.refuse(veto);
@@ -58,7 +60,7 @@ impl<'v> Exploration<'v> {
             self.settle((&mut weight, &mut plan), false, clock)?;
             let mut weighed = self.weigh(self.neighbourhood.neighbours(&plan), clock)?;
             weighed.sort_by_key(|(weight, _)| *weight);
-            // A first step that costs something, and a second one that gains more.
+            // a first change that costs a few operations, and a second change that saves more
             let limit = weight + 6;
             let mut found = None;
             'first: for (_, first) in weighed.iter().take_while(|(cost, _)| *cost <= limit) {
@@ -78,7 +80,7 @@ impl<'v> Exploration<'v> {
         }
     }
 
-    /// Lets each part in turn take the best of its choices, until none changes.
+    /// Gives each part in turn the best of its choices, until none changes.
     fn settle(
         &mut self,
         (weight, plan): (&mut usize, &mut Plan),
@@ -101,7 +103,7 @@ impl<'v> Exploration<'v> {
         }
     }
 
-    /// The cost of a plan, and a look at the clock now and then.
+    /// Returns the cost of a plan; asks the clock now and then.
     fn tried(&mut self, plan: &Plan, clock: Clock<'_>) -> Result<Option<Cost>, Over> {
         let before = self.plans.counted();
         let cost = self.plans.cost(plan);
@@ -111,7 +113,7 @@ impl<'v> Exploration<'v> {
         Ok(cost)
     }
 
-    /// Plans with their weights.
+    /// Returns the plans that fit the robot, with their weights.
     fn weigh(&mut self, plans: Vec<Plan>, clock: Clock<'_>) -> Result<Vec<(usize, Plan)>, Over> {
         let mut weighed = Vec::new();
         self.tick(clock, "descent")?;
@@ -127,7 +129,8 @@ impl<'v> Exploration<'v> {
         clock(&self.progress(phase)).ok_or(Over)
     }
 
-    /// Annealing: random changes, dearer ones accepted ever more rarely. The clock says how hot it is.
+    /// Simulated annealing: makes random changes, and accepts plans with more operations more and more rarely. The
+    /// clock determines the temperature.
     pub(crate) fn anneal(&mut self, seed: u64, hottest: f64, clock: Clock<'_>) -> Result<(), Over> {
         let mut rng = fastrand::Rng::with_seed(seed);
         let mut plan = self.plans.best().1.clone();

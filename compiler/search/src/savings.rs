@@ -4,8 +4,8 @@ use rne_codegen::Function;
 use rne_codegen::plan::{Cost, Descent, Plan, PlanSet, Rewritten, Trick};
 use rne_model::Robot;
 
-/// The choices without some tricks. A rewritten graph is that of a plan with all of its tricks, so it goes with any of
-/// them.
+/// Returns the choices without some tricks. A rewritten graph belongs to a plan with all of its tricks, so it is
+/// removed if the plan uses one of them.
 #[must_use]
 pub fn without(robot: &Robot, plans: &PlanSet, tricks: &[Trick]) -> PlanSet {
     let mut without = plans.clone();
@@ -18,8 +18,8 @@ pub fn without(robot: &Robot, plans: &PlanSet, tricks: &[Trick]) -> PlanSet {
     without
 }
 
-/// A plan without some tricks, and without those that are not there without them: a unit that is a regrouped moment
-/// goes with the regrouping, an origin that sits where a prismatic link is carried goes with that.
+/// Returns a plan without some tricks, and without choices that are impossible then: a unit that is a regrouped moment
+/// is removed with the regrouping, an origin shift for carried prismatic links is removed with these.
 fn without_tricks(costs: &mut Descent<'_>, plan: &Plan, tricks: &[Trick]) -> Option<Plan> {
     let rests = [Trick::Scales, Trick::OriginShifts, Trick::RegroupingTargets, Trick::LastFrame, Trick::Gyrostat];
     let mut plan = tricks.iter().fold(plan.clone(), |plan, trick| trick.left_out_of(&plan));

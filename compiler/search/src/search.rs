@@ -20,11 +20,11 @@ pub struct SearchOptions {
     pub seed: u64,
 }
 
-/// Looks for a cheaper plan, from the one at hand onwards, and rewrites the graphs that the best plans give. What it
-/// finds is not much less precise in single precision than the seven steps, and never worse than a plan at hand of
-/// which that is true. A rewritten graph is kept where it takes fewer operations than the one that the plan gives.
+/// Searches for a plan with fewer operations, starting from `known`, and rewrites the graphs of the best plans. The
+/// result is not much less precise in single precision than the seven steps. It has no more operations than the known
+/// plan, if that is as precise. A rewritten graph is kept if it takes fewer operations than the graph of the plan.
 ///
-/// `clock` returns how much of the time is over; the search calls it regularly.
+/// `clock` returns which part of the time is over, 0 to 1; the search calls it regularly.
 ///
 /// # Errors
 /// When the robot has run-time parameters, when a function of `options` has no reduced form, or when the result cannot
@@ -39,7 +39,7 @@ pub fn search(
     let torques = rne_codegen::function_of_plan(robot);
     let torques_by = |plan: &Plan| Formulation::by_plan(robot, plan, torques, Algorithm::Rnea);
     let of_torques = Reference::of(robot, torques)?;
-    // whether what is at hand can be taken is better known before a search than after it
+    // the known graphs are proved before the search, so that an error does not come only after it
     let at_hand = known.map(|known| proven(robot, known)).transpose()?.unwrap_or_default();
     let is_refused =
         |plan: &Plan| !torques_by(plan).and_then(|graph| is_sound(&of_torques, torques, graph)).unwrap_or(false);
@@ -54,7 +54,7 @@ pub fn search(
     let plan = search.plans.best().1.clone();
     let plan = search.plans.tidied(&plan);
     let operations = search.plans.cost(&plan).unwrap_or_default();
-    // the plan was made here
+    // an error is not due to a plan file, because the plan was made here
     let made_here = |error: CompileError| error.suspecting(robot, false);
     let accuracy = Accuracy::from(&of_torques.proof(torques, torques_by(&plan)?).map_err(made_here)?);
     let reduced = Reduced { operations, accuracy, plan };
@@ -67,7 +67,7 @@ pub fn search(
             continue;
         }
         let reference = Reference::of(robot, function)?;
-        // one that has lost too much precision may be replaced by a dearer one
+        // a known graph that is too imprecise may be replaced by one with more operations
         let mut best = match known {
             Some(known) if place.is_none() || is_sound(&reference, function, known.formulation(robot, function)?)? => {
                 Some(known.clone())
@@ -99,7 +99,7 @@ fn check(robot: &Robot, options: &SearchOptions) -> Result<(), SearchError> {
     irreducible.map_or(Ok(()), |&function| Err(SearchError::Irreducible(function)))
 }
 
-/// The rewritten graphs of a plan file, each proved, with the operations that it takes.
+/// Returns the rewritten graphs of a plan file, each proved, with the number of its operations.
 fn proven(robot: &Robot, known: &PlanFile) -> Result<BTreeMap<Function, Rewritten>, SearchError> {
     let mut proven = BTreeMap::new();
     for (&function, rewritten) in &known.rewritten {
@@ -131,7 +131,7 @@ fn without_rewriting(robot: &Robot, reduced: &Reduced, function: Function) -> Re
     Ok(Formulation::by_plan(robot, &plan, function, algorithm)?.cost())
 }
 
-/// How much less precise than the seven steps a form may be in single precision, on the average.
+/// Largest factor by which a form may be less precise than the seven steps in single precision, on the average.
 const PRECISION: f64 = 3.0;
 
 /// States over which the average is taken.
@@ -142,14 +142,14 @@ fn is_sound(reference: &Reference<'_>, function: Function, graph: Formulation) -
     Ok(reference.loss_of_precision(function, graph, STATES)?.is_some_and(|loss| loss <= PRECISION))
 }
 
-/// Descent, then annealing in rounds until `share` of the time is over.
+/// Runs the descent, then annealing in rounds, until `share` of the time is over.
 fn explore(search: &mut Exploration<'_>, seed: u64, share: f64, clock: Clock<'_>) -> Result<(), Over> {
     const ROUNDS: u32 = 4;
     let until = |end: f64, clock: &mut dyn FnMut(&Progress) -> Option<f64>, progress: &Progress| {
         clock(progress).filter(|over| *over < end)
     };
     let half = share * 0.5;
-    // it ends when it is done, or out of its own time, or out of all
+    // the descent ends when it is done, when half of `share` is over, or when all time is over
     let _ = search.descend(&mut |progress| until(half, clock, progress));
     let start = clock(&search.progress("descent")).ok_or(Over)?;
     for round in 0..ROUNDS {
@@ -169,9 +169,9 @@ fn candidates(robot: &Robot, function: Function, search: &mut Exploration<'_>) -
     if !Algorithm::is_planned(function) {
         return vec![Rewritten::default()];
     }
-    // those of the torques differ little; what the plan means to another function, its algorithm hides
+    // many plans are tried for the torques; other functions use fewer of the choices, so a few plans are enough
     let most = match function {
-        // a function that holds a floating base still has a plan of its own, and this one only
+        // a function that keeps a floating base at rest has only one plan, of its own
         _ if function.holds_floating_base(robot) => 1,
         Function::InverseDynamics => 16,
         _ => 4,
@@ -189,8 +189,8 @@ fn candidates(robot: &Robot, function: Function, search: &mut Exploration<'_>) -
     found.into_iter().map(candidate).collect()
 }
 
-/// Rewrites the graphs of the best plans in the time from `begin` to `end`: half of it all of them, half the four that
-/// came out best.
+/// Rewrites the graphs of the best plans in the time from `begin` to `end`: all of them in the first half, the best
+/// four in the second half.
 fn rewrite(
     (robot, function, reference): (&Robot, Function, &Reference<'_>),
     search: &mut Exploration<'_>,
@@ -233,7 +233,7 @@ fn rewrite(
             break;
         }
         let rewritten = graph.written();
-        // what cannot be read again, or is worth something else, is not kept
+        // a graph that cannot be read again, or is not the same function, is not kept
         let Ok(formulation) = rewritten.formulation(robot, function) else { continue };
         if is_sound(reference, function, formulation)? {
             *best = Some(rewritten);

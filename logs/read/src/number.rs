@@ -1,6 +1,6 @@
-//! Numbers in messages.
+//! Formats numbers for messages.
 
-/// Four digits; three with a power of ten where a number is tiny or huge.
+/// Formats a number with four digits; very small and very large numbers with a power of ten.
 #[must_use]
 pub fn short(number: f64) -> String {
     if number == 0.0 || !number.is_finite() {
@@ -16,8 +16,8 @@ pub fn short(number: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-/// A number for a table: `digits` digits after the decimal point, an exact zero as 0, very small and very large numbers
-/// with a power of ten.
+/// Formats a number for a table: `digits` digits after the decimal point, an exact zero as 0, very small and very large
+/// numbers with a power of ten.
 #[must_use]
 pub fn rounded(value: f64, digits: usize) -> String {
     if value == 0.0 {

@@ -1,4 +1,4 @@
-//! Remedies against errors of logs, as data: each interface names its own options in them.
+//! Remedies for errors of logs, as data, so that each interface can name its own options.
 
 /// A change of the [`Options`](crate::Options) that helps against an error.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -14,7 +14,7 @@ pub enum Remedy {
 /// An option of a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Setting {
-    /// [`Options::joints`](crate::Options::joints), with names that would do.
+    /// [`Options::joints`](crate::Options::joints), with names that are possible.
     Joints(Vec<String>),
     /// [`Options::topic`](crate::Options::topic) of a bag
     Topic,
@@ -34,16 +34,16 @@ pub enum Setting {
     Rate,
     /// [`Options::columns`](crate::Options::columns)
     Columns,
-    /// [`Options::select`](crate::Options::select) with a column, and a text in it that would do.
+    /// [`Options::select`](crate::Options::select) with a column, and a text in it that is possible.
     Select {
         /// The name of the column.
         column: String,
         /// A text in the column.
         value: String,
     },
-    /// [`Options::map`](crate::Options::map) of a table that has these columns: [`suggested`](crate::suggested) makes a
+    /// [`Options::map`](crate::Options::map) for a table with these columns; [`suggested`](crate::suggested) makes a
     /// proposal.
     Map(Vec<String>),
-    /// [`Options::map`](crate::Options::map) with the column of times, of a table that has these columns.
+    /// [`Options::map`](crate::Options::map) with the column of times, for a table with these columns.
     TimeColumn(Vec<String>),
 }

@@ -1,23 +1,23 @@
-//! Names in messages: what may have been meant, and lists that do not grow without end.
+//! Names in messages: suggestions for misspelt names, and lists of limited length.
 
-/// The names that a message lists at most.
+/// Largest number of names that a message lists.
 const LISTED: usize = 12;
 
-/// " (did you mean NAME?)", where a name is near; else nothing.
+/// Returns " (did you mean NAME?)" if a name is similar to `word`, and an empty text otherwise.
 pub(crate) fn instead(word: &str, names: impl IntoIterator<Item: AsRef<str>>) -> String {
     let nearest = names
         .into_iter()
         .map(|name| (strsim::damerau_levenshtein(&word.to_lowercase(), &name.as_ref().to_lowercase()), name))
         .filter(|(distance, name)| {
             let length = word.chars().count().max(name.as_ref().chars().count());
-            // what has no letter of it, as a 1 for a 7, is not near
+            // a name without a common letter, such as 1 and 7, is not similar
             *distance <= length.div_ceil(3) && *distance < length
         })
         .min_by_key(|(distance, _)| *distance);
     nearest.map_or(String::new(), |(_, name)| format!(" (did you mean {}?)", name.as_ref()))
 }
 
-/// Names, the first dozen of them; a last one more is shown, too.
+/// Lists the first twelve names and the number of the others; thirteen names are all listed.
 pub(crate) fn listed(names: impl IntoIterator<Item: AsRef<str>>) -> String {
     let names: Vec<String> = names.into_iter().map(|name| name.as_ref().to_owned()).collect();
     match names.len().saturating_sub(LISTED) {

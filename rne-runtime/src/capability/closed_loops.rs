@@ -20,13 +20,13 @@ capability! {
 ///
 /// Source of the equations: W. Khalil, J.-F. Kleinfinger, "Dynamic modeling of closed-loop robots", 1987.
 pub trait ClosedLoops<DOF, PASSIVE, EQUATIONS, TIPS> of loops {
-    /// One step of Newton's method from the guess `passive`: the positions after the step, and what is left of the
+    /// One step of Newton's method from the guess `passive`: the positions after the step, and the residual of the
     /// equations before it.
     fn closure_step(q: coordinates, passive: passive) -> ClosureStep<PASSIVE, EQUATIONS> =
         |robot| robot.newton(q, passive);
 
-    /// The map G: velocities of the dependent joints are G q̇, and torques at them are worth Gᵀ of them at the joints
-    /// of `q`.
+    /// The map G: velocities of the dependent joints are G q̇, and torques τ_p at them are equivalent to torques Gᵀ τ_p
+    /// at the joints of `q`.
     fn loop_map(q: coordinates, passive: passive) -> PassiveRows = |robot| robot.map(q, passive);
 
     /// Ġ q̇, rad/s² or m/s²: the accelerations of the dependent joints are G q̈ + Ġ q̇.

@@ -1,9 +1,10 @@
 //! The macro that declares a trait beside the definition of its functions.
 
-/// A trait, and its functions by their definitions: those of [`Arm`](crate::Arm), of an arm with its tips, and the
-/// methods of `DynArm`. `or` precedes what a type of the user has without a function of its own.
+/// Defines a trait and its functions by their definitions, and implements it: for [`Arm`](crate::Arm), for an arm with
+/// its tips, and as methods of `DynArm`. The code after `or` is the default for types of the user that do not implement
+/// the function.
 macro_rules! capability {
-    // whether a list has one element for each joint, or for each tip
+    // checks that a list has one element for each joint, or for each tip
     (@checked $robot:ident, $argument:ident, joints) => {
         $robot.has_length(stringify!($argument), $argument)?
     };
@@ -20,13 +21,13 @@ macro_rules! capability {
     (@method $(#[$doc:meta])* $name:ident($($arg:ident: $kind:ident),*) -> $result:ty) => {
         $(#[$doc])*
         #[must_use]
-        #[allow(clippy::too_many_arguments)] // a state and what acts on it
+        #[allow(clippy::too_many_arguments)] // the state, and forces on the robot
         fn $name<T: $crate::Scalar>(&self, $($arg: $crate::values::shapes::known!($kind)),*) -> $result;
     };
     (@method $(#[$doc:meta])* $name:ident($($arg:ident: $kind:ident),*) -> $result:ty, $this:ident $default:block) => {
         $(#[$doc])*
         #[must_use]
-        #[allow(clippy::too_many_arguments)] // a state and what acts on it
+        #[allow(clippy::too_many_arguments)] // the state, and forces on the robot
         fn $name<T: $crate::Scalar>(&self, $($arg: $crate::values::shapes::known!($kind)),*) -> $result {
             let $this = self;
             $default
@@ -57,7 +58,7 @@ macro_rules! capability {
             ///
             /// # Errors
             /// When an argument does not have one element per joint, or `wrenches` not one element per tip.
-            #[allow(clippy::too_many_arguments)] // a state and what acts on it
+            #[allow(clippy::too_many_arguments)] // the state, and forces on the robot
             #[allow(clippy::type_complexity)] // as wide as the result is
             pub fn $name<T: $crate::Scalar>(
                 &self,
@@ -81,7 +82,8 @@ macro_rules! capability {
             }
         )* $($more)* }
     };
-    // of an arm whose joints are known when the program runs, alone; `with` precedes functions that others are made of
+    // for functions of an arm whose joints are only known when the program runs; `with` precedes functions that are
+    // composed of others
     ($(#[$about:meta])* pub trait $trait:ident<$($size:ident),*> of loops { $($functions:tt)* }
         $(with { $($more:tt)* })?) => {
         capability! { @trait { $($($more)*)? } $(#[$about])* $trait<$($size),*> $($functions)* }

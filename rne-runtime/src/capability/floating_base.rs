@@ -50,13 +50,13 @@ pub trait FloatingBase<DOF, NV, TIPS> {
     /// The mass matrix M of `NV` rows and columns: forces are M accelerations + [bias](Self::floating_bias).
     ///
     /// Symmetric to the last bit. The block of the joints is the [mass matrix](crate::MassMatrix::mass_matrix) of the
-    /// robot whose base is held. Elements that no state makes differ from zero are zero: those of joints on different
-    /// branches, and of the base.
+    /// robot whose base is held. Elements that vanish in every state are exactly zero: those of joints on different
+    /// branches, and some of the base.
     fn floating_mass_matrix(q: joints) -> FloatingMatrix = |robot| robot.floating_mass_matrix(q, AtTip::Nothing);
 
     /// The wrench on the base, force (N) above moment (N m), and the torques (N m or N) that a motion without
-    /// accelerations needs, a - g = 0, ω̇ = 0, q̈ = 0: velocity products, and what wrenches at the tips ask. No
-    /// friction, as in [`bias_torques`](crate::InverseDynamics::bias_torques).
+    /// accelerations needs, a - g = 0, ω̇ = 0, q̈ = 0: velocity products, and the wrenches at the tips. No friction, as
+    /// in [`bias_torques`](crate::InverseDynamics::bias_torques).
     ///
     /// `omega`: angular velocity of the base, rad/s, in axes of frame 0.
     fn floating_bias(q: joints, qd: joints, omega: omega, wrenches: wrenches) -> FloatingVector =
@@ -110,9 +110,9 @@ pub trait FloatingPayloadDynamics<DOF, NV> {
 }
 
 capability! {
-/// Momentum of a robot with a floating base, about its centre of mass. `NV` velocities and accelerations, and the
-/// base, are those of [`FloatingBase`]: all vectors are in axes of frame 0. Turned by the rotation of the base, force
-/// and moment are those in world axes.
+/// Momentum of a robot with a floating base, about its centre of mass. `NV` velocities and accelerations, and the base,
+/// are those of [`FloatingBase`]: all vectors are in axes of frame 0. Multiplied by the rotation of the base, force and
+/// moment are in world axes.
 pub trait CentroidalMomentum<DOF, NV> {
     /// The matrix A: A v is the momentum (N s), then the angular momentum about the centre of mass (N m s).
     ///
@@ -121,7 +121,8 @@ pub trait CentroidalMomentum<DOF, NV> {
     fn centroidal_momentum_matrix(q: joints) -> FloatingRows = |robot| robot.centroidal_momentum_matrix(q);
 
     /// The rate of this momentum when the accelerations (a - g, ω̇, q̈) are zero: force (N), then moment about the
-    /// centre of mass (N m). A times the accelerations, plus this rate, is what acts on the robot beside gravity.
+    /// centre of mass (N m). A times the accelerations, plus this rate, is the wrench that acts on the robot besides
+    /// gravity.
     ///
     /// `omega`: angular velocity of the base, rad/s.
     fn centroidal_bias(q: joints, qd: joints, omega: omega) -> Spatial = |robot| robot.centroidal_bias(q, qd, omega);
@@ -171,15 +172,15 @@ pub trait FloatingKinematics<DOF, NV, TIPS> {
     /// The Jacobian of each tip: times the velocities, it is the velocity of the origin of the tip, m/s, in three rows,
     /// then the angular velocity of its link, rad/s.
     ///
-    /// Elements that no state makes differ from zero are zero: those of joints that do not move the tip.
+    /// Elements that vanish in every state are exactly zero: those of joints that do not move the tip.
     fn tip_jacobians(q: joints, base_rotation: rotation) -> TipRows =
         |robot| robot.each_tip(|tip| robot.tip_jacobian(q, base_rotation, tip));
 
     /// J̇ v of each tip: the classical acceleration of its origin, m/s², then its angular acceleration, rad/s², where
     /// the acceleration of the origin of frame 0, the angular acceleration of the base and those of the joints are
-    /// zero. At other accelerations, those of the tip are its Jacobian times them, plus this.
+    /// zero. With other accelerations, the tip has its Jacobian times these accelerations, plus J̇ v.
     ///
-    /// `omega`: angular velocity of the base, rad/s, in axes of frame 0. The linear velocity of the base has no part.
+    /// `omega`: angular velocity of the base, rad/s, in axes of frame 0. The linear velocity of the base has no effect.
     fn tip_accelerations(q: joints, qd: joints, omega: omega, base_rotation: rotation) -> TipVectors =
         |robot| robot.each_tip(|tip| robot.tip_acceleration([q, qd], omega, base_rotation, tip));
 }
@@ -195,7 +196,7 @@ pub trait ContactDynamics<DOF, NV, TIPS> {
     /// what the contacts exert ON the robot, in world axes. The moment of a point, and all of a tip without a contact,
     /// is zero.
     ///
-    /// Contacts pull as well as push, and have no limit of friction: a caller looks at the forces. `omega` as in
+    /// Contacts pull as well as push, and have no limit of friction, so the caller must check the forces. `omega` as in
     /// [`floating_bias`](crate::FloatingBase::floating_bias), `base_rotation` as in [`FloatingKinematics`]. Gravity is
     /// that of the robot file, in the world.
     ///
@@ -211,21 +212,20 @@ pub trait ContactDynamics<DOF, NV, TIPS> {
 }
 
 capability! {
-/// How the torques of a robot with a floating base change with its state. The base, `NV` and the tips are those of
-/// [`FloatingBase`](crate::FloatingBase).
+/// The derivatives of the torques of a robot with a floating base with respect to its state. The base, `NV` and the
+/// tips are those of [`FloatingBase`](crate::FloatingBase).
 pub trait FloatingInverseDynamicsDerivatives<DOF, NV, TIPS> {
-    /// The derivatives of
-    /// [`inverse_dynamics_of_floating_base`](crate::FloatingBase::inverse_dynamics_of_floating_base) by q, q̇ and the
-    /// angular velocity ω of the base, at a state.
+    /// The derivatives of [`inverse_dynamics_of_floating_base`](crate::FloatingBase::inverse_dynamics_of_floating_base)
+    /// with respect to q, q̇ and the angular velocity ω of the base, at a state.
     ///
-    /// Each derivative leaves the other arguments as they are. Of the base these are ω̇ and a - g, the classical
+    /// For each derivative, the other arguments are constant. For the base these are ω̇ and a - g, the classical
     /// acceleration of the origin of frame 0 less gravity, in axes of frame 0: its orientation, position and linear
-    /// velocity have no part. The wrenches stay the same in axes of their tips, so they turn with the joints.
+    /// velocity have no effect. The wrenches stay the same in axes of their tips, so they turn with the joints.
     ///
-    /// The derivative by the accelerations (a - g, ω̇, q̈) is the [mass
+    /// The derivative with respect to the accelerations (a - g, ω̇, q̈) is the [mass
     /// matrix](crate::FloatingBase::floating_mass_matrix).
-    /// [`to_pinocchio`](crate::FloatingTorqueDerivatives::to_pinocchio) has the derivatives by position, orientation
-    /// and velocity of the base.
+    /// [`to_pinocchio`](crate::FloatingTorqueDerivatives::to_pinocchio) has the derivatives with respect to position,
+    /// orientation and velocity of the base.
     ///
     /// Source: J. Carpentier, N. Mansard, "Analytical derivatives of rigid body dynamics algorithms", 2018.
     fn floating_inverse_dynamics_derivatives(q: joints, qd: joints, qdd: joints, base: motion, wrenches: wrenches)

@@ -1,4 +1,4 @@
-//! Places and directions.
+//! Poses, Jacobians and torques of wrenches.
 
 use crate::control::jacobian_derivatives::{derivatives_of_rows, rate_of_rows};
 #[cfg(feature = "arm")]
@@ -84,7 +84,7 @@ pub trait AtFrame<const DOF: usize, const FRAME: usize> {
     }
 }
 
-/// The place of a name in a list: the function `frame` of `#[derive(FrameKinematics)]`.
+/// Returns the index of a name in a list: the function `frame` of `#[derive(FrameKinematics)]` calls it.
 #[doc(hidden)]
 #[must_use]
 pub const fn frame_index(names: &[&str], name: &str) -> Option<usize> {
@@ -167,8 +167,8 @@ pub trait FrameKinematics<const DOF: usize, const FRAMES: usize> {
         self.jacobian_rate_at_frame(q, qd)
     }
 
-    /// ∂J/∂q of the geometric Jacobian of a frame, in world axes: element (r, i, j) is that of element (r, i) by the
-    /// position of joint j.
+    /// ∂J/∂q of the geometric Jacobian of a frame, in world axes: element (r, i, j) is the derivative of element (r, i)
+    /// with respect to the position of joint j.
     #[must_use]
     fn jacobian_derivatives_of<const FRAME: usize, T: Scalar>(&self, q: &[T; DOF]) -> [[[T; DOF]; DOF]; 6]
     where

@@ -14,8 +14,8 @@ pub trait MassMatrix<DOF> {
     /// M(q): element (i, j) is the torque at joint i for a unit acceleration of joint j, from rest and without gravity.
     /// In kg m², kg m or kg, as the kinds of joints i and j have it.
     ///
-    /// Symmetric to the last bit, positive semidefinite; definite unless links are massless. No rotor inertia,
-    /// unless the arm is taken with its rotors (`#[robot(rotors)]`, `with_rotors`): then G² Jm stands on the diagonal.
+    /// Symmetric to the last bit, positive semidefinite; definite unless links are massless. No rotor inertia, unless
+    /// the arm is taken with its rotors (`#[robot(rotors)]`, `with_rotors`): then G² Jm is added to the diagonal.
     fn mass_matrix(q: joints) -> Matrix = |robot| robot.mass_matrix(q, AtTip::Nothing);
 
     /// M(q)⁻¹: element (i, j) is the acceleration of joint i for a unit torque at joint j, from rest and without
@@ -27,9 +27,9 @@ pub trait MassMatrix<DOF> {
         inverse_of(this.mass_matrix(q), &[T::zero(); DOF])
     } = |robot| robot.inverse_mass_matrix(q, AtTip::Nothing);
 
-    /// M(q)⁻¹ τ: the accelerations (rad/s², prismatic: m/s²) that the torques `tau` (N m, prismatic: N) add, in fewer
-    /// operations than [`inverse_mass_matrix`](Self::inverse_mass_matrix) has. `tau` may be any vector: of impulses
-    /// (N m s), for example, which change the velocities.
+    /// M(q)⁻¹ τ: the accelerations (rad/s², prismatic: m/s²) that the torques `tau` (N m, prismatic: N) cause in
+    /// addition, in fewer operations than [`inverse_mass_matrix`](Self::inverse_mass_matrix) needs. `tau` may be any
+    /// vector: of impulses (N m s), for example, which change the velocities.
     ///
     /// A singular mass matrix (a joint that moves nothing) gives numbers that are not finite, and never panics.
     fn inverse_mass_matrix_times_torques(q: joints, tau: joints) -> Vector or |this| {
@@ -44,7 +44,7 @@ pub trait MassMatrix<DOF> {
 capability! {
 /// The matrix C(q, q̇) of τ = M(q) q̈ + C(q, q̇) q̇ + g(q), by Christoffel's symbols.
 pub trait CoriolisMatrix<DOF> {
-    /// C(q, q̇), row = torque. Of the matrices that give the same C q̇ it is Christoffel's, C_ij = ½ Σ_k (∂M_ij/∂q_k +
+    /// C(q, q̇), row = torque. Of all matrices with the same C q̇ this is Christoffel's, C_ij = ½ Σ_k (∂M_ij/∂q_k +
     /// ∂M_ik/∂q_j - ∂M_jk/∂q_i) q̇_k: Ṁ - 2C is skew, Ṁ = C + Cᵀ, and C is half the derivative of C q̇ with respect to
     /// q̇.
     fn coriolis_matrix(q: joints, qd: joints) -> Matrix = |robot| {
@@ -52,8 +52,8 @@ pub trait CoriolisMatrix<DOF> {
         robot.coordinates.matrix(robot.mechanism.coriolis_matrix(q.as_ref(), qd.as_ref()))
     };
 
-    /// Coriolis and centrifugal torques C(q, q̇) q̇, N m (prismatic: N): the bias torques without gravity. Every matrix
-    /// C gives the same; generated code needs none.
+    /// Coriolis and centrifugal torques C(q, q̇) q̇, N m (prismatic: N): the bias torques without gravity. They do not
+    /// depend on the choice of the matrix C, and generated code computes them without it.
     fn coriolis_torques(q: joints, qd: joints) -> Vector or |this| {
         let row = |row: [T; DOF]| row.iter().zip(qd).fold(T::zero(), |sum, (c, rate)| sum + *c * *rate);
         this.coriolis_matrix(q, qd).map(row)
@@ -86,8 +86,8 @@ pub trait Energy<DOF> {
     /// ½ q̇ᵀ M(q) q̇, as ½ Σ (m ċ·ċ + ω·Iω).
     fn kinetic_energy(q: joints, qd: joints) -> Number = |robot| robot.kinetic(q, qd, None);
 
-    /// -Σ m g·c, with c from the origin of frame 0 to each centre of mass: zero where all masses are there. Where the
-    /// base stands in the world does not matter.
+    /// -Σ m g·c, with c from the origin of frame 0 to each centre of mass: zero if all masses are at this origin. The
+    /// placement of the base in the world does not matter.
     fn potential_energy(q: joints) -> Number = |robot| robot.mechanism.potential(robot.of_joints(q).as_ref());
 }
 }
@@ -99,7 +99,7 @@ pub trait CentreOfMass<DOF> {
     /// Σ m c / Σ m, m.
     fn centre_of_mass(q: joints) -> Point = |robot| robot.mechanism.mass_centre(robot.of_joints(q).as_ref());
 
-    /// Its Jacobian: J q̇ is the velocity of the centre of mass, m/s, in world axes.
+    /// The Jacobian of the centre of mass: J q̇ is its velocity, m/s, in world axes.
     fn centre_of_mass_jacobian(q: joints) -> PointRows =
         |robot| robot.coordinates.rows(robot.mechanism.mass_centre_jacobian(robot.of_joints(q).as_ref()));
 }

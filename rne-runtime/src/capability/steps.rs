@@ -29,8 +29,9 @@ pub trait EulerStep<DOF> {
 capability! {
 /// Derivatives of a step of the semi-implicit Euler method, for optimisers.
 pub trait EulerStepDerivatives<DOF> {
-    /// The derivatives of [`euler_step`](crate::EulerStep::euler_step) by q, q̇ and τ: those of the velocities are 1 +
-    /// h times those of the accelerations, those of the positions are 1 + h times those of the next velocities.
+    /// The derivatives of [`euler_step`](crate::EulerStep::euler_step) with respect to q, q̇ and τ: those of the
+    /// velocities are h times those of the accelerations, plus 1 with respect to the velocity itself; those of the
+    /// positions are h times those of the next velocities, plus 1 with respect to the position itself.
     ///
     /// They are exact up to rounding. `step` is the duration h, s.
     fn euler_step_derivatives(q: joints, qd: joints, tau: joints, step: duration)
@@ -76,11 +77,11 @@ capability! {
 /// Derivatives of a step of the semi-implicit Euler method of a robot with a floating base, for optimisers. The
 /// base, the tips and the wrenches are those of [`FloatingBase`](crate::FloatingBase).
 pub trait FloatingEulerStepDerivatives<DOF, NV, TIPS> {
-    /// The derivatives of [`floating_euler_step`](crate::FloatingEulerStep::floating_euler_step) by the state and by
-    /// the torques. The arguments are those of this step.
+    /// The derivatives of [`floating_euler_step`](crate::FloatingEulerStep::floating_euler_step) with respect to the
+    /// state and the torques. The arguments are those of this step.
     ///
-    /// They are exact up to rounding where `pose` is a rotation. The origin of frame 0 in `pose` has no part, and its
-    /// rotation turns gravity alone.
+    /// They are exact up to rounding where `pose` is a rotation. The origin of frame 0 in `pose` has no effect, and its
+    /// rotation only turns gravity.
     fn floating_euler_step_derivatives(
         q: joints, qd: joints, tau: joints, pose: pose, twist: twist, step: duration, wrenches: wrenches
     ) -> FloatingStepDerivatives<DOF, NV> = |robot| {

@@ -1,4 +1,4 @@
-//! Torques of a motion, and what carries them.
+//! Torques of a motion, wrenches in the joints, and torques of motors.
 
 use crate::control::optimisation::{rows_by, still};
 use crate::number::ldlt::inverse_of;
@@ -81,8 +81,8 @@ pub trait TipWrenches<DOF, TIPS> {
         }
     } = |robot| robot.torque_derivatives([q, qd, qdd], AtTip::Wrenches(wrenches.all_still().as_ref()));
 
-    /// The derivatives of `forward_dynamics_with_wrenches` by q, q̇ and τ, where the wrenches do not change in axes of
-    /// their tips. See
+    /// The derivatives of `forward_dynamics_with_wrenches` with respect to q, q̇ and τ, where the wrenches do not
+    /// change in axes of their tips. See
     /// [`forward_dynamics_derivatives`](crate::ForwardDynamicsDerivatives::forward_dynamics_derivatives).
     fn forward_dynamics_derivatives_with_wrenches(q: joints, qd: joints, tau: joints, wrenches: wrenches)
         -> AccelerationDerivatives<DOF> or |this| {
@@ -133,7 +133,7 @@ pub trait PayloadDynamics<DOF> {
     fn momentum_and_rate_with_payload(q: joints, qd: joints, tau: joints, payload: payload) -> MomentumAndRate<DOF> =
         |robot| robot.momentum_and_rate([q, qd, tau], Some(payload));
 
-    /// The derivatives of `forward_dynamics_with_payload` by q, q̇ and τ. See
+    /// The derivatives of `forward_dynamics_with_payload` with respect to q, q̇ and τ. See
     /// [`forward_dynamics_derivatives`](crate::ForwardDynamicsDerivatives::forward_dynamics_derivatives).
     fn forward_dynamics_derivatives_with_payload(q: joints, qd: joints, tau: joints, payload: payload)
         -> AccelerationDerivatives<DOF> or |this| {
@@ -162,11 +162,11 @@ pub trait JointWrenches<DOF> {
 }
 
 capability! {
-/// External torques without accelerations: what a momentum observer asks of the arm at every tick. Its state, gain and
+/// External torques without accelerations: what a momentum observer needs of the arm at every tick. Its state, gain and
 /// update are [`ObserverState`](crate::ObserverState).
 pub trait MomentumObserver<DOF> {
-    /// p = M(q) q̇, and τ + C(q, q̇)ᵀ q̇ - g(q) with Christoffel's C: with external torques ṗ is this rate and they, so
-    /// they are ṗ less this rate. `tau`: what the actuators deliver to the links, friction taken off.
+    /// The momentum p = M(q) q̇, and the rate τ + C(q, q̇)ᵀ q̇ - g(q) with Christoffel's C. The external torques are ṗ
+    /// less this rate. `tau`: the torques that the actuators exert on the links, after friction is subtracted.
     ///
     /// Rotors belong to p where the arm is taken with them: `#[robot(rotors)]`, `with_rotors`.
     fn momentum_and_rate(q: joints, qd: joints, tau: joints) -> MomentumAndRate<DOF> =
@@ -195,9 +195,9 @@ pub trait Actuation<DOF> {
         this.actuator_torques(&qd.map(smooth), &qdd.map(smooth)).map(|torque| torque.value)
     } = |robot| robot.smooth_torques(qd, qdd, width);
 
-    /// The derivatives of [`actuator_torques_smooth`](Self::actuator_torques_smooth) by q̇, by rows, N m s/rad or N
-    /// s/m: what friction adds to the derivatives of the torques by velocities. The matrix is diagonal where no joint
-    /// follows others. The derivative by accelerations, G² Jm, is constant.
+    /// The derivatives of [`actuator_torques_smooth`](Self::actuator_torques_smooth) with respect to q̇, by rows, N m
+    /// s/rad or N s/m: the part of friction in the derivatives of the torques with respect to velocities. The matrix is
+    /// diagonal where no joint follows others. The derivative by accelerations, G² Jm, is constant.
     ///
     /// At the joint of a motor it is G² B + |G| (½ (Tc⁺ - Tc⁻) + (Tc⁺ + Tc⁻) s) ds/dq̇, with ds/dq̇ = width² / (q̇² +
     /// width²)^(3/2). `width` > 0: `actuator_torques` itself has no derivative at rest, and a `width` of zero gives

@@ -1,12 +1,14 @@
-//! Derivatives for optimisers, and those of an [`Arm`] by dual numbers through the seven steps: exact up to rounding,
-//! one direction at a time. Generated code has them in reverse mode and by composite bodies, from other formulas.
+//! Derivatives for optimisers. Those of an [`Arm`] come from dual numbers through the seven steps: exact up to
+//! rounding, one direction at a time. Generated code computes them by other formulas, in reverse mode and by composite
+//! bodies.
 
 use core::array::from_fn;
 
 use crate::{AccelerationDerivatives, Dual, Scalar};
 
 impl<const DOF: usize, T: Scalar> AccelerationDerivatives<DOF, T> {
-    /// Derivatives of accelerations by q and q̇, beside the inverse of the mass matrix.
+    /// Returns the derivatives of the accelerations with respect to q and q̇ by dual numbers, together with `dtau`, the
+    /// inverse of the mass matrix.
     pub(crate) fn by_dual_numbers(
         q: &[T; DOF],
         qd: &[T; DOF],
@@ -22,12 +24,12 @@ impl<const DOF: usize, T: Scalar> AccelerationDerivatives<DOF, T> {
     }
 }
 
-/// Numbers that nothing changes.
+/// Returns numbers whose derivatives are zero.
 pub(crate) fn still<T: Scalar, const N: usize>(x: &[T; N]) -> [Dual<T>; N] {
     x.map(Dual::constant)
 }
 
-/// The derivatives of the elements of y(x), by rows, with a column for each element of x.
+/// Returns the derivatives of the elements of y(x): one row per element of y, one column per element of x.
 pub(crate) fn rows_by<T: Scalar, const N: usize, const ROWS: usize>(
     x: &[T; N],
     y: impl Fn(&[Dual<T>; N]) -> [Dual<T>; ROWS],
@@ -36,7 +38,7 @@ pub(crate) fn rows_by<T: Scalar, const N: usize, const ROWS: usize>(
     from_fn(|row| from_fn(|column| columns[column][row].derivative))
 }
 
-/// Element i of a list, with element j on its way.
+/// Returns element i of a list with its derivative with respect to element j, which is 1 for i = j and otherwise 0.
 pub(crate) fn along<T: Scalar>(x: &[T], i: usize, j: usize) -> Dual<T> {
     Dual { value: x[i], derivative: if i == j { T::one() } else { T::zero() } }
 }

@@ -16,7 +16,7 @@ use crate::{Constant, Scalar};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn actuator_torques<T: Scalar>(self, qd: &[T], qdd: &[T]) -> J::Of<T> {
-        // a rotor that belongs to the arm is in its torques
+        // a rotor that belongs to the arm is already part of the arm's torques
         let of_rotor = |qdd| if self.rotors { T::zero() } else { qdd };
         self.per_joint.of(|i| self.motors[i].map_or_else(T::zero, |motor| torque(&motor, qd[i], of_rotor(qdd[i]))))
     }

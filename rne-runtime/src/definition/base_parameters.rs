@@ -1,9 +1,10 @@
 //! The base parameters: the fewest combinations of the links' inertial parameters that the torques depend on.
 //!
 //! The [regressor](DynArm::regressor) is stacked at random states, the same in every run. A column that is a
-//! combination of columns before it belongs to a parameter that no torque can tell from theirs: it is eliminated and
-//! regrouped into them. The columns run from the base to the tip and within a link as J, m c, m, so that what is
-//! eliminated is regrouped into links nearer to the base, and Jxx is kept where Jyy or Jzz goes: the usual choice.
+//! combination of earlier columns belongs to a parameter whose effect on the torques cannot be distinguished from that
+//! of the earlier parameters, so it is eliminated and regrouped into them. The columns run from the base to the tip and
+//! within a link as J, m c, m, so that what is eliminated is regrouped into links nearer to the base, and Jxx is kept
+//! where Jyy or Jzz goes: the usual choice.
 //!
 //! M. Gautier, W. Khalil, Direct calculation of minimum set of inertial parameters of serial robots, IEEE Transactions
 //! on Robotics and Automation 6 (1990), 368-373, for the rules; M. Gautier, Numerical calculation of the base inertial
@@ -16,36 +17,37 @@ use rne_model::{INERTIAL_PARAMETERS, JointKind, Link, PER_LINK, Row};
 
 use crate::{DynArm, WrongLength};
 
-/// The order in which a link's parameters are kept, as they are counted in the regressor: J, m c, m.
+/// The order in which a link's parameters are tried: J, m c, m. The numbers are those of the regressor.
 const ORDER: [usize; PER_LINK] = [4, 5, 6, 7, 8, 9, 1, 2, 3, 0];
 
-/// Random states: each gives a row per joint, and there are ten columns per joint.
+/// Number of random states. Each gives one row per joint, and there are ten columns per joint.
 const STATES: usize = 40;
 
-/// A column is independent where what others do not explain is a larger part of it.
+/// A column counts as independent if the part that earlier columns do not explain exceeds this fraction of the column.
 const TOLERANCE: f64 = 1e-8;
 
-/// A parameter of a link, as the regressor counts them.
+/// A parameter of a link, numbered as in the regressor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LinkParameter {
     /// The link, counted from 0.
     pub link: usize,
-    /// Its place in (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz).
+    /// Its index in (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz).
     pub index: usize,
 }
 
-/// A combination of link parameters that the torques can see: `kept` + Σ coefficient · parameter.
+/// A combination of link parameters that affects the torques: `kept` + Σ coefficient · parameter.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BaseParameter {
-    /// The parameter whose column of the regressor stands for it.
+    /// The parameter whose column of the regressor belongs to the combination.
     pub kept: LinkParameter,
-    /// The parameters that are regrouped into it.
+    /// The parameters that are added to it, with their coefficients.
     pub regrouped: Vec<(f64, LinkParameter)>,
     /// Its value for the robot: kg m², kg m or kg, as `kept` has it.
     pub value: f64,
-    /// Whether torques in double precision tell it from the other base parameters, by the tolerance
-    /// [`BaseParameters::VISIBLE`]. The torques see only combinations of those that they do not tell apart.
+    /// Whether torques in double precision can distinguish it from the other base parameters, by the tolerance
+    /// [`BaseParameters::VISIBLE`]. Of parameters that they cannot distinguish, the torques only determine
+    /// combinations.
     pub is_visible: bool,
 }
 
@@ -57,8 +59,8 @@ pub struct BaseParameters {
     pub parameters: Vec<BaseParameter>,
     /// Link parameters on which no torque depends.
     pub without_effect: Vec<LinkParameter>,
-    /// How many combinations torques in double precision see: as many as there are base parameters, or fewer where
-    /// some of those are not visible.
+    /// How many combinations torques in double precision determine: as many as there are base parameters, or fewer if
+    /// some of these are not visible.
     pub visible_rank: usize,
 }
 
@@ -114,7 +116,7 @@ impl DynArm {
             let parts = base.regrouped.iter().map(|(coefficient, parameter)| coefficient * value(*parameter));
             let magnitude = parts.fold(value(base.kept).abs(), |sum, part| sum + part.abs());
             if base.value.abs() <= 16.0 * f64::EPSILON * magnitude {
-                // what cancels exactly
+                // the terms cancel up to rounding
                 base.value = 0.0;
             }
         }
@@ -126,7 +128,7 @@ impl DynArm {
         found
     }
 
-    /// The columns of the regressor at many random states, one below the other.
+    /// Returns the columns of the regressor at many random states, whose rows are stacked.
     fn stacked_regressor(&self) -> Vec<DVector<f64>> {
         let mut columns = vec![Vec::new(); self.rows().len() * PER_LINK];
         let mut random = Random(1);
@@ -135,7 +137,7 @@ impl DynArm {
                 self.couplings.joints().iter().map(|&joint| random.position(&self.rows()[joint])).collect();
             let mut rates = |most: f64| -> Vec<f64> { (0..self.dof()).map(|_| most * random.number()).collect() };
             let (qd, qdd) = (rates(3.0), rates(10.0));
-            // there is one number per joint
+            // never an error, because there is one number per joint
             let Ok(matrix) = self.regressor(&q, &qd, &qdd) else { continue };
             for torque in matrix {
                 for (column, element) in columns.iter_mut().zip(torque.iter().flatten()) {
@@ -148,9 +150,9 @@ impl DynArm {
 }
 
 impl BaseParameters {
-    /// Double precision sees a base parameter whose column of the regressor differs from every combination of the
-    /// columns of the others by more than this part of itself. Nearly right angles, such as `alpha: 1.5708`, give base
-    /// parameters that are distinct on paper and that it does not see: rounding changes the torques more.
+    /// A base parameter is visible in double precision if its column of the regressor differs from every combination of
+    /// the other columns by more than this fraction of itself. Angles near a right angle, such as `alpha: 1.5708`, give
+    /// base parameters that are distinct in theory but not visible: rounding changes the torques more.
     pub const VISIBLE: f64 = 1e-10;
 
     /// The rank of the regressor.
@@ -159,12 +161,12 @@ impl BaseParameters {
         self.parameters.len()
     }
 
-    /// The base parameters that are a link parameter by itself.
+    /// The base parameters that consist of one link parameter.
     pub fn alone(&self) -> impl Iterator<Item = &BaseParameter> {
         self.parameters.iter().filter(|base| base.regrouped.is_empty())
     }
 
-    /// The columns of a regressor that belong to the base parameters: τ_i = Σ_k Y_ik value_k.
+    /// Returns the columns of a regressor that belong to the base parameters: τ_i = Σ_k Y_ik value_k.
     ///
     /// # Errors
     /// As [`DynArm::regressor`].
@@ -183,21 +185,21 @@ impl fmt::Display for LinkParameter {
     }
 }
 
-/// Independent columns, as orthonormal directions and the triangle that leads back to them.
+/// Independent columns, as orthonormal directions and the triangular matrix that relates them to the columns.
 #[derive(Default)]
 struct Basis {
     directions: Vec<DVector<f64>>,
-    /// Column k: the parts of independent column k along the directions 0 to k.
+    /// Column k has the components of independent column k along the directions 0 to k.
     triangle: Vec<Vec<f64>>,
 }
 
 impl Basis {
-    /// The coefficients of a column that is a combination of those before it; `None` when it is not, and one of them
-    /// from now on.
+    /// Returns the coefficients of a column that is a combination of the earlier ones. Otherwise adds it to the
+    /// independent columns and returns `None`.
     fn combination_or_insert(&mut self, column: &DVector<f64>) -> Option<Vec<f64>> {
         let mut rest = column.clone();
         let mut parts = vec![0.0; self.directions.len()];
-        // twice is enough for full precision
+        // the second orthogonalisation gives full precision
         for _ in 0..2 {
             for (part, direction) in parts.iter_mut().zip(&self.directions) {
                 let along = direction.dot(&rest);
@@ -216,7 +218,7 @@ impl Basis {
     }
 
     /// Finds the columns that differ from every combination of the others by more than [`BaseParameters::VISIBLE`] of
-    /// themselves. How far a column is from them is one over the length of its row of the inverse of the triangle.
+    /// themselves. The distance of a column from the others is one over the length of its row of the inverse triangle.
     fn visible(&self) -> Vec<bool> {
         let mut rows = vec![0.0; self.triangle.len()];
         for column in 0..self.triangle.len() {
@@ -231,7 +233,7 @@ impl Basis {
         rows.iter().zip(lengths).map(|(row, length)| row.sqrt() * length * BaseParameters::VISIBLE <= 1.0).collect()
     }
 
-    /// The combination of independent columns with these parts along the directions.
+    /// Returns the coefficients of independent columns, from components along the directions.
     fn solved(&self, mut parts: Vec<f64>) -> Vec<f64> {
         for k in (0..parts.len()).rev() {
             parts[k] /= self.triangle[k][k];
@@ -243,11 +245,12 @@ impl Basis {
     }
 }
 
-/// How many of these columns are left when the last one that is not visible is left out, until all are.
+/// Returns how many columns remain when the last one that is not visible is removed, again and again until all are
+/// visible.
 fn visible_rank(mut columns: Vec<&DVector<f64>>) -> usize {
     loop {
         let mut basis = Basis::default();
-        // a column that is a combination of others to the tolerance is not visible either
+        // a column that is a combination of others up to the tolerance is not visible either
         columns.retain(|column| basis.combination_or_insert(column).is_none());
         match basis.visible().iter().rposition(|is_visible| !is_visible) {
             Some(hidden) => drop(columns.remove(hidden)),
@@ -256,13 +259,13 @@ fn visible_rank(mut columns: Vec<&DVector<f64>>) -> usize {
     }
 }
 
-/// A coefficient without the rounding of its computation: a whole number where it is one but for 1e-9.
+/// Removes the rounding errors of a coefficient: returns a whole number if it differs from one by less than 1e-9.
 fn cleaned(coefficient: f64) -> f64 {
     let whole = coefficient.round();
     if (coefficient - whole).abs() < 1e-9 { whole } else { coefficient }
 }
 
-/// Parameters about the origin of the link frame.
+/// Returns the parameters of a link about the origin of the link frame.
 fn about_the_origin(link: &Link) -> [f64; PER_LINK] {
     let Link { mass: m, com: [x, y, z], inertia: i, first_moment: [hx, hy, hz] } = *link;
     let body = [
@@ -277,7 +280,7 @@ fn about_the_origin(link: &Link) -> [f64; PER_LINK] {
         i.yz - m * y * z,
         i.zz + m * (x * x + y * y),
     ];
-    // 2 h·c 1 - h cᵀ - c hᵀ
+    // the inertia of the first moment h beside the mass: 2 h·c 1 - h cᵀ - c hᵀ
     let beside = [
         0.0,
         hx,
@@ -293,12 +296,12 @@ fn about_the_origin(link: &Link) -> [f64; PER_LINK] {
     if link.has_first_moment() { array::from_fn(|i| body[i] + beside[i]) } else { body }
 }
 
-/// Steele's SplitMix64: the same states on every machine.
+/// The generator SplitMix64 of Steele, which gives the same states on every machine.
 struct Random(u64);
 
 impl Random {
-    /// Between -1 and 1.
-    #[allow(clippy::cast_precision_loss)] // 53 bits
+    /// Returns a number between -1 and 1.
+    #[allow(clippy::cast_precision_loss)] // exact for 53 bits
     fn number(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut bits = self.0;
@@ -308,7 +311,7 @@ impl Random {
         (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// Anywhere on a turn, or within a metre.
+    /// Returns a random position: any angle of a turn, or a distance within a metre.
     fn position(&mut self, row: &Row) -> f64 {
         match row.kind {
             JointKind::Revolute => std::f64::consts::PI * self.number(),

@@ -20,7 +20,7 @@ use crate::seven_steps::mechanism::Mechanism;
 use crate::{Constant, Scalar};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    /// One by the mass of all links.
+    /// Returns one over the mass of all links.
     fn inverse_of_mass<T: Scalar>(self) -> T {
         let mut total = self.chain.base::<T>().mass;
         for row in self.table.rows {
@@ -29,14 +29,15 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         T::one() / total
     }
 
-    /// μ_i c_i, with a first moment + h_i (1 / Σ m); and μ_i, what part of the mass link i has.
+    /// Returns μ_i c_i, plus h_i (1 / Σ m) if link i has a first moment beside its mass; and μ_i, the fraction of the
+    /// whole mass that link i has.
     fn part<T: Scalar>(self, i: usize, links: &[Placement<T>], inverse: T) -> (Vector3<T>, T) {
         let part = self.table.rows[i].link.mass.to::<T>() * inverse;
         let moment = self.centre(i, links) * part;
         (self.first_moment(i, links).map_or(moment, |beside| moment + beside * inverse), part)
     }
 
-    /// The base with its axes in the world, its origin in itself.
+    /// Returns the placement of the base with its axes in the world and its own origin.
     fn turned_base<T: Scalar>(self) -> Placement<T> {
         Placement { translation: Vector3::zeros(), ..Placement::constant(self.base) }
     }
@@ -48,7 +49,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         for i in 0..self.table.rows.len() {
             centre += self.part(i, links.as_ref(), inverse).0;
         }
-        // nor has an arm without joints
+        // an arm without joints has no mass, so its centre of mass is not finite either
         if self.table.rows.is_empty() && self.chain.floating_base.is_none() {
             centre = centre.map(|zero: T| zero / T::zero());
         }
@@ -58,7 +59,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn mass_centre_jacobian<T: Scalar>(self, q: &[T]) -> [J::Of<T>; 3] {
         let base = self.turned_base();
         let (links, inverse) = (self.placements(base, q), self.inverse_of_mass());
-        // of what each link carries
+        // for each link, the sums s and w of the links that it carries
         let mut carried = self.per_joint.all(&(Vector3::zeros(), T::zero()));
         let mut columns = self.per_joint.all(&Vector3::zeros());
         for (i, column) in columns.as_mut().iter_mut().enumerate().rev() {

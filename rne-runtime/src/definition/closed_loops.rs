@@ -1,4 +1,5 @@
-//! Robots with closed loops: the open tree, moved and loaded by the joints that move by themselves.
+//! Robots with closed loops: the functions of the open tree, in which the dependent joints follow the joints that move
+//! by themselves.
 //!
 //! ```text
 //! K (q̇, ṗ) = 0                 rows: R_Lᵀ (v₂ - v₁);  (b × a)·(ω₂ - ω₁)
@@ -7,8 +8,8 @@
 //! τ = Gᵀ τ_tree                M = (1, G)ᵀ M_tree (1, G)
 //! ```
 //!
-//! The Jacobians and accelerations are those of the two places of each loop, in axes of frame 0, and R_L are the axes
-//! of the loop there. The equations that are kept, and their order, are those of the robot file.
+//! The Jacobians and accelerations are those of the two places of each loop, in axes of frame 0. R_L has the axes of
+//! the loop there. The robot file decides which equations are kept, and in which order.
 
 use nalgebra::{Matrix3, Vector3};
 use rne_model::{ClosedLoops, Cut, FixedFrame, JointKind, Pivot, Robot};
@@ -29,9 +30,9 @@ use crate::{
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Loops<S> {
     cuts: Vec<(Cut, [FixedFrame<S>; 2])>,
-    /// For each loop the joint whose axes it has, and the link that carries this joint.
+    /// For each loop, the joint whose axes the equations use; `None` for the axes of frame 0.
     axes: Vec<Option<usize>>,
-    /// The places of the coordinates and of the dependent joints among the joints that follow none by a coupling.
+    /// The indices of the coordinates and of the dependent joints among the joints that follow none by a coupling.
     coordinates: Vec<usize>,
     passive: Vec<usize>,
     elimination: Vec<Pivot>,
@@ -72,7 +73,7 @@ impl<S> Loops<S> {
         }
     }
 
-    /// One number for each joint of the tree that follows none by a coupling.
+    /// Returns one number for each joint of the tree that follows none by a coupling, in the order of the tree.
     fn of_tree<T: Scalar>(&self, of_coordinates: &[T], of_passive: &[T]) -> Vec<T> {
         let mut all = vec![T::zero(); self.coordinates.len() + self.passive.len()];
         for (&place, &x) in self.coordinates.iter().zip(of_coordinates).chain(self.passive.iter().zip(of_passive)) {
@@ -85,7 +86,7 @@ impl<S> Loops<S> {
 /// The equations of the loops in one state.
 struct Equations<T> {
     residuals: Vec<T>,
-    /// A column for each joint of the tree that follows none by a coupling.
+    /// One column for each joint of the tree that follows none by a coupling.
     rows: Vec<Vec<T>>,
     biases: Vec<T>,
 }
@@ -97,12 +98,13 @@ impl<S: Constant> DynArm<S> {
         self.closed.passive.len()
     }
 
-    /// The robot itself, of which functions of loops are made.
+    /// Returns the robot itself. The macro of the capabilities calls it for functions of loops.
     pub(crate) const fn itself(&self) -> &Self {
         self
     }
 
-    /// The positions of the dependent joints after a Newton step, and what is left of the equations before it.
+    /// Returns the positions of the dependent joints after one step of Newton's method, and the residual of the
+    /// equations before it.
     pub(crate) fn newton<T: Scalar>(&self, q: &[T], passive: &[T]) -> DynClosureStep<T> {
         let equations = self.equations(q, passive, None);
         let changes = self.solved(&equations.rows, &equations.residuals);
@@ -110,7 +112,7 @@ impl<S: Constant> DynArm<S> {
         DynClosureStep { passive, residual: equations.residuals }
     }
 
-    /// G, a row for each dependent joint.
+    /// Returns G, with one row per dependent joint.
     pub(crate) fn map<T: Scalar>(&self, q: &[T], passive: &[T]) -> Vec<Vec<T>> {
         let equations = self.equations(q, passive, None);
         let column = |&place: &usize| {
@@ -120,15 +122,15 @@ impl<S: Constant> DynArm<S> {
         (0..self.closed.passive.len()).map(|row| columns.iter().map(|column| column[row]).collect()).collect()
     }
 
-    /// Ġ q̇.
+    /// Returns Ġ q̇.
     pub(crate) fn map_rate<T: Scalar>(&self, q: &[T], passive: &[T], qd: &[T]) -> Vec<T> {
         let rates = product(&self.map(q, passive), qd);
         let equations = self.equations(q, passive, Some((qd, &rates)));
         self.solved(&equations.rows, &equations.biases)
     }
 
-    /// The wrench that must act on the base, and the torques: those of the tree, that the dependent joints add theirs
-    /// to.
+    /// Returns the wrench that must act on the base, and the torques: those of the tree, to which the torques at the
+    /// dependent joints are added through Gᵀ.
     pub(crate) fn torques_of_loops<T: Scalar>(
         &self,
         [q, passive, qd, qdd]: [&[T]; 4],
@@ -145,13 +147,13 @@ impl<S: Constant> DynArm<S> {
         DynFloatingTorques { wrench, tau: self.by_coordinates(&map, &of_tree) }
     }
 
-    /// The torques on a base at rest where nothing accelerates.
+    /// Returns the torques of a motion without accelerations, on a base at rest.
     pub(crate) fn bias_of_loops<T: Scalar>(&self, state: [&[T]; 3], load: AtTip<'_, T>) -> Vec<T> {
         let ([q, passive, qd], still) = (state, vec![T::zero(); state[0].len()]);
         self.torques_of_loops([q, passive, qd, &still], &self.fixed_base(), load).tau
     }
 
-    /// The torques on a base at rest where nothing moves.
+    /// Returns the torques that hold the robot at rest, on a base at rest.
     pub(crate) fn gravity_of_loops<T: Scalar>(&self, q: &[T], passive: &[T], load: AtTip<'_, T>) -> Vec<T> {
         self.bias_of_loops([q, passive, &vec![T::zero(); q.len()]], load)
     }
@@ -175,13 +177,13 @@ impl<S: Constant> DynArm<S> {
         x
     }
 
-    /// The mass matrix with the rows of a floating base.
+    /// Returns the mass matrix with the rows of a floating base.
     pub(crate) fn floating_mass_of_loops<T: Scalar>(&self, q: &[T], passive: &[T]) -> Vec<Vec<T>> {
         let of_tree = self.definition().floating_mass_matrix(&self.closed.of_tree(q, passive), AtTip::Nothing);
         self.projected(&self.map(q, passive), BASE, &of_tree)
     }
 
-    /// The accelerations of a floating base and of the joints.
+    /// Returns the accelerations of a floating base and of the joints.
     pub(crate) fn floating_accelerations_of_loops<T: Scalar>(
         &self,
         [q, passive, qd, tau]: [&[T]; 4],
@@ -199,7 +201,8 @@ impl<S: Constant> DynArm<S> {
         DynFloatingAccelerations { base: of_base(&x), qdd: x.split_off(BASE) }
     }
 
-    /// The symmetric matrix of the coordinates, by that of the tree; `of_base` rows and columns are those of the tree.
+    /// Returns the symmetric matrix of the coordinates from that of the tree. The first `of_base` rows and columns,
+    /// those of the base, are not changed by the loops.
     fn projected<T: Scalar>(&self, map: &[Vec<T>], of_base: usize, of_tree: &[Vec<T>]) -> Vec<Vec<T>> {
         let gathered = |row: &[T]| [&row[..of_base], &self.by_coordinates(map, &row[of_base..])].concat();
         let columns: Vec<Vec<T>> = of_tree.iter().map(|row| gathered(row)).collect();
@@ -222,7 +225,7 @@ impl<S: Constant> DynArm<S> {
         has_length(argument, values, self.closed.passive.len())
     }
 
-    /// Gᵀ of numbers of the tree: those of the coordinates, and what their dependent joints add.
+    /// Returns Gᵀ of numbers of the tree: those of the coordinates, plus the contributions of the dependent joints.
     fn by_coordinates<T: Scalar>(&self, map: &[Vec<T>], of_tree: &[T]) -> Vec<T> {
         let of_coordinate = |(at, &place): (usize, &usize)| {
             let passive = self.closed.passive.iter().zip(map);
@@ -231,7 +234,7 @@ impl<S: Constant> DynArm<S> {
         self.closed.coordinates.iter().enumerate().map(of_coordinate).collect()
     }
 
-    /// -K_p⁻¹ b, by dependent joint: Gauss's elimination in the order of the robot file.
+    /// Returns -K_p⁻¹ b, one number per dependent joint, by Gaussian elimination in the order of the robot file.
     fn solved<T: Scalar>(&self, rows: &[Vec<T>], b: &[T]) -> Vec<T> {
         let Loops { passive, elimination, .. } = &self.closed;
         let system = elimination.iter().map(|row| {
@@ -261,7 +264,7 @@ impl<S: Constant> DynArm<S> {
         by_joint
     }
 
-    /// The equations in a state; without rates they have no biases.
+    /// Returns the equations in a state. Without rates the biases are those of zero velocities.
     fn equations<T: Scalar>(&self, q: &[T], passive: &[T], rates: Option<(&[T], &[T])>) -> Equations<T> {
         let q = self.closed.of_tree(q, passive);
         let q = self.couplings.of_joints(&q).into_owned();
@@ -304,11 +307,11 @@ impl<S: Constant> DynArm<S> {
     }
 }
 
-/// A place of a loop in axes of frame 0, where nothing accelerates.
+/// A place of a loop in axes of frame 0, with its acceleration when no joint accelerates.
 struct Place<T> {
     axes: Matrix3<T>,
     origin: Vector3<T>,
-    /// Linear, then angular rows.
+    /// Three linear rows, then three angular rows.
     jacobian: [Vec<T>; 6],
     omega: Vector3<T>,
     omega_dot: Vector3<T>,
@@ -316,7 +319,7 @@ struct Place<T> {
 }
 
 impl<S: Constant> Mechanism<'_, Counted, S> {
-    /// Axes and origin of a place on a link, in frame 0, and its Jacobian there.
+    /// Returns axes and origin of a place on a link, in frame 0, and the Jacobian of the place.
     #[allow(clippy::type_complexity)] // axes, origin, rows
     fn placed<T: Scalar>(self, place: &FixedFrame<S>, q: &[T]) -> (Matrix3<T>, Vector3<T>, [Vec<T>; 6]) {
         let start = Placement::identity();
@@ -326,7 +329,7 @@ impl<S: Constant> Mechanism<'_, Counted, S> {
         (at_place.tip(start, links.as_ref()).rotation, origin, rows)
     }
 
-    /// The axes of a joint in frame 0, turned with its link where the table is modified.
+    /// Returns the axes of a joint in frame 0. In a modified table they turn with its link.
     fn axes_of_joint<T: Scalar>(self, joint: usize, q: &[T]) -> Matrix3<T> {
         let start = Placement::identity();
         self.joint_frame(joint, start, self.placements(start, q).as_ref()).rotation
@@ -351,7 +354,7 @@ impl<S: Constant> DynArm<S> {
         }
     }
 
-    /// The axes of a joint where its link is not turned, in axes of frame 0.
+    /// Returns the axes of a joint in frame 0, at the zero position of a revolute joint.
     fn axes_of<T: Scalar>(&self, joint: usize, q: &[T]) -> Matrix3<T> {
         let mut still = q.to_vec();
         let row = &self.rows()[joint];

@@ -19,10 +19,11 @@ fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
     a.iter().zip(b).fold(T::zero(), |sum, (&a, &b)| sum + a * b)
 }
 
-/// The accelerations x of the robot while tips are held, from x_0.
+/// Changes the accelerations x_0 of the robot to x, while tips are held.
 ///
-/// `columns` holds the rows of J, and `forces` holds J̇ v + g of the same rows; it becomes f. The other arguments are
-/// places: `a` and `inverse` have as many rows, `inverse_of_mass` has as many elements as M has rows.
+/// `columns` contains the rows of J, and `forces` contains J̇ v + g of the same rows; afterwards it contains f. The
+/// other arguments are scratch memory: `a` and `inverse` have as many rows, `inverse_of_mass` has as many elements as M
+/// has rows.
 struct Held<'a, T, R, V, W> {
     mass: &'a mut [R],
     inverse_of_mass: &'a mut [T],
@@ -48,7 +49,7 @@ where
         for column in 0..columns.len() {
             let row = columns[column].clone();
             solve(mass, inverse_of_mass, columns[column].as_mut());
-            // A is symmetric, and J of the rows above is X by now
+            // A is symmetric, and the rows of J above have already become rows of X
             for above in 0..=column {
                 a[above].as_mut()[column] = dot(row.as_ref(), columns[above].as_ref());
                 a[column].as_mut()[above] = a[above].as_ref()[column];
@@ -63,7 +64,7 @@ where
     }
 }
 
-/// A number for each row of all tips.
+/// A number for each of the six rows of every tip.
 #[derive(Clone)]
 struct OfTips<P: PerJoint, T: Clone>(P::Of<[T; 6]>);
 
@@ -94,7 +95,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         let zeros = OfTips::<P, T>(self.tips.all(&[T::zero(); 6]));
         let (mut forces, mut a, mut inverse) =
             (zeros.clone(), self.tips.of(|_| [(); 6].map(|()| zeros.clone())), zeros);
-        // the held rows come to the front
+        // the rows of held tips are moved to the front
         let (columns, mut count) = (jacobians.as_mut().as_flattened_mut(), 0);
         let held = || self.contacts.iter().flat_map(|contact| (0..contact.rows()).map(|row| (contact.tip, row)));
         for (tip, row) in held() {

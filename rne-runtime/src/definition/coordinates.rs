@@ -6,38 +6,41 @@ use core::marker::PhantomData;
 use crate::definition::per_joint::{Known, PerJoint, Square};
 use crate::{Constant, Scalar};
 
-/// The matrix G of the couplings: the joints have G q, G q̇ and G q̈, the torques of the coordinates are Gᵀ τ.
+/// The matrix G of the couplings, which relates coordinates and joints: the joints have G q, G q̇ and G q̈, the torques
+/// of the coordinates are Gᵀ τ.
 pub(crate) trait Coordinates<J: PerJoint, S: Constant>: Copy {
-    /// Numbers of all joints: those of the coordinates, where each joint is one.
+    /// Numbers of all joints; borrowed from those of the coordinates if each joint is a coordinate.
     type OfJoints<'v, T: Scalar>: AsRef<[T]>;
 
-    /// Collections with one element for each coordinate.
+    /// Makes collections with one element for each coordinate.
     fn each(self) -> J;
 
     /// Whether each joint is a coordinate.
     fn are_joints(self) -> bool;
 
-    /// The values of all joints, from one for each coordinate.
+    /// Returns the values of all joints, from one value for each coordinate.
     fn of_joints<T: Scalar>(self, values: &[T]) -> Self::OfJoints<'_, T>;
 
-    /// Sines and cosines of all joints, from those of the coordinates and the positions `q` of all joints.
+    /// Returns sines and cosines of all joints, from those of the coordinates and the positions `q` of all joints.
     fn turns<'v, T: Scalar>(self, turns: [&'v [T]; 2], q: &[T]) -> [Self::OfJoints<'v, T>; 2];
 
-    /// The torques of the actuators of all joints, from one for each coordinate: a follower has no actuator.
+    /// Returns the torques of the actuators at all joints, from one torque for each coordinate. A joint that follows
+    /// others has no actuator.
     fn applied<T: Scalar>(self, torques: &[T]) -> Self::OfJoints<'_, T>;
 
-    /// The elements of the coordinates, from one element for each joint.
+    /// Returns the elements of the coordinates, from one element for each joint.
     fn only<X: Clone>(self, of_joints: J::Of<X>) -> J::Of<X>;
 
-    /// Gᵀ x, of numbers or rows x of all joints: `plus` adds the second, times the ratio, to the first.
+    /// Returns Gᵀ x, where x has numbers or rows for all joints. `plus` adds the second element, times the ratio, to
+    /// the first.
     fn gathered<X: Clone>(self, of_joints: J::Of<X>, plus: impl Fn(X, &X, &S) -> X) -> J::Of<X>;
 
-    /// Gᵀ τ
+    /// Returns Gᵀ τ.
     fn torques<T: Scalar>(self, of_joints: J::Of<T>) -> J::Of<T> {
         self.gathered(of_joints, |sum, &torque, ratio| sum + torque * ratio.to())
     }
 
-    /// Gᵀ A G, by rows.
+    /// Returns Gᵀ A G, by rows.
     fn matrix<T: Scalar>(self, of_joints: Square<J, T>) -> Square<J, T> {
         if self.are_joints() {
             return of_joints;
@@ -50,7 +53,7 @@ pub(crate) trait Coordinates<J: PerJoint, S: Constant>: Copy {
         })
     }
 
-    /// Gᵀ M G of a symmetric matrix, symmetric to the last bit.
+    /// Returns Gᵀ M G of a symmetric matrix M; it is symmetric to the last bit.
     fn symmetric<T: Scalar>(self, of_joints: Square<J, T>) -> Square<J, T> {
         let mut matrix = self.matrix(of_joints);
         for index in 1..matrix.as_ref().len() {
@@ -60,13 +63,13 @@ pub(crate) trait Coordinates<J: PerJoint, S: Constant>: Copy {
         matrix
     }
 
-    /// A G, by rows.
+    /// Returns A G, by rows.
     fn rows<T: Scalar, const ROWS: usize>(self, of_joints: [J::Of<T>; ROWS]) -> [J::Of<T>; ROWS] {
         of_joints.map(|row| self.torques(row))
     }
 }
 
-/// Each joint is a coordinate.
+/// The couplings of a robot in which each joint is a coordinate.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Joints<S>(pub(crate) PhantomData<S>);
 

@@ -1,4 +1,4 @@
-//! Joints that follow others, of a robot with a number of joints known at run time.
+//! Joints that follow others by couplings, for a robot whose number of joints is known at run time.
 //!
 //! The order of the operations is part of the contract; generated code repeats it: terms in the order of the joints,
 //! one after the other.
@@ -11,7 +11,7 @@ use crate::definition::coordinates::Coordinates;
 use crate::definition::per_joint::PerJoint;
 use crate::{Constant, Scalar};
 
-/// Vectors of this length.
+/// Makes vectors of this length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Counted(pub(crate) usize);
 
@@ -24,12 +24,12 @@ impl PerJoint for Counted {
     }
 }
 
-/// The joints that are coordinates, and those that follow them.
+/// Which joints are coordinates, and which joints they move by couplings.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Couplings<S> {
     /// The joints that follow no other, counted from 0.
     coordinates: Vec<usize>,
-    /// For each joint the joints that it follows, with their ratios; `None` for a coordinate.
+    /// For each joint, the joints that it follows, with their ratios; `None` for a coordinate.
     follows: Vec<Option<Vec<(usize, S)>>>,
 }
 
@@ -50,12 +50,12 @@ impl Couplings<f64> {
 }
 
 impl<S: Constant> Couplings<S> {
-    /// No joint follows another.
+    /// Couplings of a robot in which no joint follows another.
     pub(crate) fn none(joints: usize) -> Self {
         Self { coordinates: (0..joints).collect(), follows: vec![None; joints] }
     }
 
-    /// The joints that follow no other, counted from 0.
+    /// Returns the joints that follow no other, counted from 0.
     pub(crate) fn joints(&self) -> &[usize] {
         &self.coordinates
     }
@@ -65,7 +65,7 @@ impl<S: Constant> Couplings<S> {
         self.coordinates.len()
     }
 
-    /// The values of the coordinates at their joints, and zeros at the others.
+    /// Returns a list of all joints with the values at the coordinates, and zeros at the other joints.
     fn spread<T: Scalar>(&self, values: &[T]) -> Vec<T> {
         let mut all = vec![T::zero(); self.follows.len()];
         for (&joint, &value) in self.coordinates.iter().zip(values) {

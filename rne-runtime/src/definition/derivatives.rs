@@ -11,7 +11,7 @@ use crate::seven_steps::mechanism::Mechanism;
 use crate::{BaseMotion, Constant, Dual, Scalar, Wrench};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    /// ∂τ/∂q and ∂τ/∂q̇ under a load that does not change.
+    /// Returns ∂τ/∂q and ∂τ/∂q̇ under a constant load.
     pub(crate) fn torque_derivatives<T: Scalar>(
         self,
         q: &[T],
@@ -20,7 +20,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         load: AtTip<'_, Dual<T>>,
     ) -> [Square<J, T>; 2] {
         let constant = |x: &[T]| self.per_joint.of(|i| Dual::constant(x[i]));
-        // x, with joint j on its way
+        // x with the derivative 1 for joint j
         let along = |x: &[T], j: usize| {
             let unit = self.unit::<T>(j);
             self.per_joint.of(|i| Dual { value: x[i], derivative: unit.as_ref()[i] })
@@ -31,7 +31,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
             self.torques(JointMotions::new(q.as_ref(), qd.as_ref(), qdd.as_ref()), &base, load)
         };
         let (still_q, still_qd) = (constant(q), constant(qd));
-        // Columns first.
+        // Computed as columns first, then transposed.
         let dq = self.per_joint.of(|j| torques(&along(q, j), &still_qd));
         let dqd = self.per_joint.of(|j| torques(&still_q, &along(qd, j)));
         let rows = |columns: Square<J, Dual<T>>| {
@@ -41,17 +41,18 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 }
 
-/// Six rows of the base, and those of the joints.
+/// A column: six rows of the base, then those of the joints.
 type Column<J, T> = ([T; BASE], <J as PerJoint>::Of<T>);
 
-/// Columns by the position and by the rate of each joint, and by the angular velocity of the base.
+/// Columns of derivatives with respect to the position and the rate of each joint, and to the angular velocity of the
+/// base.
 struct OfFloatingBase<J: PerJoint, T: Clone> {
     joints: [J::Of<Column<J, T>>; 2],
     omega: [Column<J, T>; 3],
 }
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    /// The derivatives of a robot with a floating base, with constant wrenches at its tips.
+    /// Returns the derivatives of a robot with a floating base, with constant wrenches at its tips.
     fn floating_derivatives<T: Scalar>(
         self,
         JointMotions { q, qd, qdd, .. }: JointMotions<'_, T>,
@@ -91,7 +92,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
 }
 
 impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
-    /// ∂τ/∂q and ∂τ/∂q̇.
+    /// Returns ∂τ/∂q and ∂τ/∂q̇.
     pub(crate) fn torque_derivatives<T: Scalar>(
         self,
         [q, qd, qdd]: [&[T]; 3],
@@ -103,8 +104,8 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         (dq, dqd)
     }
 
-    /// Rows of the base and of the coordinates, by the positions, by the rates, and by the angular velocity of the
-    /// base.
+    /// Returns the derivatives with respect to positions, rates, and the angular velocity of the base. Rows are those
+    /// of the base and of the coordinates.
     #[allow(clippy::type_complexity)] // three matrices
     pub(crate) fn floating_derivatives<T: Scalar>(
         self,
@@ -137,7 +138,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
 }
 
 impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
-    /// λᵀτ by q, by q̇ and by q̈.
+    /// Returns the derivatives of λᵀτ with respect to q, q̇ and q̈.
     pub(crate) fn gradient<T: Scalar>(self, motion: [&[T]; 3], multipliers: &[T]) -> (J::Of<T>, J::Of<T>, J::Of<T>) {
         let still = motion.map(|x| self.still(x));
         let by = |place: usize| {
@@ -151,7 +152,8 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         (by(0), by(1), by(2))
     }
 
-    /// The accelerations by q, by q̇ and by τ, under a load and the same load of dual numbers.
+    /// Returns the derivatives of the accelerations with respect to q, q̇ and τ, under a load, which is given in
+    /// numbers and in dual numbers.
     #[allow(clippy::type_complexity)] // three matrices
     pub(crate) fn acceleration_derivatives<T: Scalar>(
         self,
@@ -165,7 +167,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         (dq, self.rows_by(qd, |qd| accelerations(still_q.as_ref(), qd)), self.inverse_mass_matrix(q, load))
     }
 
-    /// λᵀτ by q and q, by q and q̇, by q̇ and q̇, and by q and q̈.
+    /// Returns the second derivatives of λᵀτ: with respect to q twice, to q and q̇, to q̇ twice, and to q and q̈.
     #[allow(clippy::type_complexity)] // four matrices
     pub(crate) fn hessian<T: Scalar>(
         self,
@@ -185,7 +187,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
     }
 }
 
-/// λ times the derivative of the torques.
+/// Returns the derivative of λᵀτ.
 fn weighted<T: Scalar>(torques: &[Dual<T>], multipliers: &[T]) -> T {
     torques.iter().zip(multipliers).fold(T::zero(), |sum, (torque, &weight)| sum + torque.derivative * weight)
 }

@@ -25,18 +25,18 @@ use crate::seven_steps::link_state::{ForceMoment, JointMotions};
 use crate::seven_steps::mechanism::Mechanism;
 use crate::{BaseAcceleration, BaseMotion, Constant, Scalar, Wrench};
 
-/// Rows of the base: x, y, z, then about x, y, z.
+/// Number of rows of the base: x, y, z, then about x, y, z.
 pub(crate) const BASE: usize = 6;
 
 /// The parts of the mass matrix on and above its diagonal.
 struct FloatingMass<J: PerJoint, T: Scalar> {
     base: [[T; BASE]; BASE],
-    /// Rows of the base, in the columns of the joints.
+    /// Rows of the base in the columns of the joints.
     rows: [J::Of<T>; BASE],
     joints: Square<J, T>,
 }
 
-/// The base turns with ω, and all its accelerations, gravity included, are zero.
+/// The motion of a base that turns with ω and has no acceleration, so also no gravity.
 pub(crate) fn turning<T: Scalar>(omega: &[T; 3]) -> BaseMotion<T> {
     BaseMotion { omega: *omega, ..BaseMotion::fixed([T::zero(); 3]) }
 }
@@ -74,7 +74,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 }
 
-/// The centre of mass: h / m.
+/// The centre of mass, h / m.
 struct Centre<T: Scalar>(Vector3<T>);
 
 impl<J: PerJoint, T: Scalar> FloatingMass<J, T> {
@@ -85,8 +85,8 @@ impl<J: PerJoint, T: Scalar> FloatingMass<J, T> {
 }
 
 impl<T: Scalar> Centre<T> {
-    /// Makes rows of the momentum about the centre of mass from columns of wrenches that are about the origin of frame
-    /// 0.
+    /// Turns moments about the origin of frame 0 into moments about the centre of mass. `rows` has a wrench in each
+    /// column.
     fn take<R: AsRef<[T]> + AsMut<[T]>>(&self, rows: &mut [R; BASE]) {
         for column in 0..rows[0].as_ref().len() {
             let moment = self.moment(&core::array::from_fn(|row| rows[row].as_ref()[column]));
@@ -96,20 +96,21 @@ impl<T: Scalar> Centre<T> {
         }
     }
 
-    /// As [`take`](Self::take), of the base: while it does not turn, there is no angular momentum about the centre.
+    /// Does the same as [`take`](Self::take) for the columns of the base. A base that does not turn has no angular
+    /// momentum about the centre of mass.
     fn take_base(&self, rows: &mut [[T; BASE]; BASE]) {
         self.take(rows);
         rows[3..].iter_mut().for_each(|row| row[..3].fill(T::zero()));
     }
 
-    /// The moment about the centre of mass of a wrench that is about the origin of frame 0.
+    /// Returns the moment about the centre of mass, from a wrench about the origin of frame 0.
     fn moment(&self, &[fx, fy, fz, nx, ny, nz]: &[T; BASE]) -> Vector3<T> {
         Vector3::new(nx, ny, nz) - self.0.cross(&Vector3::new(fx, fy, fz))
     }
 }
 
 impl<T: Scalar> Centre<T> {
-    /// The rate of the momentum that a wrench is, which is about the origin of frame 0.
+    /// Returns the rate of the momentum about the centre of mass that a wrench about the origin of frame 0 causes.
     fn rate(&self, force: [T; 3], moment: [T; 3]) -> [T; BASE] {
         let ([fx, fy, fz], [nx, ny, nz]) = (force, moment);
         let about = self.moment(&[fx, fy, fz, nx, ny, nz]);
@@ -117,7 +118,8 @@ impl<T: Scalar> Centre<T> {
     }
 }
 
-/// Makes the solution x of M x = b from b; `inverse` is a place for the reciprocals of D.
+/// Solves M x = b, factored from the last row to the first. `x` contains b before and the solution afterwards;
+/// `inverse` is scratch memory for the reciprocals of D.
 pub(crate) fn solve_from_the_ends<T: Scalar, R: AsRef<[T]> + AsMut<[T]>>(
     matrix: &mut [R],
     inverse: &mut [T],
@@ -133,13 +135,13 @@ pub(crate) fn solve_from_the_ends<T: Scalar, R: AsRef<[T]> + AsMut<[T]>>(
     x.reverse();
 }
 
-/// The first six accelerations.
+/// Returns the first six accelerations, those of the base.
 pub(crate) fn of_base<T: Scalar>(x: &[T]) -> BaseAcceleration<T> {
     BaseAcceleration { linear: [x[0], x[1], x[2]], angular: [x[3], x[4], x[5]] }
 }
 
 impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
-    /// Six rows and columns of the base, and those of the coordinates.
+    /// Returns the mass matrix with six rows and columns of the base, then those of the coordinates.
     pub(crate) fn floating_mass_matrix<T: Scalar>(self, q: &[T], load: AtTip<'_, T>) -> Square<V, T> {
         let FloatingMass { base, rows, joints } = self.mechanism.floating_mass(self.of_joints(q).as_ref(), load);
         let (rows, joints) = (self.coordinates.rows(rows), self.coordinates.symmetric(joints));
@@ -153,18 +155,18 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         })
     }
 
-    /// The wrench on the base, then the torques, where nothing accelerates.
+    /// Returns the wrench on the base, then the torques, of a motion without accelerations.
     pub(crate) fn floating_bias<T: Scalar>(self, motion: [&[T]; 2], omega: &[T; 3], load: AtTip<'_, T>) -> V::Of<T> {
         self.floating_torques(motion, &turning(omega), load)
     }
 
-    /// The wrench on the base, then the torques, where nothing moves.
+    /// Returns the wrench on the base, then the torques, that hold the robot at rest.
     pub(crate) fn floating_gravity<T: Scalar>(self, q: &[T], base_rotation: &[[T; 3]; 3]) -> V::Of<T> {
         let gravity = matrix(base_rotation).transpose() * Vector3::from(self.fixed_base().gravity);
         self.floating_torques([q, self.zeros().as_ref()], &BaseMotion::fixed(gravity.into()), AtTip::Nothing)
     }
 
-    /// The wrench on a base that moves, then the torques, where the joints do not accelerate.
+    /// Returns the wrench on a base that moves, then the torques, when the joints do not accelerate.
     fn floating_torques<T: Scalar>(self, [q, qd]: [&[T]; 2], base: &BaseMotion<T>, load: AtTip<'_, T>) -> V::Of<T> {
         let zeros = self.zeros();
         let (Wrench { force, moment }, tau) = self.torques_and_wrench([q, qd, zeros.as_ref()], base, load);
@@ -175,7 +177,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         })
     }
 
-    /// The acceleration of the base less gravity, then those of the coordinates.
+    /// Returns the acceleration of the base less gravity, then those of the coordinates, in one list.
     pub(crate) fn floating_accelerations<T: Scalar>(
         self,
         [q, qd, tau]: [&[T]; 3],
@@ -190,7 +192,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         x
     }
 
-    /// The acceleration of the base less gravity, and those of the coordinates.
+    /// Returns the acceleration of the base less gravity, and those of the coordinates.
     pub(crate) fn floating_forward_dynamics<T: Scalar>(
         self,
         arguments: [&[T]; 3],
@@ -200,7 +202,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         self.of_velocities(self.floating_accelerations(arguments, omega, load).as_ref())
     }
 
-    /// The acceleration of the base, and those of the coordinates.
+    /// Splits a list into the acceleration of the base and those of the coordinates.
     pub(crate) fn of_velocities<T: Scalar>(self, x: &[T]) -> (BaseAcceleration<T>, J::Of<T>) {
         (of_base(x), self.coordinates.each().of(|joint| x[BASE + joint]))
     }

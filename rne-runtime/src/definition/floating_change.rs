@@ -1,5 +1,5 @@
-//! How the state after a step of a robot with a floating base changes with the state before it and with the
-//! torques: the derivatives of the accelerations are -M⁻¹ times those of the wrench on the base and of the torques.
+//! Derivatives of an Euler step of a robot with a floating base with respect to the state before it and to the torques.
+//! The derivatives of the accelerations are -M⁻¹ times those of the wrench on the base and of the torques.
 
 use core::array::from_fn;
 
@@ -14,8 +14,8 @@ use crate::seven_steps::at_tip::AtTip;
 use crate::values::pose_log::{cross, times, transposed};
 use crate::{BaseAcceleration, BaseMotion, BaseTwist, Constant, Dual, Pose, Scalar, Wrench};
 
-/// The motion at which the forces are derived. It has the acceleration of the base less gravity, so its field `gravity`
-/// stays zero.
+/// Returns the motion at which the forces are differentiated. It contains the acceleration of the base less gravity, so
+/// its field `gravity` stays zero.
 fn motion<T: Scalar>(twist: &BaseTwist<T>, acceleration: &BaseAcceleration<T>) -> BaseMotion<T> {
     BaseMotion {
         omega: twist.angular,
@@ -25,8 +25,8 @@ fn motion<T: Scalar>(twist: &BaseTwist<T>, acceleration: &BaseAcceleration<T>) -
     }
 }
 
-/// Six rows of the base and one for each joint: the mass matrix, and the derivatives of the wrench on the base and of
-/// the torques.
+/// The mass matrix, and the derivatives of the wrench on the base and of the torques. Each has six rows of the base and
+/// one for each joint.
 struct Forces<'a, T, R, J> {
     mass: &'a mut [R],
     dq: &'a [J],
@@ -35,8 +35,9 @@ struct Forces<'a, T, R, J> {
 }
 
 impl<T: Scalar, R: AsRef<[T]> + AsMut<[T]>, J: AsRef<[T]>> Forces<'_, T, R, J> {
-    /// Gives every derivative to `put`: whether it is of a velocity, its kind (0 by positions, 1 by velocities, 2 by
-    /// torques), row and column. `lists` are places for as many numbers as the matrix has rows.
+    /// Passes every derivative to `put`: [0 for a position or 1 for a velocity, kind of the argument (0 positions, 1
+    /// velocities, 2 torques)], [row, column] and value. `lists` are scratch memory for as many numbers as the matrix
+    /// has rows.
     fn derivatives(self, change: &Change<T>, lists: [&mut [T]; 4], mut put: impl FnMut([usize; 2], [usize; 2], T)) {
         let [inverse, x, positions, velocities] = lists;
         factor(self.mass, inverse);
@@ -62,21 +63,22 @@ impl<T: Scalar, R: AsRef<[T]> + AsMut<[T]>, J: AsRef<[T]>> Forces<'_, T, R, J> {
     }
 }
 
-/// How the next state changes with the state and with the accelerations.
+/// The numbers of a step from which the changes of the next state are computed.
 struct Change<T> {
     step: T,
-    /// R'ᵀ R
+    /// R'ᵀ R, which turns axes of frame 0 before the step into those after it.
     back: [[T; 3]; 3],
     /// v + h a, in axes of frame 0 before the step.
     linear: [T; 3],
     /// v', in axes of frame 0 after the step.
     next_linear: [T; 3],
-    /// h ω / 4 of the turn.
+    /// h ω / 4, the coordinates u of the turn.
     quarter: [T; 3],
 }
 
 impl<T: Scalar> Change<T> {
-    /// From the velocities of the base before and after the step, and its acceleration less gravity.
+    /// Computes these numbers from the velocities of the base before and after the step, and its acceleration less
+    /// gravity.
     fn new(twist: &BaseTwist<T>, next: &BaseTwist<T>, acceleration: &[T; 3], step: T) -> Self {
         let quarter = next.angular.map(|x| x * step * T::from_f64(0.25));
         Self {
@@ -88,8 +90,8 @@ impl<T: Scalar> Change<T> {
         }
     }
 
-    /// Writes the changes of positions and velocities after the step, where one of the positions or of the velocities
-    /// before it changes, and by what that changes in the accelerations.
+    /// Writes the changes of positions and velocities after the step, caused by a unit change of position `q` or
+    /// velocity `v` before it and by the changes of the accelerations that belong to it.
     fn of(&self, [q, v]: [Option<usize>; 2], accelerations: &[T], [positions, velocities]: [&mut [T]; 2]) {
         let unit = |of: Option<usize>, at: usize| if of == Some(at) { T::one() } else { T::zero() };
         for (at, &acceleration) in accelerations.iter().enumerate() {
@@ -97,7 +99,7 @@ impl<T: Scalar> Change<T> {
             positions[at] = unit(q, at) + self.step * velocities[at];
         }
         let three = |from: usize| -> [T; 3] { from_fn(|at| unit(q, from + at)) };
-        // R E turns on by Eᵀ δθ and by the change of E
+        // the rotation R E of the base after the step changes by Eᵀ δθ and by the change of E
         let angular: [T; 3] = from_fn(|at| velocities[3 + at] * self.step * T::from_f64(0.25));
         let by_rate = turn_by_change(&self.quarter, &angular);
         let before = times(&self.back, &three(3));
@@ -116,7 +118,8 @@ impl<T: Scalar> Change<T> {
     }
 }
 
-/// Derivatives of the positions and of the velocities after a step, each by positions, by velocities and by torques.
+/// Derivatives of the positions and of the velocities after a step, each with respect to positions, velocities and
+/// torques.
 type Blocks<J, V, T> = (
     Square<V, T>,
     Square<V, T>,

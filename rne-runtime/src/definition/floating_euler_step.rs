@@ -7,7 +7,7 @@ use crate::integrators::moved;
 use crate::values::pose_log::{dot, times, transposed};
 use crate::{BaseAcceleration, BaseTwist, Pose, Scalar};
 
-/// The pose and the velocity of the base after a step; `gravity` is in world axes.
+/// Returns the pose and the velocity of the base after a step; `gravity` is in world axes.
 pub(crate) fn next_of_base<T: Scalar>(
     (pose, twist): (&Pose<T>, &BaseTwist<T>),
     acceleration: &BaseAcceleration<T>,
@@ -28,7 +28,7 @@ fn product<T: Scalar>(a: &[[T; 3]; 3], b: &[[T; 3]; 3]) -> [[T; 3]; 3] {
     transposed(&transposed(b).map(|column| times(a, &column)))
 }
 
-/// The rotation by the unit quaternion (1 - s, 2 u) / (1 + s) with s = u·u and 4 u = `angle`.
+/// Returns the rotation matrix of the unit quaternion (1 - s, 2 u) / (1 + s) with s = u·u and 4 u = `angle`.
 fn turn<T: Scalar>(angle: &[T; 3]) -> [[T; 3]; 3] {
     let one = T::one();
     let u = angle.map(|x| x * T::from_f64(0.25));
@@ -41,7 +41,8 @@ fn turn<T: Scalar>(angle: &[T; 3]) -> [[T; 3]; 3] {
     [[one - (yy + zz), xy - wz, xz + wy], [xy + wz, one - (xx + zz), yz - wx], [xz - wy, yz + wx, one - (xx + yy)]]
 }
 
-/// B (3 - Bᵀ B) / 2: a step of Newton's method towards the rotation next to B.
+/// Returns B (3 - Bᵀ B) / 2: one step of Newton's method from a matrix B that is nearly a rotation to the nearest
+/// rotation.
 fn next_rotation<T: Scalar>(near: &[[T; 3]; 3]) -> [[T; 3]; 3] {
     let (half, columns) = (T::from_f64(0.5), transposed(near));
     let element = |row: usize, column: usize| {

@@ -1,6 +1,7 @@
-//! Jacobians of the tips of a robot with a floating base, and their accelerations where nothing else accelerates.
+//! Jacobians J of the tips of a robot with a floating base, and J̇ v, their accelerations when base and joints do not
+//! accelerate.
 //!
-//! A tip is a frame in the place of the tip frame, seen from frame 0 with the axes that the caller gives. The columns
+//! A tip is a frame in the place of the tip frame, relative to frame 0, in the axes that the caller gives. The columns
 //! of the base are those of a free body:
 //!
 //! ```text
@@ -21,16 +22,16 @@ use crate::seven_steps::mechanism::Mechanism;
 use crate::seven_steps::mount::Mount;
 use crate::{Constant, Scalar};
 
-/// The six columns of the base in a row of a Jacobian, and those of the joints.
+/// A row of a Jacobian: the six columns of the base, then those of the joints.
 type Row<J, T> = ([T; BASE], <J as PerJoint>::Of<T>);
 
-/// A matrix of its rows.
+/// Converts rows to a matrix.
 pub(crate) fn matrix<T: Scalar>(rows: &[[T; 3]; 3]) -> Matrix3<T> {
     Matrix3::from(*rows).transpose()
 }
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    /// The rows of the Jacobian of a tip.
+    /// Returns the rows of the Jacobian of a tip.
     fn tip_jacobian<T: Scalar>(self, q: &[T], rotation: Matrix3<T>, tip: &FixedFrame<S>) -> [Row<J, T>; 6] {
         let start = Placement { rotation, translation: Vector3::zeros() };
         let links = self.placements(start, q);
@@ -50,8 +51,8 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         })
     }
 
-    /// The acceleration of a tip by that of the centre of mass of its link, where the base turns and nothing else of it
-    /// accelerates.
+    /// Returns the acceleration of a tip, from that of the centre of mass of its link, when the base turns but has no
+    /// acceleration.
     pub(crate) fn tip_acceleration<T: Scalar>(
         self,
         (q, qd): (&[T], &[T]),

@@ -1,4 +1,4 @@
-//! Wrench of each link on the next, from step 6.
+//! The wrench of each link on the next one, from step 6.
 
 use crate::definition::per_joint::PerJoint;
 use crate::seven_steps::at_tip::AtTip;

@@ -1,6 +1,6 @@
-//! Poses, the Jacobian of the tip, what it lacks of the tip's acceleration, and the torques of a wrench at the tip.
+//! Poses, the Jacobian of the tip, J̇ q̇, and the torques of a wrench at the tip.
 //!
-//! In place of the tip may be a frame on any link. Then the joints behind this link move nothing.
+//! A frame on any link can replace the tip. Then the joints after this link do not move it.
 //!
 //! Poses are accumulated from the base, row by row of the table, and not by the frames of the seven steps. The order of
 //! the operations is part of the contract; generated code repeats it:
@@ -43,13 +43,13 @@ impl<T: Scalar> Placement<T> {
         Self { rotation: Matrix3::identity(), translation: Vector3::zeros() }
     }
 
-    /// A constant placement.
+    /// Returns the placement of a constant transform.
     pub(crate) fn constant<S: Constant>(transform: &Transform<S>) -> Self {
         let translation = Vector3::from(transform.xyz).map(S::to);
         Self { rotation: rotation_of(transform).map(S::to), translation }
     }
 
-    /// From a link to the next one, the joint in between at `q`.
+    /// Returns the placement of a link in the link before, with the joint between them at `q`.
     fn of_row<S: Constant>(convention: Convention, row: &Row<S>, link: &LinkFrame<S>, q: T) -> Self {
         let turn @ (sin, cos) = link.to().sin_cos(q);
         let (a, twist) = (row.dh.a.to::<T>(), rotation_x(&row.dh.alpha).map(S::to));
@@ -69,7 +69,7 @@ impl<T: Scalar> Placement<T> {
         }
     }
 
-    /// The placement `next`, which is given in this one.
+    /// Returns the placement of `next`, which is given relative to this one.
     fn then(&self, next: &Self) -> Self {
         Self {
             rotation: self.rotation * next.rotation,
@@ -83,7 +83,7 @@ impl<T: Scalar> Placement<T> {
 }
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    /// The link frames, when frame 0 stands at `start`.
+    /// Returns the placements of the link frames when frame 0 is at `start`.
     pub(crate) fn placements<T: Scalar>(self, start: Placement<T>, q: &[T]) -> J::Of<Placement<T>> {
         let mut placements = self.per_joint.all(&start);
         for (i, link) in self.chain.links.iter().enumerate() {
@@ -94,8 +94,8 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         placements
     }
 
-    /// The frame whose z axis is joint i: the parent's link frame in a standard table, the link's own in a modified
-    /// one.
+    /// Returns the frame whose z axis is joint i: the parent's link frame in a standard table, the link's own in a
+    /// modified one.
     pub(crate) fn joint_frame<T: Scalar>(self, i: usize, start: Placement<T>, links: &[Placement<T>]) -> Placement<T> {
         match self.table.convention {
             Convention::Modified => links[i],
@@ -103,37 +103,38 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         }
     }
 
-    /// Where row i begins: at the parent's link frame, or at a placement there.
+    /// Returns the frame at which row i begins: the parent's link frame, or a placement relative to it.
     fn row_start<T: Scalar>(self, i: usize, start: Placement<T>, links: &[Placement<T>]) -> Placement<T> {
         let parent = self.chain.links[i].parent.map_or(start, |parent| links[parent]);
         self.table.placement(i).map_or(parent, |placement| parent.then(&Placement::constant(placement)))
     }
 
-    /// The centre of mass of link i.
+    /// Returns the centre of mass of link i.
     pub(crate) fn centre<T: Scalar>(self, i: usize, links: &[Placement<T>]) -> Vector3<T> {
         let Placement { rotation, translation } = links[i];
         rotation * Vector3::from(self.table.rows[i].link.com).map(S::to) + translation
     }
 
-    /// The first moment of link i beside its mass, in the axes in which the links are placed; `None` of a body.
+    /// Returns the first moment that link i has in addition to that of its mass, in the axes in which the links are
+    /// placed; `None` if it has none.
     pub(crate) fn first_moment<T: Scalar>(self, i: usize, links: &[Placement<T>]) -> Option<Vector3<T>> {
         self.chain.links[i].first_moment?;
         Some(links[i].rotation * Vector3::from(self.table.rows[i].link.first_moment).map(S::to))
     }
 
-    /// The frame that is observed: the tip, or the frame that stands in its place.
+    /// Returns the frame that the functions compute: the tip, or the frame that replaces it.
     fn observed(self) -> FixedFrame<S> {
         self.at.copied().unwrap_or_else(|| self.table.tip())
     }
 
-    /// Returns the observed frame, after one of `links`, when frame 0 is at `start`.
+    /// Returns the placement of this frame, on one of `links`, when frame 0 is at `start`.
     pub(crate) fn tip<T: Scalar>(self, start: Placement<T>, links: &[Placement<T>]) -> Placement<T> {
         let FixedFrame { on, placement } = self.observed();
         let link = on.map_or(start, |link| links[link]);
         link.then(&Placement::constant(&placement))
     }
 
-    /// Whether a joint moves the observed frame: it is the joint of its link, or of a link that carries this one.
+    /// Whether a joint moves this frame: whether it is a joint between the base and the link of the frame.
     fn moves_tip(self, joint: usize) -> bool {
         let mut link = self.observed().on;
         while let Some(index) = link {
@@ -160,7 +161,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         self.jacobian_from(base, self.placements(base, q).as_ref()).0
     }
 
-    /// The Jacobian when frame 0 is at `base`, and the origin of the frame.
+    /// Returns the Jacobian when frame 0 is at `base`, and the origin of the frame.
     ///
     /// Column i of a revolute joint: z_i × (p_tip - p_i), z_i; of a prismatic one: z_i, 0; of a joint that does not
     /// move the frame: 0, 0.

@@ -19,7 +19,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         self.mass_matrix_beside(q, tip, |_, _| {})
     }
 
-    /// M(q) of the joints; `on_base` is given the wrench on a base that does not move, for each column.
+    /// Returns M(q) of the joints. For each column, `on_base` gets the wrench on a base that does not move.
     pub(crate) fn mass_matrix_beside<T: Scalar>(
         self,
         q: &[T],
@@ -42,7 +42,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         matrix
     }
 
-    /// The Coriolis matrix C(q, q̇) of Christoffel, by the seven steps.
+    /// Returns the Coriolis matrix C(q, q̇) of Christoffel, by the seven steps.
     ///
     /// Without gravity and at q̈ = 0 the torques are a quadratic form in the velocities, b(x) = B(x, x) with B bilinear
     /// and symmetric, B(x, y)_i = Σ_jk Γ_ijk x_j y_k with Christoffel's symbols Γ_ijk = ½ (∂M_ij/∂q_k + ∂M_ik/∂q_j -
@@ -83,7 +83,7 @@ impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P,
         inverse_of(self.mass_matrix(q, load), &self.zeros())
     }
 
-    /// Solves M(q) x = b.
+    /// Solves M(q) x = b and returns x.
     pub(crate) fn accelerations<T: Scalar>(self, q: &[T], mut b: J::Of<T>, load: AtTip<'_, T>) -> J::Of<T> {
         let (mut m, mut inverse) = (self.mass_matrix(q, load), self.zeros());
         factor(m.as_mut(), inverse.as_mut());

@@ -45,7 +45,7 @@ struct Body<T> {
     angular: Vector3<T>,
 }
 
-/// Contributions of the joints mounted on a link, in its axes: their sums, and the levers r_k separately.
+/// The sums of the bodies that a link carries, in its axes, and the terms with the levers r_k separately.
 #[derive(Clone, Copy, Debug)]
 struct Carried<T> {
     of_joints: Body<T>,
@@ -54,7 +54,7 @@ struct Carried<T> {
 }
 
 impl<T: Scalar> Body<T> {
-    /// M_i, s_i, P_i and L_i.
+    /// Returns M_i, s_i, P_i and L_i of link i with all that it carries.
     fn of(
         link: &LinkFrame<T>,
         motion: &LinkMotion<T>,
@@ -107,7 +107,7 @@ impl<T: Scalar> Body<T> {
     }
 }
 
-/// One joint more that a link carries: `body` in the link's axes, about the joint at the end of `r`.
+/// Adds one more body that a link carries. `body` is in the link's axes, about the joint at the end of `r`.
 fn carry<T: Scalar>(others: Option<Carried<T>>, body: Body<T>, r: &Vector3<T>) -> Carried<T> {
     let of_levers = [r * body.mass, r.cross(&body.linear)];
     let Some(Carried { of_joints, of_levers: [masses, momenta] }) = others else {
@@ -125,7 +125,7 @@ fn carry<T: Scalar>(others: Option<Carried<T>>, body: Body<T>, r: &Vector3<T>) -
 }
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    /// p, and τ + ∂T/∂q - ∂V/∂q.
+    /// Returns p, and τ + ∂T/∂q - ∂V/∂q.
     pub(crate) fn momentum_and_rate<T: Scalar>(
         self,
         q: &[T],
@@ -178,7 +178,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
 }
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    /// The momentum of a robot with a floating base, and its angular momentum about the centre of mass.
+    /// Returns the momentum of a robot with a floating base, and its angular momentum about the centre of mass.
     pub(crate) fn centroidal_momentum<T: Scalar>(self, q: &[T], qd: &[T], twist: &BaseTwist<T>) -> [T; 6] {
         let (zeros, base, chain) = (self.zeros(), twist.motion(), self.chain);
         let joints = JointMotions::new(q, qd, zeros.as_ref());

@@ -1,17 +1,17 @@
-//! One value per joint: an array where the number of joints is known at compile time, a vector where it is not.
+//! Collections of one value per joint: arrays if the number of joints is known at compile time, otherwise vectors.
 
 use crate::Constant;
 use crate::definition::coordinates::{Coordinates, Joints};
 
 /// Makes collections with one element per joint. The functions of a robot are written once, for both kinds.
 pub(crate) trait PerJoint: Copy {
-    /// One `U` per joint, base to tip.
+    /// A collection with one `U` per joint, base to tip.
     type Of<U: Clone>: Clone + AsRef<[U]> + AsMut<[U]>;
 
-    /// From the coordinates of a robot to its joints.
+    /// The type that converts between the coordinates of a robot and its joints.
     type Coordinates<'a, S: Constant>: Coordinates<Self, S>;
 
-    /// `value` of every joint's index.
+    /// Returns a collection with `value(index)` for every joint.
     fn of<U: Clone>(self, value: impl FnMut(usize) -> U) -> Self::Of<U>;
 
     /// Returns a list with one value for every joint.
@@ -20,10 +20,10 @@ pub(crate) trait PerJoint: Copy {
     }
 }
 
-/// One row of elements per joint.
+/// A square matrix: one row per joint, with one element per joint.
 pub(crate) type Square<J, U> = <J as PerJoint>::Of<<J as PerJoint>::Of<U>>;
 
-/// Arrays.
+/// Makes arrays.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Known<const DOF: usize>;
 

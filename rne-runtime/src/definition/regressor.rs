@@ -35,7 +35,7 @@ const TENSOR: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2,
 /// The numbers of a link in one row of Y.
 pub(crate) type Elements<T> = [T; PER_LINK];
 
-/// The rows of a floating base, force above moment: of the base's own parameters, and of the links.
+/// The rows of a floating base, force above moment: columns of the base's own parameters, and of the links.
 pub(crate) struct OfBase<J: PerJoint, T: Scalar> {
     own: [Elements<T>; BASE],
     links: [J::Of<Elements<T>>; BASE],
@@ -48,7 +48,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         base: &BaseMotion<T>,
     ) -> (OfBase<J, T>, Square<J, Elements<T>>) {
         let rows = self.per_joint.of(|i| empty(&self.table.rows[i]));
-        // from the origin of frame 0, wherever the mass of the base is
+        // relative to the origin of frame 0, and not to the centre of mass of the base
         let table = Table { rows: rows.as_ref(), floating_base: None, ..self.table };
         let links = self.per_joint.of(|i| LinkFrame::new(table, i));
         let chain = Chain { links: links.as_ref(), tip: &Mount::of_tip(table), floating_base: None, ..self.chain };
@@ -63,18 +63,18 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let mut matrix = self.per_joint.all(&zeros);
         for (j, motion) in motions.iter().enumerate() {
             let mut wrenches = unit_wrenches(motion, &self.link_axes(j));
-            // The link itself: from its link frame's origin to its joint.
+            // First the link itself: the lever from its link frame's origin to its joint.
             let mut lever = motion.d;
             let mut joint = Some(j);
             while let Some(i) = joint {
                 for (parameter, wrench) in wrenches.iter_mut().enumerate() {
                     wrench.moment += lever.cross(&wrench.force);
                     matrix.as_mut()[i].as_mut()[j][parameter] = self.table.rows[i].kind.actuator(wrench);
-                    // In the axes of the parent.
+                    // Now in the axes of the parent.
                     let rotation = motions[i].rotation;
                     *wrench = ForceMoment { force: rotation * wrench.force, moment: rotation * wrench.moment };
                 }
-                // That link carries the wrench from there to its own joint.
+                // The parent carries this wrench, too: the lever from there to the parent's joint.
                 let link = &chain.links[i];
                 joint = link.parent;
                 lever = link.mount.r.map(S::to);
@@ -101,19 +101,19 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 }
 
-/// A component of the force, then of the moment.
+/// Returns a component of a wrench: of the force for rows 0 to 2, of the moment for rows 3 to 5.
 fn row_of<T: Scalar>(wrench: &ForceMoment<T>, row: usize) -> T {
     if row < 3 { wrench.force[row] } else { wrench.moment[row - 3] }
 }
 
-/// The row of a link without mass.
+/// Returns the row of the table with a link without mass.
 fn empty<S: Constant>(row: &Row<S>) -> Row<S> {
     let zero = S::zero();
     let inertia = rne_model::Inertia { xx: zero, yy: zero, zz: zero, xy: zero, xz: zero, yz: zero };
     Row { link: Link { mass: zero, com: [zero; 3], inertia, first_moment: [zero; 3] }, ..*row }
 }
 
-/// Force and moment of each parameter set to one, about the origin of the link frame, in the axes of form P.
+/// Returns force and moment for each parameter set to one, about the origin of the link frame, in the axes of form P.
 fn unit_wrenches<T: Scalar>(motion: &LinkMotion<T>, axes: &Matrix3<T>) -> [ForceMoment<T>; PER_LINK] {
     let omega = axes.tr_mul(&motion.omega);
     let omega_dot = axes.tr_mul(&motion.omega_dot);
@@ -139,7 +139,7 @@ fn unit_wrenches<T: Scalar>(motion: &LinkMotion<T>, axes: &Matrix3<T>) -> [Force
 }
 
 impl<J: PerJoint, V: PerJoint, P: PerJoint, S: Constant> Definition<'_, J, V, P, S> {
-    /// The rows of the base, and those of the coordinates.
+    /// Returns the rows of the base, and those of the coordinates.
     pub(crate) fn regressor<T: Scalar>(
         self,
         [q, qd, qdd]: [&[T]; 3],
@@ -174,7 +174,7 @@ impl<const DOF: usize, const NV: usize, const BODIES: usize, const TIPS: usize, 
     }
 }
 
-/// The elements of a row and of a body; the base is the first of both.
+/// Returns the elements for a row and a body; the base has the first rows and is the first body.
 pub(crate) fn element<J: PerJoint, T: Scalar>(
     of_base: &OfBase<J, T>,
     of_joints: &Square<J, Elements<T>>,
@@ -184,7 +184,7 @@ pub(crate) fn element<J: PerJoint, T: Scalar>(
     match (row.checked_sub(BASE), body.checked_sub(1)) {
         (None, None) => of_base.own[row],
         (None, Some(link)) => of_base.links[row].as_ref()[link],
-        // no joint moves the base
+        // no joint moves the base, so its parameters affect no torque
         (Some(_), None) => [T::zero(); PER_LINK],
         (Some(joint), Some(link)) => of_joints.as_ref()[joint].as_ref()[link],
     }

@@ -1,13 +1,13 @@
-//! Wrenches at tips as dual numbers that nothing changes.
+//! Wrenches at tips as dual numbers whose derivatives are zero.
 
 use crate::{Dual, Scalar, Wrench};
 
-/// Wrenches at tips, where nothing changes them.
+/// Wrenches at tips that can be converted to dual numbers.
 pub(crate) trait AllStill<T> {
-    /// As many, of dual numbers.
+    /// A collection of the same number of wrenches in dual numbers.
     type Still: AsRef<[Wrench<Dual<T>>]>;
 
-    /// Each of them [`still`](Wrench::still).
+    /// Converts each wrench by [`still`](Wrench::still).
     fn all_still(self) -> Self::Still;
 }
 

@@ -1,11 +1,11 @@
-//! How the frame that carries the arm moves, and which way things fall in it.
+//! Motion of the base that carries the arm, and the direction of gravity in its axes.
 
 use crate::Scalar;
 
 /// Motion of the base, the "link 0" from which the forward recursion starts. Every vector is in the axes of frame 0.
 ///
 /// For an arm bolted to the floor everything but gravity is zero: [`BaseMotion::fixed`]. On a ship, a vehicle or
-/// another robot, frame 0 moves; when it tilts, gravity turns in it.
+/// another robot, frame 0 moves; when it tilts, gravity turns in its axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaseMotion<T> {
     /// Angular velocity ω₀, rad/s.

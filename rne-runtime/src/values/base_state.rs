@@ -23,27 +23,29 @@ impl<T: Scalar> Default for BaseTwist<T> {
 }
 
 impl<T: Scalar> BaseTwist<T> {
-    /// The first six elements of Pinocchio's `v` with a free flyer: linear, angular, in axes of the base.
+    /// Creates it from the first six elements of Pinocchio's `v` with a free flyer: linear, angular, in axes of the
+    /// base.
     #[must_use]
     pub fn from_pinocchio(v: &[T; 6]) -> Self {
         let [linear, angular] = halves(v);
         Self { linear, angular }
     }
 
-    /// The first six elements of Pinocchio's `v`.
+    /// Returns the first six elements of Pinocchio's `v`.
     #[must_use]
     pub fn to_pinocchio(&self) -> [T; 6] {
         joined(self.linear, self.angular)
     }
 
-    /// The first six elements of MuJoCo's `qvel` with a free joint: linear in world axes, angular in axes of the base.
+    /// Creates it from the first six elements of MuJoCo's `qvel` with a free joint: linear in world axes, angular in
+    /// axes of the base.
     #[must_use]
     pub fn from_mujoco(base: &Pose<T>, qvel: &[T; 6]) -> Self {
         let [linear, angular] = halves(qvel);
         Self { linear: times(&transposed(&base.rotation), &linear), angular }
     }
 
-    /// The first six elements of MuJoCo's `qvel`.
+    /// Returns the first six elements of MuJoCo's `qvel`.
     #[must_use]
     pub fn to_mujoco(&self, base: &Pose<T>) -> [T; 6] {
         joined(times(&base.rotation, &self.linear), self.angular)
@@ -52,24 +54,24 @@ impl<T: Scalar> BaseTwist<T> {
 
 #[cfg(feature = "arm")]
 impl<T: Scalar> BaseTwist<T> {
-    /// A base that moves with this velocity and has no acceleration, without gravity.
+    /// Returns the motion of a base with this velocity, without acceleration and gravity.
     pub(crate) fn motion(&self) -> BaseMotion<T> {
         BaseMotion { omega: self.angular, velocity: self.linear, ..BaseMotion::default() }
     }
 }
 
 impl<T: Scalar> BaseMotion<T> {
-    /// The motion that an inertial measurement unit in frame 0 reads: ω (rad/s), its rate ω̇ (rad/s²), which is a
-    /// difference of readings or zero, and the specific force a - g (m/s²). At rest the accelerometer reads -g:
-    /// upwards.
+    /// The motion that an inertial measurement unit in frame 0 measures: ω (rad/s), its rate ω̇ (rad/s²), which is a
+    /// difference of readings or zero, and the specific force a - g (m/s²). At rest the accelerometer measures -g,
+    /// which points up.
     #[must_use]
     pub fn from_imu(gyroscope: [T; 3], gyroscope_rate: [T; 3], accelerometer: [T; 3]) -> Self {
         let zero = [T::zero(); 3];
         Self { omega: gyroscope, omega_dot: gyroscope_rate, velocity: zero, acceleration: accelerometer, gravity: zero }
     }
 
-    /// As [`from_imu`](Self::from_imu), of a unit that is mounted at `imu` in frame 0. Its readings are in its own
-    /// axes.
+    /// The motion that a unit at `imu` in frame 0 measures, as in [`from_imu`](Self::from_imu). Its readings are in its
+    /// own axes.
     #[must_use]
     pub fn from_imu_at(imu: &Pose<T>, gyroscope: [T; 3], gyroscope_rate: [T; 3], accelerometer: [T; 3]) -> Self {
         let [omega, omega_dot, there] =
@@ -80,9 +82,9 @@ impl<T: Scalar> BaseMotion<T> {
         Self::from_imu(omega, omega_dot, here)
     }
 
-    /// From the first elements of Pinocchio's `q` (7), `v` (6) and `a` (6) with a free flyer, and gravity in the axes
-    /// in which `q` has the orientation: those of the placement of the free flyer, which are the world's in most
-    /// models.
+    /// Creates it from the first elements of Pinocchio's `q` (7), `v` (6) and `a` (6) with a free flyer, and gravity in
+    /// the axes in which `q` has the orientation: those of the placement of the free flyer, which are the world's in
+    /// most models.
     ///
     /// Pinocchio's acceleration is spatial: the classical one of frame 0's origin is a + ω × v.
     #[must_use]
@@ -95,15 +97,16 @@ impl<T: Scalar> BaseMotion<T> {
         Self { omega, omega_dot, velocity, acceleration, gravity }
     }
 
-    /// The first six elements of Pinocchio's `a`: the spatial acceleration. The velocity counts, and gravity does not.
+    /// Returns the first six elements of Pinocchio's `a`: the spatial acceleration. It depends on the velocity and not
+    /// on gravity.
     #[must_use]
     pub fn to_pinocchio(&self) -> [T; 6] {
         let turning = cross(&self.omega, &self.velocity);
         joined(core::array::from_fn(|i| self.acceleration[i] - turning[i]), self.omega_dot)
     }
 
-    /// From the first elements of MuJoCo's `qpos` (7), `qvel` (6) and `qacc` (6) with a free joint, and gravity in
-    /// world axes.
+    /// Creates it from the first elements of MuJoCo's `qpos` (7), `qvel` (6) and `qacc` (6) with a free joint, and
+    /// gravity in world axes.
     #[must_use]
     pub fn from_mujoco(qpos: &[T; 7], qvel: &[T; 6], qacc: &[T; 6], gravity: [T; 3]) -> Self {
         let base = Pose::from_mujoco(qpos);
@@ -118,7 +121,7 @@ impl<T: Scalar> BaseMotion<T> {
         }
     }
 
-    /// The first six elements of MuJoCo's `qacc`.
+    /// Returns the first six elements of MuJoCo's `qacc`.
     #[must_use]
     pub fn to_mujoco(&self, base: &Pose<T>) -> [T; 6] {
         joined(times(&base.rotation, &self.acceleration), self.omega_dot)
@@ -126,31 +129,31 @@ impl<T: Scalar> BaseMotion<T> {
 }
 
 impl<T: Scalar> Pose<T> {
-    /// From the first seven elements of Pinocchio's `q` with a free flyer: the position, then the quaternion x y z w,
-    /// of any length. It is the pose in the placement of the free flyer, which is the world in most models.
+    /// Creates it from the first seven elements of Pinocchio's `q` with a free flyer: the position, then the quaternion
+    /// x y z w, of any length. It is the pose in the placement of the free flyer, which is the world in most models.
     #[must_use]
     pub fn from_pinocchio(&[a, b, c, x, y, z, w]: &[T; 7]) -> Self {
         Self { rotation: Quaternion { w, x, y, z }.rotation_of_any_length(), translation: [a, b, c] }
     }
 
-    /// From the first seven elements of MuJoCo's `qpos` with a free joint: the position, then the quaternion w x y z,
-    /// of any length.
+    /// Creates it from the first seven elements of MuJoCo's `qpos` with a free joint: the position, then the quaternion
+    /// w x y z, of any length.
     #[must_use]
     pub fn from_mujoco(&[a, b, c, w, x, y, z]: &[T; 7]) -> Self {
         Self { rotation: Quaternion { w, x, y, z }.rotation_of_any_length(), translation: [a, b, c] }
     }
 }
 
-/// In `f32` and `f64`, whose roots the quaternion needs.
+/// For `f32` and `f64`, because the quaternion needs a square root.
 impl<T: Scalar + Float> Pose<T> {
-    /// The first seven elements of Pinocchio's `q`.
+    /// Returns the first seven elements of Pinocchio's `q`.
     #[must_use]
     pub fn to_pinocchio(&self) -> [T; 7] {
         let ([a, b, c], [x, y, z, w]) = (self.translation, Quaternion::of_rotation(&self.rotation).to_xyzw());
         [a, b, c, x, y, z, w]
     }
 
-    /// The first seven elements of MuJoCo's `qpos`.
+    /// Returns the first seven elements of MuJoCo's `qpos`.
     #[must_use]
     pub fn to_mujoco(&self) -> [T; 7] {
         let ([a, b, c], [w, x, y, z]) = (self.translation, Quaternion::of_rotation(&self.rotation).to_wxyz());
@@ -161,13 +164,14 @@ impl<T: Scalar + Float> Pose<T> {
 /// The wrench on a floating base ([`FloatingTorques::wrench`](crate::FloatingTorques::wrench)) as the first six
 /// elements of a generalised force.
 impl<T: Scalar> Wrench<T> {
-    /// As in Pinocchio's `tau`: force, moment, in axes of the base.
+    /// Returns it as in Pinocchio's `tau`: force, moment, in axes of the base.
     #[must_use]
     pub fn to_pinocchio(&self) -> [T; 6] {
         joined(self.force, self.moment)
     }
 
-    /// As in MuJoCo's `qfrc_inverse`: the force in world axes, the moment about the base's origin in axes of the base.
+    /// Returns it as in MuJoCo's `qfrc_inverse`: the force in world axes, the moment about the base's origin in axes of
+    /// the base.
     #[must_use]
     pub fn to_mujoco(&self, base: &Pose<T>) -> [T; 6] {
         joined(times(&base.rotation, &self.force), self.moment)

@@ -59,7 +59,7 @@ pub const fn joint_order<'a, const DOF: usize>(
     Ok(order)
 }
 
-/// Why a list of names has no order of a robot's joints; each contains the name.
+/// Why a list of names gives no order of a robot's joints. Each variant contains the name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointOrderError<'a> {
     /// A name in the list that no joint of the robot has.
@@ -71,7 +71,7 @@ pub enum JointOrderError<'a> {
 }
 
 impl JointOrderError<'_> {
-    /// The name, and the words after it.
+    /// Returns the name, and the words after it in the message.
     const fn words(&self) -> (&str, &'static str) {
         match self {
             Self::Unknown(name) => (name, "` in the list is not a joint of the robot"),
@@ -80,9 +80,9 @@ impl JointOrderError<'_> {
         }
     }
 
-    /// Stops with the message of the error, `remark`, and the joint that a name probably means: the functions `order`
-    /// of derived robots, which stop the build with it. `followers` has the names of the joints that follow others, and
-    /// what to say of each.
+    /// Panics with the message of the error, `remark`, and the joint that a name probably means. The functions `order`
+    /// of derived robots call it and so stop the build. `followers` has the names of the joints that follow others,
+    /// each with its remark.
     ///
     /// # Panics
     /// Always.

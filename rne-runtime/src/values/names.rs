@@ -1,7 +1,8 @@
-//! Messages about unknown names that a constant stops with, where no formatting is.
+//! Errors about unknown names at compile time: a constant panics with a message, which is put together without
+//! formatting.
 
-/// Stops with a message about a name that no frame of a robot has, `remark`, and the name that was probably meant: the
-/// function `frame` of derived robots, which stops the build with it.
+/// Panics with a message about a name that no frame of a robot has, `remark`, and the name that was probably meant. The
+/// function `frame` of derived robots calls it and so stops the build.
 ///
 /// # Panics
 /// Always.
@@ -11,8 +12,9 @@ pub const fn unknown_frame(names: &[&str], name: &str, remark: &str) -> ! {
     panic!("{}", text.with_nearest(names, name).as_str())
 }
 
-/// The name that differs least from `name`, in one place only: in its case, in a letter that is missing, too many or
-/// another one, or in two neighbours. Of names that differ equally, the first.
+/// Returns the index of the name that is most similar to `name`, if they differ in one place only: in upper and lower
+/// case, in one letter that is missing, added or replaced, or in two swapped letters. Of equally similar names, it is
+/// the first.
 const fn nearest(names: &[&str], name: &str) -> Option<usize> {
     let (mut index, mut nearest, mut least) = (0, None, usize::MAX);
     while index < names.len() {
@@ -26,8 +28,8 @@ const fn nearest(names: &[&str], name: &str) -> Option<usize> {
     nearest
 }
 
-/// How many letters differ in the one place outside of which two names are alike; `None` where there are more than two,
-/// or where the names are not longer than this place.
+/// Returns how many letters differ in the only place in which two names differ. `None` if more than two differ, or if
+/// the names are not longer than this place.
 const fn difference(a: &[u8], b: &[u8]) -> Option<usize> {
     let shorter = if a.len() < b.len() { a.len() } else { b.len() };
     let longer = a.len() + b.len() - shorter;
@@ -43,7 +45,8 @@ const fn difference(a: &[u8], b: &[u8]) -> Option<usize> {
     if differing <= 2 && before + after > differing { Some(differing) } else { None }
 }
 
-/// A text that is put together while a constant is computed, where no formatting is; what has no room is left out.
+/// A text that is put together at compile time, where there is no formatting. Parts for which there is no space are
+/// left out.
 pub(crate) struct Text {
     bytes: [u8; Self::ROOM],
     length: usize,
@@ -62,7 +65,7 @@ impl Text {
         self
     }
 
-    /// The text with a question after the name that was probably meant by `name`, where one is near.
+    /// Returns the text with a question for the name that was probably meant by `name`, if one is similar.
     pub(crate) const fn with_nearest(self, names: &[&str], name: &str) -> Self {
         match nearest(names, name) {
             Some(index) => self.with("; did you mean `").with(names[index]).with("`?"),
@@ -74,7 +77,7 @@ impl Text {
         let text = self.bytes.split_at(self.length).0;
         match core::str::from_utf8(text) {
             Ok(text) => text,
-            // a character that has no room
+            // a character at the end is incomplete, because there was no space for it
             Err(error) => match core::str::from_utf8(text.split_at(error.valid_up_to()).0) {
                 Ok(text) => text,
                 Err(_) => "",
@@ -104,7 +107,7 @@ mod tests {
             assert_eq!(nearest(&names, name), expected, "{name}");
         }
         assert_eq!(nearest(&[], "camera"), None);
-        // one letter too many differs less than two others
+        // one added letter counts as a smaller difference than two replaced letters
         assert_eq!(nearest(&["link1", "link2", "link3", "link4"], "link_4"), Some(3));
     }
 

@@ -4,11 +4,11 @@ use crate::{BaseAcceleration, BaseMotion, BaseTwist, Dual, Payload, Pose, Wrench
 
 /// A value that is made of numbers in the order of its layout: an argument or a result of a function.
 pub trait Numbers<T> {
-    /// Shows each of them, in order.
+    /// Calls `see` with each of them, in order.
     fn each(&self, see: &mut impl FnMut(&T));
 }
 
-/// The numbers themselves.
+/// Implements the trait for numbers themselves.
 macro_rules! number {
     ($($number:ident $(<$inner:ident>)?),*) => { $(
         impl $(<$inner>)? Numbers<Self> for $number $(<$inner>)? {
@@ -47,7 +47,7 @@ impl<T, X: Numbers<T>> Numbers<T> for Vec<X> {
     }
 }
 
-/// Records by their fields.
+/// Implements the trait for records, by their fields.
 macro_rules! fields {
     ($($record:ident { $($field:ident),* })*) => { $(
         impl<T: Numbers<T>> Numbers<T> for $record<T> {
@@ -62,7 +62,7 @@ fields! {
     Pose { rotation, translation }
     BaseTwist { linear, angular }
     BaseAcceleration { linear, angular }
-    // the velocity of a base has no influence
+    // without `velocity`: the velocity of a base has no effect
     BaseMotion { omega, omega_dot, acceleration, gravity }
 }
 
@@ -86,9 +86,9 @@ mod shaped {
 
     use crate::{BaseAcceleration, BaseTwist, Pose, Wrench};
 
-    /// A result that is made of the numbers of a function, in the order of its layout.
+    /// A result that is built from the numbers of a function, in the order of its layout.
     pub trait Shaped<T>: Sized {
-        /// Takes as many numbers as the layout has.
+        /// Takes the numbers of the layout from an iterator and builds the result.
         fn take(layout: &Layout, numbers: &mut impl Iterator<Item = T>) -> Self;
     }
 
@@ -121,7 +121,7 @@ mod shaped {
             impl<T: Shaped<T>> Shaped<T> for $record<T> {
                 fn take(layout: &Layout, numbers: &mut impl Iterator<Item = T>) -> Self {
                     let mut parts = layout.parts();
-                    // fields are made in the order in which they are written here
+                    // Rust evaluates fields in the order in which they are written here
                     Self { $($field: Shaped::take(parts.next().unwrap_or(layout), numbers)),* }
                 }
             }

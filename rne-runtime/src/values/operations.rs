@@ -9,7 +9,7 @@ pub struct Operations {
     pub add: usize,
     /// Divisions.
     pub div: usize,
-    /// Angles whose sine or cosine is used.
+    /// Number of angles whose sine or cosine is used.
     pub sincos: usize,
     /// Statements, each a value with a name.
     pub statements: usize,

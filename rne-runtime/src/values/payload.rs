@@ -7,8 +7,8 @@ use rne_model::Inertia;
 
 use crate::{Dual, Scalar};
 
-/// A body that is rigidly fixed to the tip frame (`tool` included), in the axes of that frame: what a robot file would
-/// say of it if `tool` were its link frame.
+/// A body that is rigidly fixed to the tip frame (`tool` included), in the axes of that frame, as a robot file would
+/// describe it if `tool` were its link frame.
 ///
 /// The torques with a payload are those of the arm whose last link has the payload's mass, first moment and inertia
 /// too. The default is no payload.
@@ -70,7 +70,7 @@ impl<T: Scalar> Payload<T> {
         [self.mass, x, y, z, xx, yy, zz, xy, xz, yz]
     }
 
-    /// From the ten numbers of [`to_array`](Self::to_array).
+    /// Creates a payload from the ten numbers of [`to_array`](Self::to_array).
     #[must_use]
     pub const fn from_array([mass, x, y, z, xx, yy, zz, xy, xz, yz]: [T; 10]) -> Self {
         Self { mass, com: [x, y, z], inertia: Inertia { xx, yy, zz, xy, xz, yz } }
@@ -78,7 +78,7 @@ impl<T: Scalar> Payload<T> {
 }
 
 impl<T: Scalar + Into<f64>> Payload<T> {
-    /// Refuses a mass below zero. A mass that is not a number passes: results show it.
+    /// Refuses a mass below zero. A mass that is NaN is accepted, because the results are NaN then.
     ///
     /// ```
     /// use rne_runtime::Payload;
@@ -121,7 +121,7 @@ impl fmt::Display for NegativeMass {
 
 impl Error for NegativeMass {}
 
-/// [`Payload::none`].
+/// The default is [`Payload::none`].
 impl<T: Scalar> Default for Payload<T> {
     fn default() -> Self {
         Self::none()

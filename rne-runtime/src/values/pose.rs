@@ -1,4 +1,4 @@
-//! Where a frame stands, and how it is turned.
+//! The pose of a frame: its origin and its orientation.
 
 use crate::Scalar;
 
@@ -22,9 +22,8 @@ impl<T: Scalar> Pose<T> {
 }
 
 impl Pose<f64> {
-    /// Whether it is that of a rigid body, as far as single precision can say: the rows of its rotation are unit
-    /// vectors at right angles, right-handed, to 1e-4. One with a NaN counts as rigid, because its results
-    /// are NaN.
+    /// Whether this is the pose of a rigid body, within single precision: the rows of its rotation are unit vectors at
+    /// right angles, right-handed, to 1e-4. A pose with a NaN counts as rigid, because its results are NaN.
     #[must_use]
     pub fn is_rigid(&self) -> bool {
         const MOST_ROUNDED: f64 = 1e-4;
@@ -36,7 +35,7 @@ impl Pose<f64> {
     }
 }
 
-/// From and to nalgebra.
+/// Conversions from and to nalgebra.
 #[cfg(feature = "nalgebra")]
 mod conversion {
     use nalgebra::{Matrix3, Matrix4, Vector3};
@@ -45,8 +44,8 @@ mod conversion {
     use crate::Scalar;
 
     impl<T: Scalar> Pose<T> {
-        /// From an nalgebra matrix and vector. `rotation` is taken as it stands: that it is orthonormal is the caller's
-        /// concern.
+        /// Creates a pose from an nalgebra matrix and vector. `rotation` is used unchanged: the caller must ensure that
+        /// it is orthonormal.
         #[must_use]
         pub fn from_matrix(rotation: Matrix3<T>, translation: Vector3<T>) -> Self {
             Self { rotation: rotation.transpose().into(), translation: translation.into() }

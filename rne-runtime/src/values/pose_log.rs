@@ -1,11 +1,12 @@
-//! The logarithm of a pose: which rotation vector and which twist lead to it. Errors of orientation are made of it.
+//! The logarithm of a pose: the rotation vector and the twist that lead to it. Errors of orientation are computed with
+//! it.
 
 use num_traits::Float;
 
 use crate::{Pose, Scalar};
 
 impl<T: Scalar> Pose<T> {
-    /// The pose of the world in this frame: Rᵀ, -Rᵀ p.
+    /// Returns the pose of the world in this frame: Rᵀ, -Rᵀ p.
     #[must_use]
     pub fn inverse(&self) -> Self {
         let rotation = transposed(&self.rotation);
@@ -13,7 +14,7 @@ impl<T: Scalar> Pose<T> {
         Self { rotation, translation }
     }
 
-    /// The pose of a frame that is at `next` in this frame: R R', R p' + p.
+    /// Returns the pose of a frame that is at `next` in this frame: R R', R p' + p.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
         let columns = transposed(&next.rotation).map(|column| times(&self.rotation, &column));
@@ -23,7 +24,7 @@ impl<T: Scalar> Pose<T> {
     }
 }
 
-/// In `f32` and `f64`; each uses its own root and arc tangent, so that `f32` needs no double precision.
+/// For `f32` and `f64`; each uses its own square root and arc tangent, so that `f32` needs no double precision.
 impl<T: Scalar + Float> Pose<T> {
     /// The logarithm of the rotation, so(3): the axis times the angle, rad; the angle is from 0 to π. At π the axis may
     /// have either sign.
@@ -37,7 +38,8 @@ impl<T: Scalar + Float> Pose<T> {
     }
 
     /// The logarithm of the pose, se(3): linear (m), then angular (rad). The constant twist that leads from the world
-    /// to this frame in one unit of time, in the axes of this frame or of the world, which are the same to it.
+    /// to this frame in one unit of time, in the axes of this frame or of the world: its components are the same in
+    /// both.
     ///
     /// linear = t - ½ φ × t + c φ × (φ × t) with c = (1 - (θ/2) cot(θ/2)) / θ² (Lynch and Park, Modern Robotics,
     /// 3.3.3).
@@ -48,14 +50,14 @@ impl<T: Scalar + Float> Pose<T> {
         let square = dot(&phi, &phi);
         let number = <T as Scalar>::from_f64;
         let c = if square < number(0.1) {
-            // Taylor: the closed form subtracts nearly equal numbers here
+            // Taylor series, because the closed form would subtract nearly equal numbers here
             [1_209_600.0, 30_240.0, 720.0, 12.0]
                 .iter()
                 .fold(number(1.0 / 47_900_160.0) + square * number(691.0 / 1_307_674_368_000.0), |sum, &next| {
                     sum * square + number(1.0 / next)
                 })
         } else {
-            // cos is that of θ/2; θ/2 cot(θ/2) = (θ / sin(θ/2)) cos / 2
+            // `cos` is that of θ/2, and θ/2 cot(θ/2) = (θ / sin(θ/2)) cos / 2
             (T::one() - scale * cos * number(0.5)) / square
         };
         let once = cross(&phi, &self.translation);
@@ -64,8 +66,8 @@ impl<T: Scalar + Float> Pose<T> {
         [linear[0], linear[1], linear[2], phi[0], phi[1], phi[2]]
     }
 
-    /// How far this pose is from `target`, in world axes, in the order of the rows of a Jacobian: p_target - p (m),
-    /// then the logarithm of R_target Rᵀ (rad). A motion with J q̇ = k · error leads to the target.
+    /// Returns the error of this pose from `target`, in world axes, in the order of the rows of a Jacobian: p_target -
+    /// p (m), then the logarithm of R_target Rᵀ (rad). A motion with J q̇ = k · error leads to the target.
     #[must_use]
     pub fn error_to(&self, target: &Self) -> [T; 6] {
         let back = Self { translation: [T::zero(); 3], rotation: transposed(&self.rotation) };
@@ -75,7 +77,7 @@ impl<T: Scalar + Float> Pose<T> {
     }
 }
 
-/// The vector part of the unit quaternion, what it must be multiplied by to give the rotation vector, and the scalar
+/// Returns the vector part of the unit quaternion, the factor that turns it into the rotation vector, and the scalar
 /// part, which is not negative.
 pub(crate) fn half_turn<T: Scalar + Float>(rotation: &[[T; 3]; 3]) -> ([T; 3], T, T) {
     let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = *rotation;
@@ -95,7 +97,7 @@ pub(crate) fn half_turn<T: Scalar + Float>(rotation: &[[T; 3]; 3]) -> ([T; 3], T
     let vector = [x, y, z];
     let sin = Float::sqrt(dot(&vector, &vector));
     let two = one + one;
-    // θ / sin(θ/2); where the sine is zero its limit
+    // θ / sin(θ/2), or its limit if the sine is zero
     let scale = if sin == zero { two } else { two * sin.atan2(w) / sin };
     (vector, scale, w)
 }

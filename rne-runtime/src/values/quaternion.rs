@@ -1,4 +1,4 @@
-//! The orientation of a base as a unit quaternion, in the order of either tool.
+//! The orientation of a base as a unit quaternion, in either order of its elements.
 
 use num_traits::Float;
 
@@ -40,25 +40,25 @@ impl<T: Scalar> Quaternion<T> {
         Self { w: T::one(), x: zero, y: zero, z: zero }
     }
 
-    /// In the order of MuJoCo, Drake and iDynTree. It must have length 1.
+    /// Creates it from an array in the order of MuJoCo, Drake and iDynTree. It must have length 1.
     #[must_use]
     pub fn from_wxyz([w, x, y, z]: [T; 4]) -> Self {
         Self { w, x, y, z }
     }
 
-    /// In the order of Pinocchio, Eigen's storage, ROS and dynibo. It must have length 1.
+    /// Creates it from an array in the order of Pinocchio, Eigen's storage, ROS and dynibo. It must have length 1.
     #[must_use]
     pub fn from_xyzw([x, y, z, w]: [T; 4]) -> Self {
         Self { w, x, y, z }
     }
 
-    /// In the order of MuJoCo, Drake and iDynTree.
+    /// Returns it as an array in the order of MuJoCo, Drake and iDynTree.
     #[must_use]
     pub fn to_wxyz(self) -> [T; 4] {
         [self.w, self.x, self.y, self.z]
     }
 
-    /// In the order of Pinocchio, Eigen's storage, ROS and dynibo.
+    /// Returns it as an array in the order of Pinocchio, Eigen's storage, ROS and dynibo.
     #[must_use]
     pub fn to_xyzw(self) -> [T; 4] {
         [self.x, self.y, self.z, self.w]
@@ -70,15 +70,15 @@ impl<T: Scalar> Quaternion<T> {
         self.rotation_by(T::one() + T::one())
     }
 
-    /// The rows of the rotation matrix of this quaternion over its length. It needs no root. A quaternion of zeros has
-    /// no rotation: the elements are not finite then.
+    /// The rows of the rotation matrix of this quaternion after division by its length, computed without a root. A
+    /// quaternion of zeros has no rotation: the elements are not finite then.
     #[must_use]
     pub(crate) fn rotation_of_any_length(&self) -> [[T; 3]; 3] {
         let square = self.to_wxyz().into_iter().fold(T::zero(), |sum, x| sum + x * x);
         self.rotation_by((T::one() + T::one()) / square)
     }
 
-    /// With 2 over the square of the length.
+    /// Returns the rows of the rotation matrix, where `two` is 2 over the square of the length.
     fn rotation_by(&self, two: T) -> [[T; 3]; 3] {
         let Self { w, x, y, z } = *self;
         let one = T::one();
@@ -89,7 +89,7 @@ impl<T: Scalar> Quaternion<T> {
         ]
     }
 
-    /// First `next`, whose axes are those of this frame, then this rotation.
+    /// Returns the rotation that first applies `next`, whose axes are those of this frame, then this rotation.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
         let ([a, b, c, d], [e, f, g, h]) = (self.to_wxyz(), next.to_wxyz());
@@ -102,7 +102,7 @@ impl<T: Scalar> Quaternion<T> {
     }
 }
 
-/// In `f32` and `f64`, with the root and the sine of each.
+/// For `f32` and `f64`, with the square root and the sine of each type.
 impl<T: Scalar + Float> Quaternion<T> {
     /// The quaternion of a rotation matrix, with w ≥ 0 (Shepperd 1978).
     #[must_use]
@@ -111,10 +111,10 @@ impl<T: Scalar + Float> Quaternion<T> {
         Self { w, x, y, z }
     }
 
-    /// Turned further by the rotation vector `turn` (rad) in axes of the frame: ω dt, where a gyroscope on the frame
-    /// reads ω. The result has length 1 to rounding, however many steps came before.
+    /// Returns the orientation after a further turn by the rotation vector `turn` (rad) in axes of the frame: ω dt,
+    /// where a gyroscope on the frame measures ω. The result has length 1 to rounding, however many steps came before.
     ///
-    /// For a constant ω the step is exact; else its error is of order dt³ when ω is that of the middle of the step.
+    /// For a constant ω the step is exact; otherwise its error is of order dt³ if ω is taken in the middle of the step.
     #[must_use]
     pub fn turned_by(&self, turn: [T; 3]) -> Self {
         let half = <T as Scalar>::from_f64(0.5);
@@ -122,7 +122,7 @@ impl<T: Scalar + Float> Quaternion<T> {
         let square = x * x + y * y + z * z;
         let angle = Float::sqrt(square);
         let (sine, w) = Scalar::sin_cos(angle);
-        // sin(a) / a, by its series where the quotient has few digits
+        // sin(a) / a, by its series for small a, where the quotient would have few correct digits
         let ratio = if square < <T as Scalar>::from_f64(1e-8) {
             T::one() - square * <T as Scalar>::from_f64(1.0 / 6.0)
         } else {

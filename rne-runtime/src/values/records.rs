@@ -6,13 +6,13 @@ use crate::{BaseTwist, Pose, Wrench};
 /// The acceleration of a floating base, in axes of frame 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaseAcceleration<T> {
-    /// Acceleration of the origin of frame 0 less gravity, m/s²: what an accelerometer reads there.
+    /// Acceleration of the origin of frame 0 less gravity, m/s², as an accelerometer measures it there.
     pub linear: [T; 3],
     /// Angular acceleration ω̇, rad/s².
     pub angular: [T; 3],
 }
 
-/// Records with arrays, and of the same fields with lists.
+/// Defines records with arrays, and records with the same fields as lists.
 macro_rules! records {
     ($(
         $(#[$doc:meta])*
@@ -60,13 +60,13 @@ macro_rules! records {
             impl<T: crate::values::numbers::Shaped<T>> crate::values::numbers::Shaped<T> for $counted<T> {
                 fn take(layout: &rne_functions::Layout, numbers: &mut impl Iterator<Item = T>) -> Self {
                     let mut parts = layout.parts();
-                    // fields are made in the order in which they are written here
+                    // Rust evaluates fields in the order in which they are written here
                     Self { $($field: crate::values::numbers::Shaped::take(parts.next().unwrap_or(layout), numbers)),* }
                 }
             }
         )*
 
-        /// The records with lists, by the names of those with arrays.
+        /// The records with lists, under the names of those with arrays.
         #[cfg(feature = "std")]
         #[doc(hidden)]
         pub mod of_lists { $(pub use super::$counted as $name;)* }
@@ -119,9 +119,10 @@ records! {
     }
 
     /// The second derivatives of λᵀτ for one state: of the torques, each times its multiplier and added up. Element (i,
-    /// j) is by the motion of joint i and by that of joint j.
+    /// j) is the derivative with respect to the motions of joints i and j.
     ///
-    /// Those by q̇ and q̈ and by q̈ twice are zero: the torques are linear in q̈, with M(q).
+    /// Those with respect to q̇ and q̈ and to q̈ twice are zero, because the torques are linear in q̈, with the matrix
+    /// M(q).
     ///
     /// Units: of λᵀτ per rad or m, rad/s or m/s, rad/s² or m/s² of both joints.
     TorqueHessian<DOF>, DynTorqueHessian {
@@ -146,16 +147,17 @@ records! {
     /// The derivatives of `DOF` positions or velocities after a step. Row i belongs to position or velocity i of the
     /// next state, column j to joint j.
     StepDerivatives<DOF>, DynStepDerivatives {
-        /// By the positions, per rad or m.
+        /// Derivatives with respect to the positions, per rad or m.
         dq: [[T; DOF]; DOF] | Vec<Vec<T>>,
-        /// By the velocities, per rad/s or m/s.
+        /// Derivatives with respect to the velocities, per rad/s or m/s.
         dqd: [[T; DOF]; DOF] | Vec<Vec<T>>,
-        /// By the torques, per N m or N.
+        /// Derivatives with respect to the torques, per N m or N.
         dtau: [[T; DOF]; DOF] | Vec<Vec<T>>,
     }
 
-    /// The linear model of a step: with the state x = (q, q̇), the changes δx' = A δx + B δτ. The rows of A are `dq`
-    /// beside `dqd`, those of B are `dtau`, of the positions above the velocities.
+    /// The linear model of a step: with the state x = (q, q̇), the changes δx' = A δx + B δτ. The rows of A are those
+    /// of `dq` beside those of `dqd`, the rows of B are those of `dtau`. In both, the rows of the positions are above
+    /// those of the velocities.
     NextStateDerivatives<DOF>, DynNextStateDerivatives {
         /// Derivatives of the next positions.
         q: StepDerivatives<DOF, T> | DynStepDerivatives<T>,
@@ -165,8 +167,8 @@ records! {
 
     /// The torques of a robot with a floating base, and what its base needs, for one state.
     FloatingTorques<DOF>, DynFloatingTorques {
-        /// Force (N) and moment (N m) about the origin of frame 0, in axes of frame 0, that must act ON the base beside
-        /// gravity so that it moves as told. They are zero in free flight.
+        /// Force (N) and moment (N m) about the origin of frame 0, in axes of frame 0, that must act ON the base
+        /// besides gravity so that it has the given motion. They are zero in free flight.
         wrench: Wrench<T> | Wrench<T>,
         /// Torques or forces of the actuators, N m or N.
         tau: [T; DOF] | Vec<T>,
@@ -194,14 +196,14 @@ records! {
     /// `NV` = `DOF` + 6 rows: the force on the base (N), the moment about the origin of frame 0 (N m), both in axes of
     /// frame 0, then the torques (N m, or N for a prismatic joint). Columns are per rad or m, and per rad/s or m/s.
     ///
-    /// Elements that no state makes differ from zero are zero, and cost no operation: those of joints on different
+    /// Elements that vanish in every state are exactly zero and need no operation: those of joints on different
     /// branches.
     FloatingTorqueDerivatives<DOF, NV>, DynFloatingTorqueDerivatives {
-        /// By the positions of the joints.
+        /// Derivatives with respect to the positions of the joints.
         dq: [[T; DOF]; NV] | Vec<Vec<T>>,
-        /// By the velocities of the joints.
+        /// Derivatives with respect to the velocities of the joints.
         dqd: [[T; DOF]; NV] | Vec<Vec<T>>,
-        /// By the angular velocity of the base, in axes of frame 0.
+        /// Derivatives with respect to the angular velocity of the base, in axes of frame 0.
         domega: [[T; 3]; NV] | Vec<[T; 3]>,
     }
 
@@ -225,17 +227,17 @@ records! {
     /// axes before the step for the columns, and after it for the rows. A change of the velocities has the linear and
     /// the angular velocity of frame 0 in its axes, then the joints.
     FloatingStepDerivatives<DOF, NV>, DynFloatingStepDerivatives {
-        /// Derivatives of the next positions by the positions.
+        /// Derivatives of the next positions with respect to the positions.
         q_dq: [[T; NV]; NV] | Vec<Vec<T>>,
-        /// Derivatives of the next positions by the velocities.
+        /// Derivatives of the next positions with respect to the velocities.
         q_dv: [[T; NV]; NV] | Vec<Vec<T>>,
-        /// Derivatives of the next positions by the torques.
+        /// Derivatives of the next positions with respect to the torques.
         q_dtau: [[T; DOF]; NV] | Vec<Vec<T>>,
-        /// Derivatives of the next velocities by the positions.
+        /// Derivatives of the next velocities with respect to the positions.
         v_dq: [[T; NV]; NV] | Vec<Vec<T>>,
-        /// Derivatives of the next velocities by the velocities.
+        /// Derivatives of the next velocities with respect to the velocities.
         v_dv: [[T; NV]; NV] | Vec<Vec<T>>,
-        /// Derivatives of the next velocities by the torques.
+        /// Derivatives of the next velocities with respect to the torques.
         v_dtau: [[T; DOF]; NV] | Vec<Vec<T>>,
     }
 

@@ -1,7 +1,7 @@
-//! The types of arguments and results, where the number of joints is known and where it is not. Results
-//! have the names of the table of functions.
+//! The types of arguments and results, for a number of joints that is known at compile time and for one that is not.
+//! Results have the names in the table of functions.
 
-/// Where the number of joints is known.
+/// The types for a number of joints that is known at compile time.
 macro_rules! known {
     (joints) => { &[T; DOF] };
     (coordinates) => { &[T; DOF] };
@@ -27,7 +27,7 @@ macro_rules! known {
 }
 pub(crate) use known;
 
-/// As [`known`], where the number of joints is known at run time only.
+/// The types as in [`known`], for a number of joints that is only known at run time.
 #[cfg(all(feature = "arm", feature = "std"))]
 macro_rules! counted {
     (joints) => { &[T] };

@@ -27,16 +27,16 @@ impl<T: Scalar> Wrench<T> {
         Self { force: [T::zero(); 3], moment: [T::zero(); 3] }
     }
 
-    /// The same wrench where nothing changes it.
+    /// The wrench in dual numbers, as a constant: all its derivatives are zero.
     pub(crate) fn still(self) -> Wrench<Dual<T>> {
         Wrench { force: self.force.map(Dual::constant), moment: self.moment.map(Dual::constant) }
     }
 }
 
-/// From and to nalgebra.
+/// Conversions from and to nalgebra.
 #[cfg(feature = "nalgebra")]
 impl<T: Scalar> Wrench<T> {
-    /// From nalgebra vectors.
+    /// Creates a wrench from nalgebra vectors.
     #[must_use]
     pub fn from_vectors(force: nalgebra::Vector3<T>, moment: nalgebra::Vector3<T>) -> Self {
         Self { force: force.into(), moment: moment.into() }

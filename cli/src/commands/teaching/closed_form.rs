@@ -1,4 +1,4 @@
-//! `rne show --symbolic` and `--latex`: the dynamics in closed form.
+//! `rne show --symbolic` and `--latex`: prints the dynamics in closed form.
 
 use std::path::Path;
 
@@ -48,17 +48,17 @@ impl From<Style> for LatexStyle {
     }
 }
 
-/// Options of the listing, which a closed form has no use for.
+/// Options of the listing that have no meaning for a closed form.
 const OTHERS: [&str; 9] =
     ["joint", "step", "form", "function", "keep", "without", "base_parameters", "equations", "json"];
 
 impl Wanted {
-    /// Whether a closed form is asked for.
+    /// Returns whether the command line asks for a closed form.
     pub(crate) fn is_asked_for(&self) -> bool {
         self.symbolic || self.latex.is_some() || self.first.is_some()
     }
 
-    /// The closed form of a file's arm.
+    /// Prints the closed form of the arm in a file.
     pub(crate) fn run(
         &self,
         file: &Path,
@@ -73,7 +73,7 @@ impl Wanted {
             }
             first => first.unwrap_or(checked.robot.dof()),
         };
-        // the file has been read: what is wrong with it is said
+        // errors of the file were reported when it was read, so here only its name is needed
         let name = file.display().to_string();
         let robot = of(rne_symbolic::read(&name, &bytes).map_err(|report| Failure::from(&report))?);
         let form = ClosedForm::of(&robot, joints);
@@ -91,7 +91,7 @@ impl Wanted {
         let text = form.text_spelt(|text| letters.of(text));
         let mut before = "";
         let styled = |line| {
-            // a heading stands over lines that are indented
+            // a heading is a line after an empty one, above indented lines
             let is_heading = std::mem::replace(&mut before, line).is_empty() && !line.ends_with('.');
             if is_heading && !line.is_empty() { format!("{TITLE}{line}{TITLE:#}\n") } else { format!("{line}\n") }
         };

@@ -1,4 +1,4 @@
-//! `rne diagnose`: why another tool's torques are others.
+//! `rne diagnose`: finds why the torques of another program differ.
 
 use std::fmt::Write as _;
 
@@ -70,7 +70,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// Numbers and half of the last digit of each.
+/// Numbers, and half of the last digit of each.
 #[derive(Clone, Debug, PartialEq)]
 struct Printed {
     values: List,
@@ -86,11 +86,11 @@ impl std::str::FromStr for Printed {
     }
 }
 
-/// An answer as JSON has it.
+/// The answer in JSON.
 #[derive(Serialize)]
 struct Reply {
     agrees: bool,
-    /// The largest accepted error, in parts of the largest torque.
+    /// The largest accepted error, as a part of the largest torque.
     tolerance: f64,
     /// The accepted error of each torque, N m or N.
     accepted: Vec<f64>,
@@ -111,11 +111,11 @@ struct Named {
     right: String,
 }
 
-/// Tolerances that are tried where nothing explains the torques to their digits, in parts of the largest torque; the
-/// last only where angles of the file were snapped, which moves torques by so much at most.
+/// Tolerances that are tried if no mistake explains the torques to all their digits, as parts of the largest torque.
+/// The last one is only for files whose angles were snapped, which changes torques by at most this.
 const TOLERANCES: [f64; 3] = [1e-5, 1e-4, 1e-3];
 
-/// Explanations that are shown; the others are counted.
+/// Largest number of explanations that are shown; the others are counted.
 const SHOWN: usize = 5;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
@@ -174,7 +174,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { text, at_fault, ..Outcome::default() })
 }
 
-/// The other tool's torques, and the right ones.
+/// Returns the torques of the other program with their state, and the right torques.
 fn observation(arguments: &Arguments, robot: &Robot) -> Result<(Observation, Vec<f64>), Failure> {
     let Printed { values: List(tau), resolution } = &arguments.tau;
     if tau.len() != robot.dof() {
@@ -199,7 +199,7 @@ fn observation(arguments: &Arguments, robot: &Robot) -> Result<(Observation, Vec
         return Err(Failure::input(not_finite(robot, function, index, &state.q)));
     }
     let largest = largest(tau, &right);
-    // a zero alone says nothing of its digits: it has those of the others
+    // the digits of a zero do not show its accuracy, so it gets the accuracy of the other torques
     let is_zero = |(tau, half): &(&f64, &f64)| **tau == 0.0 && **half == 0.5;
     let digits = || tau.iter().zip(resolution);
     let of_others = digits().filter(|it| !is_zero(it)).fold(COARSEST * largest, |least, (_, half)| least.min(*half));
@@ -212,7 +212,7 @@ fn observation(arguments: &Arguments, robot: &Robot) -> Result<(Observation, Vec
     Ok((Observation { q, qd, qdd, wrench, tau: tau.clone(), resolution }, right))
 }
 
-/// The size of the largest torque.
+/// Returns the magnitude of the largest torque.
 fn largest(tau: &[f64], right: &[f64]) -> f64 {
     tau.iter().chain(right).fold(0.0, |largest: f64, tau| largest.max(tau.abs()))
 }
@@ -232,12 +232,13 @@ fn reply(robot: &Robot, diagnosis: &Diagnosis) -> Reply {
     Reply { agrees, tolerance: 0.0, accepted: Vec::new(), error, explanations }
 }
 
-/// The remark that the angles of the robot file were snapped, from what its notes say.
+/// Returns the remark that angles of the robot file were snapped, with what its notes say about it.
 fn of_snapping(snapped: &str) -> String {
     format!("the other program may have read a URDF with other angles; in this file, {snapped}: import with --no-snap")
 }
 
-/// Torques that are nearly right: the angles of a file that was imported explain it, or nothing does.
+/// Returns the answer for torques that are nearly right: snapped angles of an imported file explain the difference, or
+/// nothing does.
 fn nearly_right(robot: &Robot, table: &str, error: f64, snapped: Option<&str>) -> String {
     let (name, width) = (&robot.name, terminal::width(80));
     if let Some(snapped) = snapped {
@@ -255,7 +256,8 @@ fn nearly_right(robot: &Robot, table: &str, error: f64, snapped: Option<&str>) -
     )
 }
 
-/// How well torques agree, in words after others; of zeros a part says nothing.
+/// Returns words on how well torques agree; empty if all torques are zero, because a relative error has no meaning
+/// then.
 fn closeness(seen: &Observation, error: f64) -> String {
     match error {
         _ if largest(&seen.tau, &[]) == 0.0 => String::new(),
@@ -264,7 +266,7 @@ fn closeness(seen: &Observation, error: f64) -> String {
     }
 }
 
-/// Torques beside the right ones.
+/// Writes the torques beside the right ones.
 fn table(robot: &Robot, seen: &Observation, right: &[f64]) -> String {
     let mut cells = vec![["  joint", "yours", "robot file", "difference"].map(str::to_owned)];
     for ((joint, yours), right) in robot.independent_joints().zip(&seen.tau).zip(right) {
@@ -277,7 +279,7 @@ fn table(robot: &Robot, seen: &Observation, right: &[f64]) -> String {
     format!("{QUIET}{head}{QUIET:#}\n{}\n", rest.join("\n"))
 }
 
-/// The slips that give the torques, with what is right.
+/// Writes the mistakes that explain the torques, each with what is right.
 fn explained(robot: &Robot, seen: &Observation, all: &[Explanation]) -> String {
     let width = terminal::width(80);
     let mut text = String::new();

@@ -1,5 +1,5 @@
-//! `rne explain`: what is too long for a `--help`: functions, tricks, quantities, exit statuses, and what a name in the
-//! code of a robot is.
+//! `rne explain`: prints explanations that are too long for a `--help`: functions, tricks, quantities, exit statuses,
+//! and the meaning of a name in the code of a robot.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -87,7 +87,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome::text(arguments.letters.page(&text, PAGE)))
 }
 
-/// A text that needs no robot: of a link parameter, a function or a topic.
+/// Returns an explanation that needs no robot: that of a link parameter, a function or a topic.
 fn of_any_robot(name: &str) -> Option<String> {
     let of_parameter = LinkParameter::parse(name).map(|parameter| parameter.explained());
     of_parameter.or_else(|| of_function(name)).or_else(|| Topic::from_str(name, false).ok().map(of_topic))
@@ -120,10 +120,10 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
     };
     let inspection = Inspection::new(&robot, &program);
     let view = View { inspection: &inspection, letters: arguments.letters };
-    // as the code spells the letters of the lecture, ω̇3_z
+    // written as in the code: the lecture's ω̇3_z is dw3_z there
     let spelt = rne_emit::ascii(name);
     if let Some(mut text) = equations::of_name(view, &spelt) {
-        // units of lengths, forces and masses
+        // only for units with m, N or kg, because the remark is on lengths, forces and masses
         if inspection.unit(&spelt).contains(['m', 'N', 'k']) {
             let evidence = program.proof.iter().flat_map(|proof| rne_emit::evidence(&program, proof));
             for scaled in evidence.filter(|line| line.starts_with("Scaled values")) {
@@ -135,7 +135,7 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
     if let Some(text) = of_any_robot(name) {
         return Ok(Outcome::text(arguments.letters.page(&text, PAGE)));
     }
-    // the components of a vector before a name that is nearly the same
+    // if the name is that of a vector, explain its components; only then look for similar names
     let components = ["x", "y", "z", "xx", "xy", "xz", "yy", "yz", "zz"]
         .map(|axis| format!("{}_{axis}", code_name(name).unwrap_or_else(|| spelt.clone())));
     let components: Vec<&str> =
@@ -171,7 +171,7 @@ fn of_function(name: &str) -> Option<String> {
     Some(format!("{TYPED}{function}{TYPED:#}\n{}", lines.collect::<String>()))
 }
 
-/// The name in the code of a vector that is spelt out, such as w1 for omega1.
+/// Returns the name that the code gives to a vector whose name is spelt out, such as w1 for omega1.
 fn code_name(name: &str) -> Option<String> {
     let words = [
         ("omega_dot", "dw"),
@@ -236,7 +236,7 @@ the fitted part determines too few parameters, or the two parts contain differen
 design a better motion with `rne excite`. --csv writes the measured, predicted and residual torques of both parts; \
 its column held_out is 1 in the held-out part.";
 
-/// Names, each with words below it.
+/// Writes a list of names, each with text below it.
 fn entries(entries: impl IntoIterator<Item = (&'static str, String)>) -> String {
     let mut text = String::new();
     for (name, words) in entries {
@@ -255,7 +255,7 @@ fn quantities() -> String {
     lines.collect()
 }
 
-/// Error for swapped arguments: the robot comes before the name, `rne explain puma560 w2_z`.
+/// Makes the error for arguments in the wrong order, with the robot before the name: `rne explain puma560 w2_z`.
 fn swapped(name: &str, path: &Path) -> Option<Failure> {
     let is_robot = rne_convert::shipped_at(Path::new(name)).is_some() || Path::new(name).is_file();
     (is_robot && !path.exists()).then(|| {
@@ -264,12 +264,12 @@ fn swapped(name: &str, path: &Path) -> Option<Failure> {
     })
 }
 
-/// Explanation of the formulas of tricks.
+/// The explanation of the formulas of tricks.
 const OF_TRICKS: &str = "\
 A trick is a simplification that saves operations in the reduced form. The number in brackets after a formula is the \
 section of docs/teaching/reduced-form.md that explains the formula.";
 
-/// How arguments are given.
+/// The explanation of how to write arguments.
 const OF_EVAL: &str = "\
 Give each function all of its options and no others. Some may be missing: --qd, --qdd and the options --base-… are \
 zero by default, --base-rotation is the identity, --gravity is the gravity of the robot file, and nothing acts at a \
@@ -280,13 +280,13 @@ The options --base-… are in frame 0. rne rounds the tables that it prints; --j
 that the Rust function returns. Without --function rne computes inverse_dynamics, or its variant with a wrench or \
 payload if --wrench or --payload is given.";
 
-/// The table of functions and the options of `rne eval` that each takes.
+/// Returns a table of functions, each with its options of `rne eval`.
 fn of_eval() -> String {
     let mut text = String::new();
     let mut row = |options: &str, functions: &str| {
         let indent = " ".repeat(18);
         let words = wrap(functions, terminal::width(PAGE) - indent.len(), "").replace('\n', &format!("\n{indent}"));
-        // long options have a line of their own
+        // options that are longer than the column begin a line of their own
         let options = if options.len() < 18 { format!("{options:<18}") } else { format!("{options}\n{indent}") };
         let _ = writeln!(text, "{TYPED}{options}{TYPED:#}{words}");
     };
@@ -304,14 +304,14 @@ fn of_eval() -> String {
     text + &entries(of_base_and_tips()) + "\n" + &wrap(OF_EVAL, terminal::width(PAGE), "") + "\n"
 }
 
-/// Whether a function of several arguments is of a floating base, of several tips or of closed loops.
+/// Returns whether a function with several arguments is one for a floating base, for several tips or for closed loops.
 fn is_of_base_or_tips(function: Function) -> bool {
     let is_more =
         function.is_of_floating_base() || function.takes(Argument::Wrenches) || function.takes(Argument::Passive);
     is_more && function.arguments().len() > 1
 }
 
-/// The options of each function of a floating base, of several tips or of closed loops.
+/// Returns the functions for a floating base, for several tips or for closed loops, each with its options.
 fn of_base_and_tips() -> impl Iterator<Item = (&'static str, String)> {
     let functions = Function::ALL.into_iter().filter(|function| is_of_base_or_tips(*function));
     functions.map(|function| (function.name(), state::options(function)))

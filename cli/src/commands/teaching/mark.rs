@@ -1,4 +1,4 @@
-//! `rne mark`: the worksheets of a class, marked.
+//! `rne mark`: marks the worksheets of a class.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -129,7 +129,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { text, remark, remark_last: true, at_fault })
 }
 
-/// Notes on students with several files.
+/// Returns notes on students who have several files.
 fn several_files(marked: &[Marked]) -> String {
     let mut remark = String::new();
     let mut files: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
@@ -143,7 +143,7 @@ fn several_files(marked: &[Marked]) -> String {
     remark
 }
 
-/// The worksheets of a folder: its files `.csv`, by their names.
+/// Returns the worksheets in a folder: its files `.csv`, sorted by name.
 fn worksheets_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let unreadable = |error| input_error!("the folder {} cannot be read: {error}", folder.display());
     let entries = std::fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>).map_err(unreadable)?;
@@ -156,7 +156,7 @@ fn worksheets_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     Ok(files)
 }
 
-/// The name of a student of whom nothing is known but the file.
+/// Returns the file name without extension, as the name of a student whose worksheet gives none.
 fn stem(path: &Path) -> String {
     if is_standard_input(path) {
         return "-".to_owned();
@@ -178,7 +178,7 @@ fn mark(
     let sheet = Worksheet::new(robot, &at, axes.unwrap_or(worksheet::Axes::Link)).map_err(Failure::usage)?;
     let comparison = sheet.compare(robot, &at, values, arguments.digits).map_err(Failure::usage)?;
     let always_zero = sheet.always_zero(robot, &at).map_err(Failure::usage)?;
-    // what the command line asks for, else what the worksheet asks for
+    // steps of the command line are used first, else those that the worksheet asks for
     let is_free = arguments.steps.is_empty();
     let steps = asked.as_deref().filter(|_| is_free).unwrap_or(steps);
     let cells = cells.as_ref().filter(|_| is_free);

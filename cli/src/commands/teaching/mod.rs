@@ -1,4 +1,4 @@
-//! The commands that explain an arm, and those for a class.
+//! The commands that explain an arm, and the commands for a class.
 
 pub(super) mod closed_form;
 pub(super) mod diagnose;

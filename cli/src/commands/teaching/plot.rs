@@ -1,4 +1,4 @@
-//! `rne plot`: torques along a trajectory, and what they are made of.
+//! `rne plot`: draws the torques along a trajectory, and their parts.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -47,10 +47,10 @@ pub(crate) struct Arguments {
     output: Output,
 }
 
-/// Seconds, unless speed limits ask for more.
+/// Duration of the default motion, s, unless speed limits require a longer one.
 const DURATION: f64 = 2.0;
 
-/// Samples of a motion between postures.
+/// Number of samples of the default motion between two postures.
 const SAMPLES: usize = 241;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
@@ -86,7 +86,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
 }
 
-/// Whether the name of a file says what is written into it.
+/// Checks that the extension of a file fits what is written into it.
 fn is_named_for(path: &Path, csv: bool) -> Result<(), Failure> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     let shown = path.display();
@@ -107,7 +107,7 @@ fn is_named_for(path: &Path, csv: bool) -> Result<(), Failure> {
     }
 }
 
-/// The motion, and what it is in words.
+/// Returns the motion, and its description.
 fn motion(arguments: &Arguments, robot: &Robot) -> Result<(Trajectory, String), Failure> {
     if let Some(path) = &arguments.trajectory {
         let trajectory_file::Given { trajectory, derived } = trajectory_file::read(path, robot)?;
@@ -121,7 +121,7 @@ fn motion(arguments: &Arguments, robot: &Robot) -> Result<(Trajectory, String), 
     }
     let [from, to] = Trajectory::postures(robot);
     let least = Trajectory::least_duration(robot, &from, &to);
-    // tenths of a second, not less than the limits ask for
+    // rounded up to tenths of a second, so that speed limits are kept
     let seconds = arguments.duration.unwrap_or_else(|| DURATION.max((least * 10.0).ceil() / 10.0));
     let too_fast = |_| input_error!("in {seconds:e} s a speed overflows: the motion is too fast");
     let trajectory = Trajectory::quintic(&from, &to, seconds, SAMPLES).map_err(too_fast)?;
@@ -137,7 +137,7 @@ fn motion(arguments: &Arguments, robot: &Robot) -> Result<(Trajectory, String), 
     Ok((trajectory, about))
 }
 
-/// The largest torque of each joint.
+/// Lists the largest torque of each joint.
 fn peaks(robot: &Robot, history: &TorqueHistory) -> String {
     let mut cells = vec![["  joint", "peak", "", "at", "velocity terms"].map(str::to_owned)];
     for (joint, peak) in robot.joints.iter().zip(&history.peaks) {
@@ -154,7 +154,7 @@ fn peaks(robot: &Robot, history: &TorqueHistory) -> String {
     format!("{QUIET}{}{QUIET:#}\n{}\n", lines[0], lines[1..].join("\n"))
 }
 
-/// Everything that the picture shows, as numbers.
+/// Writes everything that the picture shows as numbers.
 fn csv(robot: &Robot, trajectory: &Trajectory, history: &TorqueHistory) -> String {
     let names = ["tau", "inertia", "velocity", "gravity", "power"];
     let columns = |name: &&str| (1..=robot.dof()).map(|joint| format!("{name}{joint}")).collect::<Vec<_>>();

@@ -1,4 +1,4 @@
-//! `rne report`: an arm's dynamics as a page to look at.
+//! `rne report`: writes the dynamics of an arm as an HTML page.
 
 use std::path::PathBuf;
 

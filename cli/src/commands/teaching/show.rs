@@ -1,4 +1,4 @@
-//! `rne show`: the generated code, annotated for reading.
+//! `rne show`: prints the generated code with explanations.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -144,7 +144,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome::text(text))
 }
 
-/// The quantities that are computed on request: step 3 is the velocity, which torques do not need.
+/// Returns the additional quantities to compute. Step 3, the velocity, is one of them, because torques do not need it.
 fn kept(arguments: &Arguments) -> Vec<Kept> {
     let mut keep = arguments.keep.clone();
     if arguments.step == Some(Step::Velocity) && !keep.contains(&Kept::Velocity) {
@@ -153,7 +153,7 @@ fn kept(arguments: &Arguments) -> Vec<Kept> {
     keep
 }
 
-/// The program of a function in the form that is asked for, with the quantities that are kept.
+/// Compiles a function in the form that the command line asks for, and keeps the additional quantities.
 fn program(arguments: &Arguments, robot: &Robot, function: Function, keep: &[Kept]) -> Result<Program, Failure> {
     let quantities: Vec<Quantity> = keep.iter().map(|kept| kept.quantity()).collect();
     if arguments.form == Form::SevenSteps && !arguments.without.is_empty() {
@@ -175,7 +175,7 @@ fn program(arguments: &Arguments, robot: &Robot, function: Function, keep: &[Kep
     }
 }
 
-/// The inspection, as JSON or as lines.
+/// Prints the inspection as JSON or as text.
 fn inspected(arguments: &Arguments, robot: &Robot, joint: Option<usize>) -> Result<Outcome, Failure> {
     let file = arguments.file.display().to_string();
     let (function, form) = (arguments.function, arguments.form);

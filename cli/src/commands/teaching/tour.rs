@@ -1,4 +1,5 @@
-//! Bare `rne`: a tour of one robot, from its table to its torques. Every number in it is computed as it runs.
+//! `rne` without a command: prints a tour of one robot, from its table to its torques. Every number is computed when it
+//! is printed.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -22,7 +23,7 @@ use crate::values::numbers::at_the_point;
 /// The shipped robot of the tour.
 const NAME: &str = "puma560";
 
-/// The same robot, compiled into this program.
+/// The same robot, compiled into this program by the derive macro.
 #[derive(rne::InverseDynamics)]
 #[robot(builtin = "puma560")]
 struct Puma560;
@@ -82,7 +83,7 @@ fn chapter(text: &mut String, number: usize, title: &str, about: &str) {
     let _ = writeln!(text, "{}\n", wrap(about, terminal::width(PAGE), ""));
 }
 
-/// The code of joint 1, where nearly everything folds, and of joint 2, where the lecture's formulas remain.
+/// Shows the code of joint 1, where nearly all terms vanish, and of joint 2, where the formulas of the lecture remain.
 fn joints(text: &mut String, robot: &Robot, program: &Program) {
     let left = |joint: usize| {
         let (products, sums) = program.fold_report.total(|line| line.place.joint == joint);
@@ -168,7 +169,7 @@ fn next() -> String {
         ("list", "the shipped robots"),
         ("--help", "all commands"),
     ];
-    // in the repository, `cargo run` starts it; cargo tells what it runs which package that is
+    // in the repository the tour is started by `cargo run`, which sets this variable for the program
     let from_cargo = std::env::var_os("CARGO_PKG_NAME").is_some();
     let start = if from_cargo { "cargo run --" } else { "rne" };
     let mut lines = lines.map(|(command, what)| (format!("  {start} {command}"), what)).to_vec();

@@ -1,4 +1,4 @@
-//! `rne worksheet`: worksheets for a class to fill in.
+//! `rne worksheet`: writes worksheets for a class to fill in.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -60,14 +60,14 @@ pub(crate) struct Arguments {
     decimal_comma: bool,
 }
 
-/// The steps of which the numbers count, all unless some are named.
+/// Returns the steps whose numbers count: the named steps, or all if none is named.
 pub(crate) fn numbers_of(steps: &[Step]) -> Vec<u8> {
     let all =
         (1..=7_u8).filter(|number| steps.is_empty() || steps.iter().any(|step| step.number() == usize::from(*number)));
     all.collect()
 }
 
-/// Longest text of names of a class, in bytes.
+/// Largest size of the text with the names of a class, in bytes.
 const LONGEST: usize = 1 << 20;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
@@ -90,7 +90,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome::remark(format!("{GOOD}wrote{GOOD:#} {count} {worksheets} to {folder}\n")))
 }
 
-/// The students of the command line and of the class; those of the file of states if there are no others.
+/// Returns the students of the command line and of the class file; those of the file of states if there are no others.
 fn students(arguments: &Arguments, of_states: Vec<String>) -> Result<Vec<String>, Failure> {
     let mut students = arguments.students.clone();
     if let Some(path) = &arguments.class {
@@ -124,7 +124,7 @@ fn students(arguments: &Arguments, of_states: Vec<String>) -> Result<Vec<String>
                 quoted(student)
             ));
         }
-        // file systems may not distinguish ADA from ada
+        // some file systems do not distinguish ADA from ada
         if !seen.insert(student.to_lowercase()) {
             return Err(usage_error!("the student {} is named twice", quoted(student)));
         }

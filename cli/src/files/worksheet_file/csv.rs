@@ -1,4 +1,4 @@
-//! A worksheet in CSV: comments, a header, and a line for each value.
+//! Reads a worksheet in CSV: comments, a header, and a line for each value.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use crate::files::csv_table::{self, Line, Mistakes, OPEN_QUOTE, Row, quoted};
 use crate::files::worksheet_file::{Head, MOST, NEEDED, SheetRow, is_of_format, is_of_robot, too_many};
 use crate::files::worksheet_text::COLUMNS;
 
-/// The rows of the table, without its header; none if the header has mistakes. `head` is read from a comment.
+/// Reads the rows of the table without its header; none if the header has mistakes. `head` is filled from a comment.
 pub(super) fn rows<'a>(
     text: &'a str,
     robot: &Robot,
@@ -57,7 +57,7 @@ pub(super) fn rows<'a>(
     rows
 }
 
-/// The names of the columns that a worksheet knows.
+/// Returns for each column its name, or `None` if a worksheet has no such column.
 fn columns(header: &Row<'_>, help: &str, mistakes: &mut Mistakes<'_>) -> Vec<Option<&'static str>> {
     let mut columns = Vec::new();
     for cell in &header.cells {
@@ -65,7 +65,7 @@ fn columns(header: &Row<'_>, help: &str, mistakes: &mut Mistakes<'_>) -> Vec<Opt
         if column.is_some() && columns.contains(&column) {
             mistakes.push(cell.span.clone(), format!("the column {} occurs twice", quoted(&cell.text)), None);
         }
-        // a column of somebody's own is nobody's mistake, one that is nearly ours is
+        // an additional column is no mistake, but a misspelt one is
         if let Some(near) = did_you_mean(&cell.text, COLUMNS).filter(|_| column.is_none()) {
             let message = format!("there is no column {}; did you mean `{near}`?", quoted(&cell.text));
             mistakes.push(cell.span.clone(), message, Some(help));
@@ -84,8 +84,8 @@ fn columns(header: &Row<'_>, help: &str, mistakes: &mut Mistakes<'_>) -> Vec<Opt
 impl Head {
     /// Reads a comment such as `format 1, robot planar2, steps 1 2 7`, and checks that it is about this robot.
     fn of(about: &str, span: &Range<usize>, robot: &Robot, mistakes: &mut Mistakes<'_>) -> Self {
-        // a spreadsheet has other separators, ends each line with those of the other columns, and may put each part in
-        // quotes
+        // a spreadsheet may change the separators, add those of the other columns at the end of a line, and put each
+        // part in quotes
         let word = |key: &str| {
             let mut parts = about.split([',', ';']).map(|part| part.trim_matches(['"', ' ']));
             parts.find_map(|part| part.strip_prefix(key).map(str::trim))
@@ -114,12 +114,12 @@ impl Head {
     }
 }
 
-/// The steps of a text such as `1 2 7`.
+/// Reads steps from a text such as `1 2 7`.
 fn steps_of(text: &str) -> Option<Vec<u8>> {
     text.split_whitespace().map(|step| step.parse().ok().filter(|step| (1..=7).contains(step))).collect()
 }
 
-/// The cells of a text such as `1.4 2.4`: joint and step.
+/// Reads cells, joint and step, from a text such as `1.4 2.4`.
 fn cells_of(text: &str) -> Option<Vec<(usize, u8)>> {
     let cell = |text: &str| {
         let (joint, step) = text.split_once('.')?;

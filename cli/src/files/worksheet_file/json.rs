@@ -1,4 +1,4 @@
-//! A worksheet in JSON: an object with the list `rows`, or the list alone.
+//! Reads a worksheet in JSON: an object with the list `rows`, or only the list.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -13,10 +13,10 @@ use crate::files::worksheet_file::{Cells, MOST, NEEDED, SheetRow, is_of_format, 
 use crate::files::worksheet_text::COLUMNS;
 use crate::outcome::Failure;
 
-/// The members of an object, each as it is written.
+/// The members of an object, each as the text in the file.
 type Object<'a> = BTreeMap<String, &'a RawValue>;
 
-/// The rows of the list.
+/// Reads the rows of the list.
 pub(super) fn rows<'a>(
     name: &str,
     text: &'a str,
@@ -36,20 +36,20 @@ pub(super) fn rows<'a>(
     Ok(rows)
 }
 
-/// A file whose parts know their places in it.
+/// A file whose parts are known by their places in its text.
 struct File<'a, 'n> {
     name: &'n str,
     text: &'a str,
 }
 
 impl<'a> File<'a, '_> {
-    /// The bytes of the file on which a part of its text stands.
+    /// Returns the bytes of the file that a part of its text has.
     fn place(&self, part: &str) -> Range<usize> {
         let start = (part.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize);
         start..start + part.len()
     }
 
-    /// Reads a part of the text.
+    /// Parses a part of the text.
     fn parsed<T: Deserialize<'a>>(&self, part: &'a str) -> Result<T, Failure> {
         serde_json::from_str(part).map_err(|error| {
             let before: usize = part.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum();
@@ -63,7 +63,7 @@ impl<'a> File<'a, '_> {
         })
     }
 
-    /// The text of the list of rows.
+    /// Returns the text of the list of rows.
     fn list(&self, robot: &Robot, mistakes: &mut Mistakes<'_>) -> Result<Option<&'a str>, Failure> {
         let text = self.text.trim();
         if !text.starts_with('{') {
@@ -86,7 +86,7 @@ impl<'a> File<'a, '_> {
         Ok(rows)
     }
 
-    /// The cells of a row.
+    /// Reads the cells of a row.
     fn cells(&self, row: &'a str, mistakes: &mut Mistakes<'_>) -> Result<Cells<'a>, Failure> {
         let mut cells = Cells::new();
         for (key, value) in self.parsed::<Object<'a>>(row)? {

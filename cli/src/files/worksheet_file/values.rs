@@ -1,4 +1,4 @@
-//! The values of a worksheet, by the cells of its rows.
+//! Reads the values of a worksheet from the cells of its rows.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -15,7 +15,7 @@ pub(super) struct Reading<'a> {
     pub(super) robot: &'a Robot,
     pub(super) mistakes: Mistakes<'a>,
     pub(super) axes: Option<Axes>,
-    /// The byte at which a component was given.
+    /// For each component that was given: its joint, quantity and index, with the byte at which it was given.
     pub(super) seen: HashMap<(usize, Quantity, usize), usize>,
     pub(super) values: Vec<GivenValue>,
     pub(super) text: &'a str,
@@ -36,7 +36,7 @@ impl Reading<'_> {
 
     fn row(&mut self, cells: &Cells<'_>, span: &Range<usize>) {
         let cell = |column: &str| cells.get(column).filter(|cell| !cell.text.is_empty());
-        // a value that is not filled in
+        // an empty cell: the student has not filled it in
         let Some(value_cell) = cell("value") else { return };
         let (Some(joint), Some(quantity)) = (self.joint(cell("joint"), span), self.quantity(cell("quantity"), span))
         else {
@@ -137,7 +137,7 @@ impl Reading<'_> {
     fn component(&mut self, quantity: Quantity, cell: Option<&Cell<'_>>, span: &Range<usize>) -> Option<usize> {
         let names = quantity.components();
         let word = cell.map_or(String::new(), |cell| cell.text.to_lowercase());
-        // a symmetric matrix has each of these twice
+        // both off-diagonal elements of a symmetric matrix mean the same component
         let word = match (word.as_str(), names.len()) {
             ("yx", 6) => "xy",
             ("zx", 6) => "xz",
@@ -181,7 +181,7 @@ impl Reading<'_> {
     }
 }
 
-/// A unit without what people write differently: `kg m²` is `kg*m^2`.
+/// Writes a unit in one spelling: `kg m²` and `kg*m^2` become the same.
 fn plain_unit(unit: &str) -> String {
     let unit = unit.replace('²', "2").replace("**", "");
     let unit: String = unit.chars().filter(|c| !c.is_whitespace() && !"*·^.".contains(*c)).collect();

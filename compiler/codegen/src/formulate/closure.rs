@@ -218,7 +218,7 @@ impl<'s> Way<'s> {
 struct Solved<'s> {
     /// The equation and the dependent joint of each elimination step.
     order: Vec<Pivot>,
-    /// Rows of L to the left of the diagonal, whose elements are 1.
+    /// Rows of L to the left of its diagonal of ones.
     lower: Vec<Vec<Symbol<'s>>>,
     /// Rows of U to the right of the diagonal.
     upper: Vec<Vec<Symbol<'s>>>,

@@ -1,8 +1,8 @@
 //! Kinetic energy from steps 1 and 3, potential energy from the positions of the centres of mass.
 //!
-//! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i), with rotors + ½ Σ G² Jm q̇², with those of the list `motors` + ½ Σ Jm s (s
-//! + 2 a · ω); V = -Σ m_i g · c_i, with c_i from the origin of frame 0. If a link has a first moment h in addition to
-//! its mass, ċ_i · (ω_i × h_i) is added to T, and - g · R_i h_i to V.
+//! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i); rotors of joints add ½ Σ G² Jm q̇² to it, those of the list `motors` ½ Σ Jm
+//! s (s + 2 a · ω). V = -Σ m_i g · c_i, with c_i from the origin of frame 0. A first moment h that a link has in
+//! addition to its mass adds ċ_i · (ω_i × h_i) to T, and - g · R_i h_i to V.
 //!
 //! A floating base is link 0. If its frame 0 has the origin p and the rotation R in the world:
 //! V = - Σ m_i (Rᵀ g · c_i + g · p).

@@ -16,7 +16,7 @@ use crate::ir::{JointLines, Quantity, Vector};
 /// The first moment h of a link, if it has one in addition to its mass, with the motion of the link.
 pub(crate) struct FirstMoment<'a, 's> {
     h: Option<Vector<'s>>,
-    /// ω̇ × h + ω × (ω × h)
+    /// The inertia force of h: ω̇ × h + ω × (ω × h).
     force: Option<Vector<'s>>,
     motion: &'a Motion<'s>,
 }

@@ -78,9 +78,9 @@ pub(crate) fn floating_step<'s>(
 
 /// The rotation of a frame in a step, as a unit quaternion.
 pub(crate) struct Turn<'s> {
-    /// h ω / 4
+    /// The vector u = h ω / 4.
     u: Vector<'s>,
-    /// 1 / (1 + s)
+    /// 1 / (1 + s), with s = u · u.
     inverse: Symbol<'s>,
     w: Symbol<'s>,
     vector: Vector<'s>,

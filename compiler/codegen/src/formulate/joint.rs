@@ -32,7 +32,7 @@ pub(crate) struct JointState<'s> {
 /// Joint i with the link that it moves.
 #[derive(Clone, Copy)]
 pub(crate) struct Joint<'a, 's> {
-    /// Counted from 0.
+    /// Index of the joint, counted from 0.
     pub(crate) index: usize,
     pub(crate) link: &'a Link<'s>,
     pub(crate) state: JointState<'s>,

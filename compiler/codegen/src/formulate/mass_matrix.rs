@@ -23,7 +23,7 @@ fn at_rest<'s>(arm: &Arm<'s>, states: &[JointState<'s>]) -> Vec<JointState<'s>> 
 }
 
 /// Returns the upper half of M of the joints, and for each column the wrench on a floating base, if there is one.
-#[allow(clippy::type_complexity)] // rows and wrenches
+#[allow(clippy::type_complexity)] // a tuple of rows and of wrenches
 fn of_joints<'s>(
     arm: &Arm<'s>,
     still: &[JointState<'s>],

@@ -44,11 +44,11 @@ impl<'s> Payload<'s> {
         let (line, r, back) = (arm.builder.joint(dof + 1), arm.tip.r, arm.tip.rotation.transpose());
         let link = arm.tip_link.map_or(0, |link| link + 1);
 
-        // 1, 2
+        // steps 1 and 2: angular velocity and acceleration
         let omega = line.define(Quantity::Omega).by(back * last.turning.omega);
         let omega_dot = line.define(Quantity::OmegaDot).by(back * last.turning.omega_dot);
 
-        // 4
+        // step 4: acceleration of the centre of mass
         let omega_cross_r = line
             .named(link)
             .with_second_number(arm.tip.label)
@@ -61,10 +61,10 @@ impl<'s> Payload<'s> {
         let c_ddot =
             line.define(Quantity::Acceleration).by(back * tip + omega_dot.cross(com) + omega.cross(omega_cross_c));
 
-        // 5
+        // step 5: gravity in tip axes
         let gravity = line.define(Quantity::Gravity).by(back * last.gravity);
 
-        // 6
+        // step 6: force and moment
         let angular_momentum = line.define(Quantity::AngularMomentum).by(inertia * omega);
         let inertia_moment =
             line.define(Quantity::InertiaMoment).by(inertia * omega_dot + omega.cross(angular_momentum));

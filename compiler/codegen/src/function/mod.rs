@@ -93,7 +93,7 @@ named! {
     /// How a function is computed.
     #[derive(Default)]
     Form, "form" {
-        /// The seven steps: every intermediate is the lecture's.
+        /// The lecture's seven steps: every intermediate quantity has a physical meaning.
         #[default]
         SevenSteps = "seven_steps",
         /// Fewest operations: of all quantities, only the torques have a physical meaning.

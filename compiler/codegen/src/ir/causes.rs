@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 
 use super::{Alternatives, Cause, Causes};
 
-/// The index of [`Causes`] in the trace that knows them.
+/// The index of sets of causes in [`KnownCauses`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct CausesId(u32);
 
@@ -48,7 +48,7 @@ impl KnownCauses {
         &self.list[id.0 as usize]
     }
 
-    /// Returns the best set of causes of an index.
+    /// Returns the best set of causes at an index.
     pub(crate) fn get(&self, id: CausesId) -> &Causes {
         self.alternatives(id).best()
     }

@@ -11,7 +11,7 @@ use std::cell::{Cell, RefCell};
 use super::numbers::canonical;
 use super::{ExactAngle, Name, Number, Residue};
 
-/// The exact constants of a program: each as a number and, if it is an angle, as a turn.
+/// The exact constants of a program, by name: each as a number and, if it is an angle, as its sine and cosine.
 pub(crate) type Exactly = FxHashMap<Name, (Number, Option<ExactAngle>)>;
 
 /// A step of an expression. Operands are given by their indices among the steps before it.

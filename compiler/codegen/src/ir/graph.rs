@@ -65,7 +65,8 @@ pub(crate) struct Graph {
     pub(crate) point: SamplePoint,
     /// Sine and cosine of each constant that is an angle, by the place of the constant.
     pub(super) turns: FxHashMap<u32, ExactAngle>,
-    /// Indices of nodes by operation and by value. Looked up, never iterated.
+    /// Hash tables of node indices, by operation and by value. They are used for look-ups only, so their order has no
+    /// effect.
     structures: HashTable<u32>,
     values: HashTable<u32>,
 }
@@ -145,7 +146,7 @@ impl Graph {
         }
     }
 
-    /// Whether it is the constant 1 or -1.
+    /// Whether a node is the constant 1 or -1.
     pub(super) fn is_unit(&self, at: Ref) -> bool {
         match self.policy {
             Policy::Structure => self.number(at).is_some_and(|number| number.is_unit() && number.to_f64().abs() == 1.0),

@@ -112,7 +112,7 @@ operators! { Number:
     };
 }
 
-/// A constant turn: sine and cosine of an angle.
+/// A constant angle, stored as its sine and cosine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ExactAngle {
     pub(crate) sin: Number,
@@ -122,7 +122,7 @@ pub(crate) struct ExactAngle {
 impl ExactAngle {
     pub(crate) const NONE: Self = Self { sin: Number::ZERO, cos: Number::ONE };
 
-    /// The turn by the sum of both angles.
+    /// Returns sine and cosine of the sum of both angles.
     pub(crate) fn then(self, other: Self) -> Self {
         Self { sin: self.sin * other.cos + self.cos * other.sin, cos: self.cos * other.cos - self.sin * other.sin }
     }
@@ -280,7 +280,7 @@ impl Embedding {
     }
 }
 
-/// A 3 × 3 matrix by its elements.
+/// Makes a 3 × 3 matrix; `f` gives the element of a row and a column.
 pub(crate) fn square<T>(f: impl Fn(usize, usize) -> T) -> [[T; 3]; 3] {
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| f(i, j)))
 }

@@ -16,11 +16,11 @@ pub(crate) enum Source {
     Inverse(u32),
 }
 
-/// Constants, each kept once, none negative.
+/// The list of constants, each stored once and without a negative sign.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Numbers {
     list: Vec<(Number, Source)>,
-    /// Places in the list. Looked up, never iterated.
+    /// A hash table of places in the list, used for look-ups only.
     known: HashTable<u32>,
 }
 

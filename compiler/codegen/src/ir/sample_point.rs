@@ -42,14 +42,14 @@ impl SamplePoint {
             Quantity::Acceleration => self.random(10, axis),
             Quantity::Gravity => self.random(11, axis),
             Quantity::Parameter => self.random(12, index),
-            // of a payload
+            // arguments of a payload
             Quantity::Mass => self.random(13, 0),
             Quantity::Com => self.random(14, axis),
             Quantity::Inertia => self.random(15, input.element()),
             Quantity::TipForce => self.random(18, 3 * index + axis),
             Quantity::TipMoment => self.random(19, 3 * index + axis),
             Quantity::OriginVelocity => self.random(20, axis),
-            // of the pose of a base
+            // arguments of the pose of a base
             Quantity::FrameRotation => self.random(21, input.element()),
             Quantity::FrameOrigin => self.random(22, axis),
             Quantity::BaseRotation => self.random(20, input.element()),

@@ -48,7 +48,7 @@ pub(crate) enum Written {
     BySign([TermId; 3]),
 }
 
-/// All terms of a graph, those inside others first.
+/// All terms of a graph; a term comes after the terms inside it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct WrittenTerms(Vec<Written>);
 

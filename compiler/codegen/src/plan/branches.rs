@@ -1,4 +1,5 @@
-//! Branches of a tree: those of the base share no operation, and branches that look alike can share their choices.
+//! Branches of the tree of a robot: those on the base share no operation, and branches of the same structure can share
+//! their choices.
 
 use rustc_hash::FxHashMap;
 use std::ops::Range;
@@ -10,18 +11,20 @@ use crate::plan::cost::OpenJoint;
 use crate::reduced::joint_frames::Tip;
 use crate::reduced::{JointFrame, JointFrames, Parameters};
 
-/// All that one joint of the base carries. Its operations are its own, so they are counted without the others.
+/// A joint on the base with all links that it carries. Such a branch shares no operation with others, so its operations
+/// are counted alone.
 #[derive(Clone, Debug)]
 pub(crate) struct BaseBranch {
     rows: Range<usize>,
     pub(crate) joint_frames: JointFrames,
-    /// Costs of its plans. A unit may come from another branch, so the scales are told by their values.
+    /// The costs of its plans. The key has the values of both scales, because a unit may be a length of another branch.
     pub(crate) known: FxHashMap<(Plan, [Residue; 2]), Option<Cost>>,
 }
 
 impl BaseBranch {
-    /// The branches of a base; none where there are not several, where the rows of two of them are mixed, or where
-    /// joints follow others or a rotor turns with several: their torques belong together.
+    /// Returns the branches of the base. There are none if the base floats or carries one joint, if the rows of two
+    /// branches are mixed, or if joints follow others or a rotor turns with several joints: then torques of branches
+    /// depend on each other.
     pub(crate) fn of(joint_frames: &JointFrames) -> Vec<Self> {
         let turn_together =
             !joint_frames.coupled.is_empty() || joint_frames.rows.iter().any(|row| !row.gyrostats.is_empty());
@@ -45,12 +48,12 @@ impl BaseBranch {
         ranges.into_iter().map(branch).collect()
     }
 
-    /// The choices of its joints, with those of the arm.
+    /// Returns the part of a plan for this branch: the choices of its joints, with those of the whole arm.
     pub(crate) fn plan(&self, plan: &Plan) -> Plan {
         Plan { joints: plan.joints[self.rows.clone()].to_vec(), ..plan.clone() }
     }
 
-    /// The numbers of its links.
+    /// Returns the parameters of the links of this branch.
     pub(crate) fn parameters(&self, parameters: &Parameters) -> Parameters {
         let has_last = self.rows.end == parameters.links.len();
         Parameters {
@@ -65,7 +68,8 @@ impl BaseBranch {
 }
 
 impl JointFrames {
-    /// A run of rows that no other row carries. A tip elsewhere goes to the last of them.
+    /// Returns the frames of a range of rows on which no other row depends. A tip elsewhere is moved to the last of
+    /// these rows.
     fn of_rows(&self, run: Range<usize>) -> Self {
         let from_start = |index: usize| index.checked_sub(run.start);
         let row = |row: &JointFrame| JointFrame { parent: row.parent.and_then(from_start), ..row.clone() };
@@ -85,7 +89,8 @@ impl JointFrames {
     }
 }
 
-/// The joints that one of several joints on the base carries, and itself; none for another joint.
+/// Returns a joint on the base and the joints that it carries, if several joints are on the base; empty for other
+/// joints.
 pub(crate) fn scaled(rows: &[JointFrame], index: usize) -> Vec<usize> {
     let on_base = rows.iter().filter(|row| row.parent.is_none()).count();
     if rows[index].parent.is_some() || on_base < 2 {
@@ -98,9 +103,9 @@ pub(crate) fn scaled(rows: &[JointFrame], index: usize) -> Vec<usize> {
     (index..rows.len()).filter(is_behind).collect()
 }
 
-/// For each joint, the joints that stand in its place in branches that look alike, and itself: branches of one link, or
-/// of links in the same place, with the same kinds of joints, parallel or twisted alike. Numbers do not matter, so a
-/// left arm and a right one look alike.
+/// Returns, for each joint, itself and the joints in the same place of branches of the same structure. Such branches
+/// begin at the same link, or at links in the same place, and have the same kinds of joints with the same parallel or
+/// twisted axes. Numbers do not count, so a left arm and a right arm have the same structure.
 pub(crate) fn alike(rows: &[JointFrame], joints: &[OpenJoint]) -> Vec<Vec<usize>> {
     let mut shapes: Vec<String> = vec![String::new(); rows.len()];
     for index in (0..rows.len()).rev() {

@@ -13,10 +13,10 @@ use crate::program::Scales;
 use crate::reduced::regrouping::{is_parallel, parameters};
 use crate::reduced::{Algorithm, Arm, FrameChoice, JointFrames, Offers, Parameters, results};
 
-/// Counted plans that are remembered, per branch of the base.
+/// Largest number of plans whose costs are remembered, per branch of the base.
 const MOST_KNOWN: usize = 100_000;
 
-/// A table and the choices that it offers.
+/// A robot with one choice of frames, and the other choices that it then has.
 #[derive(Clone, Debug)]
 pub(crate) struct FramedRobot {
     robot: Robot,
@@ -31,7 +31,7 @@ pub(crate) struct FramedRobot {
 pub struct OpenChoices {
     /// The choices of each joint, base to tip.
     pub joints: Vec<OpenJoint>,
-    /// The different lengths of the robot, in which lengths and forces can be measured.
+    /// The different lengths of the robot that can be units of lengths and forces.
     pub lengths: Vec<Scale>,
     /// Whether the last link can be a spinning sphere without mass.
     pub gyrostat: bool,
@@ -52,24 +52,24 @@ pub struct OpenJoint {
     pub is_parallel: bool,
     /// Whether the twist between the axes is no multiple of a right angle.
     pub is_twisted: bool,
-    /// The rules that give different slides of the origin.
+    /// The rules for a shift of the origin along the axis that give different results.
     pub origin_shifts: Vec<OriginShift>,
-    /// The joints that it carries, and itself, counted from 0, where it is one of several on the base: these can have
-    /// scales of their own.
+    /// This joint and the joints that it carries, counted from 0, if it is one of several joints on the base: these can
+    /// have scales of their own. Empty for other joints.
     pub scaled: Vec<usize>,
-    /// The joints in the same place of branches that look alike, counted from 0, and this one.
+    /// This joint and the joints in the same place of branches of the same structure, counted from 0.
     pub alike: Vec<usize>,
 }
 
 impl OpenChoices {
-    /// Whether a rule for a slide gives something of its own at a joint.
+    /// Whether a rule for a shift of the origin gives a result of its own at a joint.
     #[must_use]
     pub fn offers(&self, index: usize, rule: OriginShift) -> bool {
         self.joints.get(index).is_some_and(|joint| joint.origin_shifts.contains(&rule))
     }
 }
 
-/// Counts plans of one robot, as many as a search wants.
+/// Counts the operations of many plans of one robot, and uses its memory again for each.
 pub(crate) struct Evaluator {
     robot: Robot,
     frames: Vec<FramedRobot>,
@@ -114,10 +114,11 @@ impl FramedRobot {
             .then(|| parameters(&self.joint_frames, &self.offers, plan))?
     }
 
-    /// A function under a plan, every value once, with names; `None` when the plan does not apply to the robot.
+    /// Writes a function under a plan, with names and with every value computed once; `None` if the plan does not fit
+    /// the robot.
     pub(crate) fn written(&self, plan: &Plan, function: Function, algorithm: Algorithm) -> Option<Formulation> {
         if plan.gyrostat && function.takes(Argument::Payload) {
-            // with a payload no last link is a sphere
+            // with a payload, the last link is not a sphere
             return None;
         }
         let parameters = self.parameters(plan)?;
@@ -127,7 +128,7 @@ impl FramedRobot {
             .map(|(name, symbol)| (name, builder.name(name, symbol).at))
             .unzip();
         let mut traced = builder.finish(outputs);
-        // a number of the plan means what it is called, or nothing, wherever it is first used
+        // a constant is named by the plan or not at all, and not after the step where it is first used
         traced.trace.forget_births_of_leaves(&traced.graph);
         let scales = Scales::of(&self.joint_frames.rows, &parameters);
         Some(Formulation { names, traced: traced.numbered(), scales })
@@ -148,7 +149,7 @@ fn outputs<'s>(
 }
 
 impl Formulation {
-    /// A function written by one algorithm under a plan, every value once.
+    /// Writes a function by one algorithm under a plan, with every value computed once.
     ///
     /// # Errors
     /// When the plan does not fit the robot.
@@ -204,7 +205,7 @@ impl Evaluator {
         }
     }
 
-    /// The cost of a plan; `None` when it does not apply to the robot.
+    /// The cost of a plan; `None` if it does not fit the robot.
     pub(crate) fn cost(&mut self, plan: &Plan) -> Option<Cost> {
         let place = self.frames.iter().position(|frame| frame.is_of(plan))?;
         if self.branches[place].is_empty() {
@@ -231,7 +232,7 @@ impl Evaluator {
         sum
     }
 
-    /// The cost of a plan when the function is written in one of its ways.
+    /// The cost of a plan if the function is written by this algorithm.
     pub(crate) fn cost_of(&mut self, plan: &Plan, algorithm: Algorithm) -> Option<Cost> {
         let place = self.frames.iter().position(|frame| frame.is_of(plan))?;
         let parameters = self.frames[place].parameters(plan)?;

@@ -1,5 +1,5 @@
-//! The short search of a build that finds no plan file: a fixed number of plans is counted, in a fixed order, so that
-//! every machine chooses the same.
+//! The short search of a build that finds no plan file. It counts the operations of a fixed number of plans, in a fixed
+//! order, so that every machine chooses the same plan.
 
 use rustc_hash::FxHashMap;
 
@@ -10,19 +10,19 @@ use crate::plan::cost::{Evaluator, OpenChoices};
 use crate::plan::trick::Trick;
 use crate::plan::{JointPlan, Moment, OriginShift, Plan, RegroupingTarget, Scale, Side, Switches};
 
-/// Plans counted by a build that finds no plan file.
+/// The number of plans whose operations are counted by a build that finds no plan file.
 const DEFAULT_EVALUATIONS: usize = 240;
 
-/// Something that is wrong with a plan, whatever it costs.
+/// A test for plans that must not be chosen, whatever their cost.
 type Veto<'v> = Box<dyn Fn(&Plan) -> bool + 'v>;
 
-/// Counts plans of one robot, and remembers what they cost and which of them is the best.
+/// Counts the operations of plans of one robot, and remembers the costs and the best plan.
 #[allow(missing_debug_implementations)] // a closure
 pub struct Descent<'v> {
     evaluator: Evaluator,
     open: OpenChoices,
     without: Vec<Trick>,
-    /// Refuses plans that would be the best but for something else that is wrong with them.
+    /// Refuses plans that would be the best by their cost, but must not be chosen for another reason.
     veto: Option<Veto<'v>>,
     known: FxHashMap<Plan, Option<Cost>>,
     counted: usize,
@@ -47,13 +47,13 @@ impl<'v> Descent<'v> {
         &self.open
     }
 
-    /// The cheapest plan so far, and what it costs.
+    /// The cost of the cheapest plan so far, and this plan.
     #[must_use]
     pub const fn best(&self) -> &(Cost, Plan) {
         &self.best
     }
 
-    /// How many plans have been counted.
+    /// The number of plans whose operations have been counted.
     #[must_use]
     pub const fn counted(&self) -> usize {
         self.counted
@@ -64,8 +64,8 @@ impl<'v> Descent<'v> {
         self.veto = Some(Box::new(veto));
     }
 
-    /// The cost of the torques by a plan; `None` where the plan does not fit the robot, or uses a trick that is
-    /// left out.
+    /// Returns the cost of computing the torques by a plan; `None` if the plan does not fit the robot, or uses a trick
+    /// that is left out.
     pub fn cost(&mut self, plan: &Plan) -> Option<Cost> {
         if self.without.iter().any(|trick| trick.is_in(plan)) {
             return None;
@@ -89,7 +89,8 @@ impl<'v> Descent<'v> {
         cost
     }
 
-    /// Tries the choices in the order of their usual savings, each for all joints at once and then for each joint.
+    /// Tries the choices in the order of their usual savings, each for all joints at once and then for each joint,
+    /// until `most` plans have been counted.
     pub fn greedy(&mut self, most: usize) {
         let limit = self.counted + most;
         for round in 0..2 {
@@ -106,7 +107,7 @@ impl<'v> Descent<'v> {
         }
     }
 
-    /// The plan without the choices that gain nothing, so that the others can be read.
+    /// Returns the plan without the choices that save nothing, so that it is easier to read.
     pub fn tidied(&mut self, plan: &Plan) -> Plan {
         let Some(weight) = self.cost(plan).map(|cost| cost.weight()) else { return plan.clone() };
         let mut tidy = plan.clone();
@@ -151,10 +152,10 @@ impl<'v> Descent<'v> {
     }
 }
 
-/// Candidates of a greedy search that concern all joints.
+/// The number of candidates of a greedy search that concern all joints.
 const OF_THE_ARM: usize = 14;
 
-/// The candidates of a greedy search, in their order; `None` after the last.
+/// Returns one candidate of a greedy search, in their order; `None` after the last.
 fn greedy_candidate(open: &OpenChoices, plan: &Plan, candidate: usize, round: usize) -> Option<Plan> {
     let dof = plan.joints.len();
     let mut other = plan.clone();
@@ -237,7 +238,8 @@ fn greedy_candidate(open: &OpenChoices, plan: &Plan, candidate: usize, round: us
     Some(other)
 }
 
-/// The plan of a build that finds no plan file: a fixed number of plans is counted, on every machine the same.
+/// Returns the plan of a build that finds no plan file, the best of a fixed number of plans; it is the same on every
+/// machine.
 pub(crate) fn default_plan(robot: &Robot, without: &[Trick]) -> Plan {
     let mut descent = Descent::new(robot, without);
     descent.greedy(DEFAULT_EVALUATIONS);

@@ -22,16 +22,17 @@ const CONSTANTS: &str = "constants";
 const OPERATIONS: &str = "operations";
 const RESULTS: &str = "results";
 
-/// Fewest digits of a number, and how far from a number of the plan a number with so few digits may be.
+/// Fewest digits of a number, and the largest relative difference between a number with so few digits and that of the
+/// plan.
 const LEAST_DIGITS: usize = 4;
 const ROUNDING: f64 = 1e-3;
 
-/// A graph as text, when the numbers in the places `given` are those of its plan.
+/// Writes a graph as text. The numbers at the places `given` are those of its plan.
 pub(crate) fn written(graph: &Graph, given: &[u32]) -> String {
     let mut constants = Constants { numbers: &graph.numbers, given, places: Vec::new(), words: Vec::new() };
     let mut operations: Vec<String> = Vec::new();
     let mut values: Vec<Called> = Vec::with_capacity(graph.len());
-    // angles are known by their joints
+    // angles are not written: a sine or cosine has the numbers of its joints
     let mut live = Vec::new();
     mark_live_outside_angles(&graph.nodes, &graph.outputs, &mut live);
     for (at, op) in graph.nodes() {
@@ -46,7 +47,7 @@ pub(crate) fn written(graph: &Graph, given: &[u32]) -> String {
             Op::Sum(a, b) => Ok(format!("{}+{}", operand(a), operand(b))),
             Op::Product(a, b) => Ok(format!("{}*{}", operand(a), operand(b))),
             Op::Quotient(a, b) => Ok(format!("{}/{}", operand(a), operand(b))),
-            // nothing that is rewritten chooses
+            // no function that is rewritten has a choice by a sign
             Op::BySign(_) => Err(Called::default()),
         };
         values.push(operation.map_or_else(
@@ -67,7 +68,7 @@ pub(crate) fn written(graph: &Graph, given: &[u32]) -> String {
 enum Called {
     /// By a name: an argument, a sine, a cosine, a constant.
     Named(String),
-    /// By its number, counted from 1.
+    /// An operation, by its number, counted from 1.
     Operation(usize),
 }
 
@@ -88,7 +89,7 @@ impl Called {
     }
 }
 
-/// A section in lines of its own.
+/// Writes a section of the text, with line breaks.
 fn wrapped(name: &str, words: &[String]) -> String {
     const WIDTH: usize = 112;
     let (mut text, mut width) = (name.to_owned(), name.len());
@@ -127,7 +128,7 @@ struct Constants<'a> {
 }
 
 impl Constants<'_> {
-    /// The number of a constant, counted from 1, which is written first where it has none yet.
+    /// Returns the number of a constant, counted from 1, after writing the constant if it has no number yet.
     fn number(&mut self, place: u32) -> usize {
         if let Some(known) = self.places.iter().position(|known| *known == place) {
             return known + 1;
@@ -135,7 +136,7 @@ impl Constants<'_> {
         let (number, source) = self.numbers.get(place);
         let word = match source {
             _ if self.given.contains(&place) => self.digits(number.to_f64()),
-            // numbers that were not there at first have all been made
+            // the only other number that is not computed is 1
             Source::Given => String::from("1"),
             Source::Sum(a, b) => self.made(a, "+", b),
             Source::Product(a, b) => self.made(a, "*", b),
@@ -159,7 +160,7 @@ impl Constants<'_> {
         format!("{}{}{operator}{}{}", a.0, back(a.1), b.0, back(b.1))
     }
 
-    /// A number of the plan with as many digits as tell it from the others, with room for what rounding moves.
+    /// Writes a number of the plan with as many digits as tell it from the others, even if rounding moves it a little.
     fn digits(&self, value: f64) -> String {
         let others = self.given.iter().map(|&place| self.numbers.get(place).0.to_f64()).chain([1.0]);
         let others = others.filter(|other| *other != value).map(|other| (other - value).abs());
@@ -171,7 +172,7 @@ impl Constants<'_> {
     }
 }
 
-/// The graph of a text; `plain` is the one before it was rewritten.
+/// Reads the graph of a text; `plain` is the graph before rewriting.
 ///
 /// # Errors
 /// The number of the wrong word, counted from 1, and the mistake in it.
@@ -219,12 +220,12 @@ fn leaves<'s>(graph: &Graph, builder: &'s Builder) -> FxHashMap<String, Symbol<'
     leaves
 }
 
-/// An angle of one graph, written in another.
+/// Writes an angle of one graph in another graph.
 fn angle_of<'s>(graph: &Graph, at: Ref, builder: &'s Builder) -> Symbol<'s> {
     let angle = match graph.op(at) {
         Op::Input(input) => builder.argument(input.name()),
         Op::Sum(a, b) => angle_of(graph, a, builder) + angle_of(graph, b, builder),
-        // angles are sums of positions and of constants, some of which are no numbers of the field
+        // an angle is a sum of positions and constants; some of these constants are plain numbers, others angles
         Op::Constant(place) if graph.factors().contains(&place) => {
             builder.number(graph.number(at.magnitude()).unwrap_or_default())
         }
@@ -233,7 +234,7 @@ fn angle_of<'s>(graph: &Graph, at: Ref, builder: &'s Builder) -> Symbol<'s> {
     angle.signed(at.is_negative())
 }
 
-/// A graph that was read: first the numbers of its plan in their places, then the graph's own numbers.
+/// Rebuilds a graph that was read: the numbers of its plan come first, in their places, then the graph's own numbers.
 pub(crate) fn on_numbers_of(read: &Graph, plan: &Graph) -> Graph {
     let mut graph = plan.clone();
     graph.clear_nodes();
@@ -275,16 +276,17 @@ fn constant_on(graph: &mut Graph, numbers: &Numbers, places: &mut FxHashMap<u32,
             graph.constant_inverse(value).unwrap_or_else(|| graph.zero())
         }
     };
-    // a place holds the magnitude
+    // the number at a place has no sign
     let at = at.magnitude();
     places.insert(place, at);
     at
 }
 
 struct Reader<'s> {
-    /// The numbers of the graph before, and 1.
+    /// The numbers of the graph before rewriting, and 1.
     given: Vec<Number>,
-    /// Divisors of the graph before. Nothing else may be divided by: it could be zero where that is not.
+    /// The divisors of the graph before rewriting. No other value may be a divisor: it could be zero where these are
+    /// not.
     divisors: Vec<Residue>,
     builder: &'s Builder,
     leaves: FxHashMap<String, Symbol<'s>>,
@@ -339,7 +341,7 @@ impl<'s> Reader<'s> {
         [at, -at].into_iter().any(|at| self.divisors.contains(&graph.residue(at)))
     }
 
-    /// A value by its name, or by how far back it is: `1` is the one before.
+    /// Returns a value by its name, or by how far back it is: `1` is the value before.
     fn operand(&self, text: &str) -> Result<Symbol<'s>, GraphMistake> {
         let (name, is_negative) = text.strip_prefix('-').map_or((text, false), |name| (name, true));
         let earlier = if self.section == CONSTANTS { &self.constants } else { &self.operations };
@@ -352,7 +354,8 @@ impl<'s> Reader<'s> {
         Ok(value.signed(is_negative))
     }
 
-    /// The number of the graph before that is nearest. A change of the formulas may move a number by a rounding.
+    /// Returns the nearest number of the graph before rewriting. A change of the formulas may move a number by a
+    /// rounding error.
     fn given(&self, word: &str, value: f64) -> Result<Symbol<'s>, GraphMistake> {
         if !value.is_finite() {
             return Err(GraphMistake::NotFinite(word.to_owned()));

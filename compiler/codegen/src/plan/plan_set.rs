@@ -22,7 +22,7 @@ pub struct PlanSet {
     /// The functions whose graphs have been rewritten.
     pub rewritten: BTreeMap<Function, Rewritten>,
     maker: Maker,
-    /// The plan of the functions that hold a floating base still, made when one of them is first compiled.
+    /// The plan of functions that keep a floating base at rest, made when one of them is first compiled.
     held: Arc<OnceLock<Plan>>,
 }
 
@@ -36,7 +36,7 @@ enum Maker {
 }
 
 impl PlanSet {
-    /// No choice made.
+    /// The plan set without any choice.
     #[must_use]
     pub fn none(robot: &Robot) -> Self {
         Self { maker: Maker::Build, ..Self::from(Plan::new(robot.joints.len())) }
@@ -48,8 +48,9 @@ impl PlanSet {
         Self { maker: Maker::Build, ..Self::from(default_plan(robot, &[])) }
     }
 
-    /// The choices for a function. One that holds a floating base still has those of a build of the same robot on
-    /// a fixed base: the other choices are for a base that is a link. No choice fits every function.
+    /// Returns the choices for a function. A function that keeps a floating base at rest has those of a build for the
+    /// same robot on a fixed base, because the other choices are for a base that is a link. A plan without choices fits
+    /// every function.
     #[must_use]
     pub fn of_function(&self, robot: &Robot, function: Function) -> Cow<'_, Self> {
         if !function.holds_floating_base(robot) || self.plan == Plan::new(robot.joints.len()) {
@@ -64,8 +65,8 @@ impl PlanSet {
         self.maker == Maker::Build
     }
 
-    /// Ever fewer choices, for a build that cannot prove all of them: without those of frames, without any, without
-    /// regrouping.
+    /// Returns plan sets with fewer and fewer choices, for a build that cannot prove all of them: without those of
+    /// frames, without any, without regrouping.
     pub(crate) fn with_ever_fewer_choices(&self) -> Vec<(LeftOut, Self)> {
         let unframed = Plan { turned_last_frame: false, carried_prismatics: false, ..self.plan.clone() };
         let none = Plan::new(self.plan.joints.len());
@@ -80,8 +81,8 @@ impl PlanSet {
         plans.into_iter().skip(1).map(|(left_out, plan)| (left_out, Self { plan, ..self.clone() })).collect()
     }
 
-    /// The algorithm by which a function takes the fewest operations, and the plan for it: that at hand, or that
-    /// without the choices that it makes joint by joint for the recursion.
+    /// Returns the algorithm by which a function takes the fewest operations, and the plan for it: this plan, or this
+    /// plan without the choices of each joint, which are made for the recursion.
     #[must_use]
     pub fn cheapest(&self, robot: &Robot, function: Function) -> (Plan, Algorithm) {
         let algorithms = Algorithm::of_robot(function, robot);
@@ -103,9 +104,10 @@ impl PlanSet {
     }
 }
 
-/// Changes that may be better for an arm with a payload: what is best for the last link alone need not be for both.
+/// Changes that may be better for an arm with a payload: choices that are best for the last link alone may not be best
+/// for link and payload together.
 const FOR_A_PAYLOAD: [fn(&mut Plan); 6] = [
-    // the payload would be turned with it
+    // with a rotated last frame, the payload would be rotated, too
     |plan| plan.turned_last_frame = false,
     |plan| *plan = plan.clone().unscaled(),
     |plan| of_last(plan, |last| last.switches.axis_column = !last.switches.axis_column),
@@ -120,7 +122,7 @@ fn of_last(plan: &mut Plan, change: impl Fn(&mut JointPlan)) {
     }
 }
 
-/// The best plan and algorithm for an arm with a payload that some changes of the last link lead to, one by one.
+/// Finds the best plan and algorithm for an arm with a payload, by trying changes of the last link one after another.
 fn with_payload(evaluator: &mut Evaluator, plans: &[Plan], algorithms: &[Algorithm]) -> Option<(Plan, Algorithm)> {
     let mut best: Option<(usize, Plan, Algorithm)> = None;
     let mut look = |plan: &Plan, best: &mut Option<(usize, Plan, Algorithm)>| {
@@ -131,7 +133,7 @@ fn with_payload(evaluator: &mut Evaluator, plans: &[Plan], algorithms: &[Algorit
             }
         }
     };
-    // with a payload no last link is a sphere
+    // with a payload, the last link is not a sphere
     for plan in plans {
         look(&Plan { gyrostat: false, ..plan.clone() }, &mut best);
     }
@@ -143,7 +145,7 @@ fn with_payload(evaluator: &mut Evaluator, plans: &[Plan], algorithms: &[Algorit
     best.map(|(_, plan, algorithm)| (plan, algorithm))
 }
 
-/// A plan that is compiled without a change.
+/// Makes a plan set of a plan that is compiled without a change, or refused.
 impl From<Plan> for PlanSet {
     fn from(plan: Plan) -> Self {
         Self { plan, rewritten: BTreeMap::new(), maker: Maker::PlanFile, held: Arc::default() }

@@ -1,7 +1,8 @@
-//! Algebraic rewriting of a finished graph: local, exact moves under annealing (the reduced form, section 10).
+//! Algebraic rewriting of a finished graph: simulated annealing with local, exact moves (docs/teaching/reduced-form.md,
+//! section 10).
 //!
-//! What comes out no longer resembles a recursion. Every move is an identity of real numbers, and equal values stay one
-//! node whatever their history.
+//! The result no longer resembles a recursion. Every move is an identity of real numbers, and equal values stay one
+//! node, however they were computed.
 
 use std::ops::ControlFlow;
 
@@ -19,15 +20,15 @@ const FACTORS: std::ops::Range<f64> = 1e-4..1e4;
 /// The graph of a function while algebra makes it smaller.
 #[derive(Clone, Debug)]
 pub struct Rewriting {
-    /// The entry of the plan file, but for the graph as text.
+    /// The entry of the plan file, without the graph as text.
     rewritten: Rewritten,
     graph: Graph,
-    /// Places of the numbers of the graph as the plan gives it.
+    /// The places of the numbers that the graph had before rewriting.
     given: Vec<u32>,
 }
 
 impl Rewriting {
-    /// Goes on from a graph that has been rewritten, or starts from the graph of a plan where there is no text of one.
+    /// Continues with a rewritten graph, or starts from the graph of the plan if there is no text of a rewritten one.
     ///
     /// # Errors
     /// When the plan does not fit the robot.
@@ -47,8 +48,8 @@ impl Rewriting {
     }
 
     /// Anneals from a temperature downwards until the clock says that all of its time is over, and keeps the smallest
-    /// graph. The clock is told the smallest cost so far and returns the part of the time that is over; `None` breaks
-    /// off.
+    /// graph. The clock is told the smallest cost so far and returns which part of the time is over, 0 to 1; `None`
+    /// stops the annealing.
     pub fn anneal(&mut self, seed: u64, hottest: f64, clock: &mut dyn FnMut(Cost) -> Option<f64>) -> ControlFlow<()> {
         let mut annealing = Annealing::new(self.graph.clone(), seed, Graph::cost);
         let ended = annealing.anneal(hottest, clock);
@@ -56,7 +57,7 @@ impl Rewriting {
         ended
     }
 
-    /// The graph as a plan file keeps it.
+    /// Returns the graph as a plan file keeps it.
     #[must_use]
     pub fn written(self) -> Rewritten {
         Rewritten { graph: graph_text::written(&self.graph, &self.given), ..self.rewritten }
@@ -121,15 +122,16 @@ impl<C: Fn(&Graph, &mut Vec<bool>) -> Cost> Annealing<C> {
                     self.best = (cost, self.current.clone());
                 }
             } else {
-                // constants keep their places, so that both graphs can have all of them
+                // the constants go back to the current graph; they keep their places, so that both graphs can have all
+                // of them
                 std::mem::swap(&mut self.current.numbers, &mut self.next.numbers);
             }
         }
         ControlFlow::Continue(())
     }
 
-    /// Writes the current graph once more with one node rewritten; false when nothing came of it. The constants move
-    /// along.
+    /// Writes the current graph again with one node rewritten; returns false if no move was possible. The constants
+    /// move to the new graph.
     fn step(&mut self) -> bool {
         let nodes = self.current.len();
         let target = self.rng.usize(..nodes);
@@ -182,10 +184,10 @@ fn product(graph: &mut Graph, a: Ref, b: Ref) -> Ref {
 /// Two operands.
 type Pair = (Ref, Ref);
 
-/// How often another move is tried on the node at hand.
+/// The number of random moves that are tried on one node.
 const TRIES: usize = 6;
 
-/// The operands of a sum, and those of a product.
+/// Returns the operands of a node: first those of a sum, second those of a product; `None` for other nodes.
 fn operands(graph: &Graph, at: Ref) -> (Option<Pair>, Option<Pair>) {
     match graph.op(at) {
         Op::Sum(a, b) => (Some((a, b)), None),
@@ -198,7 +200,7 @@ fn swapped<T>((a, b): (T, T), swap: bool) -> (T, T) {
     if swap { (b, a) } else { (a, b) }
 }
 
-/// a + b in another way.
+/// Writes a + b in another way; `None` if no move is possible.
 fn rewritten_sum(graph: &mut Graph, a: Ref, b: Ref, rng: &mut fastrand::Rng) -> Option<Ref> {
     for _ in 0..TRIES {
         let (a, b) = swapped((a, b), rng.bool());
@@ -249,7 +251,7 @@ fn rewritten_sum(graph: &mut Graph, a: Ref, b: Ref, rng: &mut fastrand::Rng) -> 
     None
 }
 
-/// Two products with something in common.
+/// Writes the sum of two products that have something in common in another way. `p` and `q` are their factors.
 fn factored(graph: &mut Graph, (a, p): (Ref, Pair), (b, q): (Ref, Pair), rng: &mut fastrand::Rng) -> Option<Ref> {
     let (sa, sb) = (a.is_negative(), b.is_negative());
     let (p, q) = (swapped(p, rng.bool()), swapped(q, rng.bool()));
@@ -296,7 +298,7 @@ fn factored(graph: &mut Graph, (a, p): (Ref, Pair), (b, q): (Ref, Pair), rng: &m
     None
 }
 
-/// A product and something else.
+/// Writes the sum of a product and another term in another way. `p` are the factors of the product.
 fn factored_one(graph: &mut Graph, (a, p): (Ref, Pair), b: Ref) -> Option<Ref> {
     let sa = a.is_negative();
     for (x, y) in [p, (p.1, p.0)] {
@@ -328,7 +330,7 @@ fn bounded_quotient(graph: &mut Graph, a: Ref, b: Ref) -> Option<Ref> {
     Some(product(graph, a, inverse))
 }
 
-/// a · b in another way.
+/// Writes a · b in another way; `None` if no move is possible.
 fn rewritten_product(graph: &mut Graph, a: Ref, b: Ref, rng: &mut fastrand::Rng) -> Option<Ref> {
     for _ in 0..TRIES {
         let (a, b) = swapped((a, b), rng.bool());
@@ -374,7 +376,7 @@ fn rewritten_product(graph: &mut Graph, a: Ref, b: Ref, rng: &mut fastrand::Rng)
     None
 }
 
-/// The cosine beside a sine and the other way round.
+/// Returns the cosine of the same angle for a sine, and the sine for a cosine.
 fn partner(graph: &Graph, at: Ref) -> Option<Ref> {
     let wanted = match graph.op(at) {
         Op::Sine(angle) => Op::Cosine(angle),

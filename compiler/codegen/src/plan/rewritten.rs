@@ -17,22 +17,22 @@ pub struct Rewritten {
     pub operations: Cost,
     /// How precise it is.
     pub accuracy: Accuracy,
-    /// How the function was written under the plan.
+    /// The algorithm by which the function was written under the plan.
     pub algorithm: Algorithm,
-    /// The plan that gives the graph its numbers; none for a function that the choices of a plan do not touch.
+    /// The plan that gives the graph its numbers; `None` for a function that does not depend on the choices of a plan.
     pub plan: Option<Plan>,
     /// The graph as text: constants, operations and results.
     pub graph: String,
 }
 
-/// Largest differences from the seven steps, in parts of the largest torque, with two digits: for people.
+/// Largest differences from the seven steps, in parts of the largest torque, rounded to two digits for people.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Accuracy {
-    /// In double precision.
+    /// The program in double precision.
     pub double: f64,
-    /// In single precision.
+    /// The program in single precision.
     pub single: f64,
-    /// Difference of the seven steps themselves in single precision.
+    /// The seven steps in single precision, compared with themselves in double precision.
     pub single_of_seven_steps: f64,
 }
 
@@ -48,7 +48,7 @@ impl From<&Proof> for Accuracy {
 }
 
 impl Rewritten {
-    /// The graph that was rewritten.
+    /// The graph before rewriting.
     pub(crate) fn before(&self, robot: &Robot, function: Function) -> Result<Formulation, CompileError> {
         match &self.plan {
             Some(plan) => Formulation::by_plan(robot, plan, function, self.algorithm),
@@ -56,7 +56,7 @@ impl Rewritten {
         }
     }
 
-    /// The rewritten graph: values keep the names that they have in the graph before.
+    /// Reads the rewritten graph; values keep the names that they have in the graph before rewriting.
     ///
     /// # Errors
     /// When the plan does not fit the robot, or the graph cannot be read.

@@ -6,31 +6,31 @@ use crate::plan::{Moment, OriginShift, Plan, RegroupingTarget, Side};
 named! {
     /// A simplification of the reduced form. The section numbers refer to `docs/teaching/reduced-form.md`.
     Trick, "trick of the reduced form" {
-        /// Matter on joint axes is given to the link before, so that it vanishes from the link.
+        /// Mass on a joint axis is moved to the link before, so that parameters of the link become zero.
         Regrouping = "regrouping",
-        /// Other parameters vanish than the link's own.
+        /// Regrouping makes other parameters zero than those of the link itself.
         RegroupingTargets = "regrouping-targets",
-        /// An axisymmetric last link is a spinning sphere without mass.
+        /// An axisymmetric last link is replaced by a spinning sphere without mass.
         Gyrostat = "gyrostat",
-        /// The last frame is turned so that a first moment vanishes.
+        /// The last frame is rotated so that a component of a first moment becomes zero.
         LastFrame = "last-frame",
         /// Prismatic links keep the axes of the revolute link before.
         CarriedPrismatics = "carried-prismatics",
-        /// The column U z is shared by the two links of an axis.
+        /// The two links of a joint axis share the column U z.
         AxisColumns = "axis-columns",
         /// Parallel axes share a frame.
         ParallelGroups = "parallel-groups",
-        /// Offsets along axes act where they are cheapest.
+        /// Offsets along joint axes are added in the frame in which this takes the fewest operations.
         Offsets = "offsets",
-        /// Origins slide along their axes.
+        /// Origins of frames are moved along their joint axes.
         OriginShifts = "origin-shifts",
         /// Lengths and forces are measured in units of the arm.
         Scales = "scales",
-        /// The moment of a link in the form that suits its tensor.
+        /// The moment of a link is computed in the form that suits its tensor.
         MomentForms = "moment-forms",
-        /// Twists that are no right angles take seven products instead of eight.
+        /// Rotations by twists that are no right angles take seven products instead of eight.
         ScaledTwists = "scaled-twists",
-        /// Parts of a link are evaluated in the frame that does not turn with it.
+        /// Some quantities of a link are evaluated in frame N, which is on its axis but does not turn with the joint.
         UnturnedFrames = "unturned-frames",
         /// The finished graph is made smaller by exact algebra: no choice of a plan, but what comes after it.
         Rewriting = "rewriting",
@@ -38,7 +38,7 @@ named! {
 }
 
 impl Trick {
-    /// Its effect in one line, with its formula.
+    /// Its effect in one line, with a formula and the number of the section.
     #[must_use]
     pub const fn formula(self) -> &'static str {
         match self {

@@ -1,5 +1,5 @@
-//! Forward dynamics by articulated bodies: the inertia of the links after a joint, as the joint must accelerate it, if
-//! the joints after it are free to move.
+//! Forward dynamics by articulated bodies: for each joint, the inertia with which its link and all links after it
+//! resist acceleration while the joints after it are free to move.
 //!
 //! ```text
 //! n = A ω̇ + B a + n°,   f = Bᵀ ω̇ + C a + f°             about the joint's origin; rigid: A = J, B = [h]×, C = m 1
@@ -168,7 +168,7 @@ fn rigid<'s>(
     let [x, y, z] = h.0;
     let gradient = Gradient::new(omega, builder.no_vector());
     Articulated {
-        // J = tr(S) 1 - S
+        // the inertia J = tr(S) 1 - S, from the second moments S
         angular: [s[1][1] + s[2][2], s[0][0] + s[2][2], s[0][0] + s[1][1], -s[0][1], -s[0][2], -s[1][2]],
         mixed: [[zero, -z, y], [z, zero, -x], [-y, x, zero]],
         linear: [m, m, m, zero, zero, zero],
@@ -276,7 +276,7 @@ struct Accelerated<'s> {
     acceleration: Vector<'s>,
 }
 
-/// The motion of a link in its axes and in frame N, with the rotation between both.
+/// The motion of a link in its axes and in frame N (not turned by the joint), with the rotation between both.
 type Link<'s> = (Accelerated<'s>, Accelerated<'s>, SymbolicTurn<'s>);
 
 impl<'s> Outward<'s> for Accelerated<'s> {

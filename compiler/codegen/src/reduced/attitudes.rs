@@ -36,7 +36,7 @@ type Axes = (Option<usize>, Square);
 /// is the holder. A prismatic link gives its second moments to its parent elsewhere, so it is its own holder here.
 pub(crate) fn holders(joint_frames: &JointFrames) -> Vec<Option<(usize, Square)>> {
     let rows = &joint_frames.rows;
-    // the element of a floating base, which comes after the links
+    // the holder of a floating base, which comes after those of the links
     let of_base = joint_frames.base.as_ref().map(|_| Some((rows.len(), IDENTITY)));
     if joint_frames.coordinates.is_every_joint() {
         return (0..rows.len()).map(|index| Some((index, IDENTITY))).chain(of_base).collect();
@@ -85,7 +85,8 @@ fn attitude(joint_frames: &JointFrames, attitudes: &mut Vec<Attitude>, index: us
     }
     let root = |link: usize| std::iter::successors(Some(link), |&link| joint_frames.rows[link].parent).last();
     let is_same = |other: &Attitude| {
-        // the axes of a fixed base differ from joint to joint on it, so both links must be on one of these joints
+        // the axes of a fixed base differ from joint to joint on it, so both links must be after the same joint on the
+        // base
         let is_on_same = other.on == on && (on.is_some() || root(other.first) == root(index));
         is_on_same
             && ratio_of_axes(axis, other.axis).is_some_and(|sign| {

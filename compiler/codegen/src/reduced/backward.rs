@@ -173,7 +173,7 @@ fn length_inward(arm: &Arm<'_, '_>, index: usize) -> Number {
     arm.parameters.mu[index].inverse().unwrap_or(Number::ONE)
 }
 
-/// Returns F and N of the link itself: the part in its frame, and the part in frame N.
+/// Returns F and N of the link itself: the part in its frame, and the part in frame N (not turned by the joint).
 fn own_wrench<'s>(
     arm: &Arm<'_, 's>,
     index: usize,
@@ -243,7 +243,7 @@ fn second_moment<'s>(builder: &'s Builder, matter: &PseudoInertia, motion: &Moti
             ])
         }
         Moment::Inertia => {
-            // J = tr(S) 1 - S
+            // the inertia J = tr(S) 1 - S, from the second moments S
             let trace = s[0][0] + s[1][1] + s[2][2];
             let j = [0, 1, 2]
                 .map(|row| builder.vector([0, 1, 2].map(|k| if row == k { trace - s[row][k] } else { -s[row][k] })));

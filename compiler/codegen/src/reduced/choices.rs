@@ -31,7 +31,7 @@ pub struct Plan {
 /// The choices of one joint.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Default)]
 pub struct JointPlan {
-    /// The three parameters that the rods of matter on this joint's axis set to zero (section 4.5).
+    /// The three parameters that the rods of mass on this joint's axis set to zero (section 4.5).
     pub targets: [RegroupingTarget; 3],
     /// The position of the frame's origin on the joint axis (section 5.4).
     pub origin_shift: OriginShift,
@@ -142,7 +142,7 @@ switches! {
 }
 
 named! {
-    /// A parameter that a rod of matter sets to zero: one of the link's own, or one of the link before.
+    /// A parameter that a rod of mass sets to zero: one of the link's own, or one of the link before.
     #[derive(Default)]
     RegroupingTarget, "target" {
         /// The link's own: mass, h_z and S33 in this order.

@@ -1,7 +1,7 @@
 //! The mass matrix by composite bodies: for each joint all links after it as one rigid body, from tip to base.
 //!
 //! ```text
-//! P_i = own matter of link i + P_{i+1}, turned and moved into its frame;   P = [S h; hᵀ m]
+//! P_i = moments of link i alone + P_{i+1}, turned and moved into its frame;   P = [S h; hᵀ m]
 //! column j, on its axis in frame N_j:   f = (-h_y, h_x, 0)   n = (-S13, -S23, S11 + S22)
 //!                                       (prismatic: f = m u, n = h × u)
 //! M_jj = n_z;   M_ij = n_z of the same wrench, turned and moved to joint i < j
@@ -64,7 +64,7 @@ impl<'s> Composite<'s> {
     /// Returns the wrench that gives each point r of the body the acceleration b + e × r.
     pub(crate) fn carried(&self, e: Vector<'s>, b: Vector<'s>) -> Wrench<'s> {
         let ([xx, yy, zz, xy, xz, yz], [x, y, z]) = (self.s, e.0);
-        // J = tr(S) 1 - S
+        // J e, with the inertia J = tr(S) 1 - S from the second moments S
         let momentum = Vector([
             (yy + zz) * x - (xy * y + xz * z),
             (xx + zz) * y - (xy * x + yz * z),
@@ -156,7 +156,7 @@ fn name<'s>(builder: &'s Builder, joint: usize, carried: &Carried<Composite<'s>,
 
 /// Returns the upper half of M of the joints: row i has its elements (i, i) to (i, n). For a floating base, also
 /// returns its rows; the base is the last body that is added.
-#[allow(clippy::type_complexity)] // rows of both kinds
+#[allow(clippy::type_complexity)] // a tuple of both kinds of rows
 pub(crate) fn mass_matrix<'s>(arm: &Arm<'_, 's>) -> (Vec<Vec<Symbol<'s>>>, Option<OfBase<'s>>) {
     let (builder, rows) = (arm.builder, arm.rows());
     let dof = rows.len();
@@ -243,7 +243,7 @@ fn of_base<'s>(arm: &Arm<'_, 's>, base: &Carrier, mut load: LoadOfLink<Composite
         [force, moment].map(|part| part.map(|_, x| x.signed(row.reversed)))
     };
     let columns = rows.iter().enumerate().map(column).collect();
-    // J = tr(S) 1 - S
+    // the inertia J = tr(S) 1 - S, from the second moments S
     OfBase { mass, h, inertia: [yy + zz, xx + zz, xx + yy, -xy, -xz, -yz], columns }
 }
 

@@ -23,7 +23,7 @@ use crate::reduced::{JointFrame, JointFrames, JointPlan, Parameters, Plan, Side,
 #[derive(Clone, Copy)]
 pub(crate) struct Gradient<'s> {
     pub(crate) u: [[Symbol<'s>; 3]; 3],
-    /// U33 - U22, U11 - U33, U22 - U11
+    /// Differences of the diagonal elements: U33 - U22, U11 - U33, U22 - U11.
     pub(crate) differences: [Symbol<'s>; 3],
 }
 
@@ -77,7 +77,7 @@ pub(crate) struct Motion<'s> {
 pub(crate) struct Moved<'s> {
     /// Motion in the link's frame.
     pub(crate) own: Motion<'s>,
-    /// Motion in frame N on the joint's axis.
+    /// Motion in frame N (not turned by the joint) on the joint's axis.
     pub(crate) unturned: Motion<'s>,
     pub(crate) twist: Twist<'s>,
     /// Rotation from the frame of the link to frame N of its group.
@@ -127,7 +127,8 @@ impl<'s> Twist<'s> {
     }
 }
 
-/// A group of parallel axes: the motion of the link before the group, in frame N, and the summed rates of the group.
+/// A group of parallel axes: the motion of the link before the group, in frame N (not turned by the joint), and the
+/// summed rates of the group.
 #[derive(Clone, Copy)]
 struct Group<'s> {
     omega: Vector<'s>,
@@ -300,7 +301,7 @@ struct Revolving<'s, 'a> {
     /// The number of the joint, counted from 1.
     joint: usize,
     plan: &'a JointPlan,
-    /// Whether the joint's axis is parallel to the one before, so that both share frame N.
+    /// Whether the joint's axis is parallel to the one before, so that both share frame N (not turned by the joint).
     parallel: bool,
     twist: Twist<'s>,
     turn: SymbolicTurn<'s>,
@@ -357,7 +358,8 @@ impl<'s> Revolving<'s, '_> {
         Moved { own: motion, unturned: motion, twist: self.twist, group_turn: self.turn, turn: self.turn, group: None }
     }
 
-    /// Returns the motion of the link before the group, in frame N, and the sums of the group's rates up to this joint.
+    /// Returns the motion of the link before the group, in frame N (not turned by the joint), and the sums of the
+    /// group's rates up to this joint.
     fn share(&self, before: Motion<'s>, group: Option<Group<'s>>) -> Group<'s> {
         self.builder.at(Quantity::OmegaUnturned, self.joint);
         match group {
@@ -398,7 +400,7 @@ impl<'s> Revolving<'s, '_> {
         let omega_unturned = builder.name_vector(Quantity::OmegaUnturned, joint, shared.omega.plus_z(shared.rate));
         let omega_dot_unturned = spun(shared.omega, shared.rate, shared.rate_dot, shared.omega_dot);
 
-        // 1   ω
+        // step 1: the angular velocity ω
         builder.at(Quantity::Omega, joint);
         let omega = if self.parallel && on.group_omega {
             self.group_turn.back_about_z(omega_unturned)
@@ -407,7 +409,7 @@ impl<'s> Revolving<'s, '_> {
         };
         let omega = builder.name_vector(Quantity::Omega, joint, omega);
 
-        // 2   ω̇
+        // step 2: the angular acceleration ω̇
         builder.at(Quantity::OmegaDot, joint);
         let mut omega_dot = if on.omega_dot_unturned {
             self.group_turn.back_about_z(omega_dot_unturned)
@@ -423,7 +425,7 @@ impl<'s> Revolving<'s, '_> {
         }
         builder.name_vector(Quantity::OmegaDot, joint, omega_dot);
 
-        // U
+        // the matrix U = [ω̇]× + [ω]×[ω]×
         builder.at(Quantity::Gradient, joint);
         let (gradient, gradient_unturned) = if on.axis_column {
             (

@@ -1,4 +1,4 @@
-//! The Hessian of λᵀτ by composite bodies.
+//! Second derivatives of λᵀτ, the torques weighted by multipliers λ, computed by composite bodies.
 //!
 //! λᵀτ is the virtual power L = ∫ ξ · a dm, with the velocities ξ that all points would have if the joints had the
 //! velocities λ. Joint j turns or slides all links after it as one body (see `rnea_derivatives`). So q_j changes L only
@@ -49,7 +49,8 @@ impl<'s> Outward<'s> for Virtual<'s> {
     }
 }
 
-/// The velocities for the rates λ at a joint: of the parent, and of the link in frame N and in its axes.
+/// The velocities for the rates λ at a joint: of the parent, and of the link in frame N (not turned by the joint) and
+/// in its axes.
 struct VirtualMotion<'s> {
     before: Virtual<'s>,
     unturned: Virtual<'s>,
@@ -86,13 +87,13 @@ fn virtual_motions<'s>(arm: &Arm<'_, 's>, stations: &[JointMotion<'s>]) -> Vec<V
 #[derive(Clone, Copy)]
 struct Weighted<'s> {
     behind: Behind<'s>,
-    /// ∫ ξ dm
+    /// ∫ ξ dm, the momentum for the rates λ.
     momentum: Vector<'s>,
-    /// ∫ r ξᵀ dm
+    /// The moment Gξ = ∫ r ξᵀ dm.
     moment: Moment<'s>,
     /// The sum of the first two diagonal elements of `moment`, if it is known, as in [`Behind`].
     around: Option<Symbol<'s>>,
-    /// ∫ 2 v × ξ dm
+    /// W = ∫ 2 v × ξ dm.
     mixed: Vector<'s>,
 }
 

@@ -18,9 +18,10 @@ pub(crate) struct Motion<'s> {
 
 /// The motion of a link and of its parent, both at the joint between them.
 pub(crate) struct JointMotion<'s> {
-    /// Motion of the parent at this joint's origin, in frame N (prismatic: in the axes of the link).
+    /// Motion of the parent at this joint's origin, in frame N, which the joint does not turn; for a prismatic joint in
+    /// the axes of the link.
     pub(crate) before: Motion<'s>,
-    /// Motion of the link in frame N.
+    /// Motion of the link in frame N (not turned by the joint).
     pub(crate) unturned: Motion<'s>,
     /// Motion of the link in its axes.
     pub(crate) own: Motion<'s>,

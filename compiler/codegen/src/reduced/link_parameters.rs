@@ -34,7 +34,7 @@ pub(crate) enum Entry {
     Mass,
     H(usize),
     S(usize, usize),
-    /// S11 - S22
+    /// The difference S11 - S22.
     Difference,
 }
 

@@ -108,7 +108,7 @@ pub(crate) struct Column<'s> {
     joint: usize,
     /// The column of M: the wrench for a unit acceleration of the joint.
     pub(crate) unit: Wrench<'s>,
-    /// tr(G) z - G z
+    /// tr(G) z - G z, with the moment G and the joint axis z.
     spin: Vector<'s>,
     pub(crate) by_position: Wrench<'s>,
     pub(crate) by_rate: Wrench<'s>,
@@ -398,7 +398,8 @@ pub(crate) fn moment_of<'s>(
     })
 }
 
-/// The twists of a joint in its frame N, with respect to its position and to its rate, each angular and linear; and Ω.
+/// The twists of a joint in its frame N (not turned by the joint), with respect to its position and to its rate, each
+/// angular and linear; and Ω.
 pub(crate) struct Twists<'s> {
     pub(crate) angular: Vector<'s>,
     pub(crate) linear: Vector<'s>,

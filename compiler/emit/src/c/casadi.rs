@@ -246,7 +246,7 @@ impl Writer<'_> {
     }
 
     fn value(&self, program: &Program, arrays: &[ArgumentArray], columns: usize) -> String {
-        // the name of a function at a frame differs from that of the function in Rust's trait
+        // in C, a function at a frame has a name of its own; only in Rust's trait it has the name of the function
         let prefix = self.file.prefix;
         let mut arguments: Vec<String> =
             (0..arrays.len()).map(|index| format!("{prefix}_given(arg[{index}])")).collect();

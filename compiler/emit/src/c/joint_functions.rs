@@ -88,7 +88,7 @@ fn bits_type(file: &File) -> &'static str {
     }
 }
 
-/// Returns the head of a function that takes and returns one number per joint.
+/// Returns the signature of a function that takes and returns one number per joint.
 fn head(file: &File, function: &str, input: &str, output: &str) -> String {
     let (real, dof) = (file.precision.c_type(), file.robot.dof());
     let arguments = [format!("const {real} {input}[{dof}]"), format!("{real} {output}[{dof}]")];

@@ -40,7 +40,7 @@ pub(super) fn layouts(file: &File) -> Vec<Layout> {
     STEPS[..count].iter().map(|(_, function)| function.layout(sizes)).collect()
 }
 
-/// Returns the head of a function; its result has the type of the Euler step function `of`.
+/// Returns the signature of a function; its result has the type of the Euler step function `of`.
 fn head(file: &File, program: &Program, name: &str, of: Function) -> String {
     let (real, dof) = (file.precision.c_type(), program.dof);
     let mut arguments: Vec<_> = ["q", "qd", "tau"].map(|name| format!("const {real} {name}[{dof}]")).into();
@@ -54,7 +54,7 @@ fn head(file: &File, program: &Program, name: &str, of: Function) -> String {
     wrapped(&format!("void {}_{name}(", file.prefix), &arguments)
 }
 
-/// Returns the heads of the step and of its derivatives.
+/// Returns the signatures of the step and of its derivatives.
 fn heads(file: &File, program: &Program) -> [String; 2] {
     STEPS.map(|(name, of)| head(file, program, name, of))
 }

@@ -32,7 +32,7 @@ pub(crate) fn array_name(name: &'static str) -> &'static str {
     }
 }
 
-/// Returns a function's head up to its closing parenthesis.
+/// Returns the signature of a function up to its closing parenthesis.
 pub(super) fn head(file: &File, program: &Program) -> String {
     let real = file.precision.c_type();
     let layout = program.layout();
@@ -50,7 +50,7 @@ pub(super) fn head(file: &File, program: &Program) -> String {
     wrapped(&format!("{returned} {}_{}(", file.prefix, program.name), &arguments)
 }
 
-/// Returns a head with its arguments, in several lines if it is too long for one.
+/// Returns a signature with its arguments, in several lines if it is too long for one.
 pub(super) fn wrapped(start: &str, arguments: &[String]) -> String {
     let line = format!("{start}{})", arguments.join(", "));
     // one column is left for the semicolon

@@ -67,7 +67,7 @@ pub(super) fn function(robot: &Robot, program: &Program, sin_cos: SinCos) -> Str
     text
 }
 
-/// Returns the head of the function: the name, the arguments and the result.
+/// Returns the signature of the function: the name, the arguments and the result.
 fn head(program: &Program, arrays: &[ArgumentArray]) -> String {
     let mut parameters: Vec<String> =
         arrays.iter().map(|array| format!("{}: {}", array.name, argument_type(array))).collect();

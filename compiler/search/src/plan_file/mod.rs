@@ -1,4 +1,4 @@
-//! Plan files: the choices for one robot, replayed by every build.
+//! Plan files: the choices for one robot, which every build uses again.
 
 mod schema;
 mod shapes;
@@ -42,7 +42,7 @@ pub struct Reduced {
     pub plan: Plan,
 }
 
-/// A number that stands for all numbers of a robot that its torques depend on: 16 hexadecimal digits in a file.
+/// A hash of all numbers of a robot that its torques depend on; in a file, 16 hexadecimal digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fingerprint(u64);
 
@@ -57,14 +57,14 @@ impl FromStr for Fingerprint {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let number = u64::from_str_radix(text, 16).ok().map(Self);
-        // the same digits, and nothing else: no sign, no capitals
+        // only the digits that the number is written with: no sign, no capitals
         number.filter(|number| number.to_string() == text).ok_or_else(|| {
             format!("`{}` is not a fingerprint; a fingerprint has 16 hexadecimal digits", text.escape_debug())
         })
     }
 }
 
-/// The format of plan files.
+/// The version of the format of plan files.
 const FORMAT: u32 = 3;
 
 const KIND: document::Kind = document::Kind { name: "a plan file", format: FORMAT };
@@ -79,7 +79,8 @@ pub fn fingerprint(robot: &Robot) -> Fingerprint {
     numbers.extend(robot.gravity);
     numbers.extend(robot.tool.xyz);
     numbers.extend(robot.tool.rpy.map(|angle| angle.radians));
-    // kinematics depend on it; plans of arms without a base are older than this
+    // kinematics depend on the base; it counts only if it is not zero, so that older plans of arms without it keep
+    // their fingerprints
     let base: Vec<f64> = robot.base.xyz.into_iter().chain(robot.base.rpy.map(|angle| angle.radians)).collect();
     if base.iter().any(|number| *number != 0.0) {
         numbers.extend(base);
@@ -89,11 +90,11 @@ pub fn fingerprint(robot: &Robot) -> Fingerprint {
         numbers.push(if row.kind == JointKind::Revolute { 1.0 } else { 2.0 });
         numbers.extend([row.dh.theta.radians, row.dh.d, row.dh.a, row.dh.alpha.radians, row.link.mass]);
         numbers.extend(row.link.com);
-        // no body has one, and plans of bodies are older than this
+        // a first moment of its own counts only if there is one, so that older plans of bodies keep their fingerprints
         if row.link.has_first_moment() {
             numbers.extend(row.link.first_moment);
         }
-        // rows that begin where the row before ends have none, and plans of chains are older than this
+        // a branch counts only if there is one, so that older plans of chains keep their fingerprints
         if let Some(FixedFrame { on, placement }) = joint.branch {
             #[allow(clippy::cast_precision_loss)] // joints are few
             numbers.push(on.map_or(-1.0, |on| on as f64));
@@ -103,7 +104,7 @@ pub fn fingerprint(robot: &Robot) -> Fingerprint {
         numbers.extend(inertia.rows().into_iter().flatten());
         numbers.extend(row.link.inertia.rows().into_iter().flatten());
     }
-    // plans of robots without rotors on links are older than this
+    // rotors on links count only if there are some, so that older plans keep their fingerprints
     for (rotor, turns) in robot.spinning_rotors() {
         #[allow(clippy::cast_precision_loss)] // joints are few
         let number = |joint: usize| joint as f64;
@@ -111,7 +112,7 @@ pub fn fingerprint(robot: &Robot) -> Fingerprint {
         numbers.extend([rotor.on.map_or(-1.0, number), rotor.inertia]);
         numbers.extend(turns.iter().flat_map(|&(joint, n)| [number(joint), n]));
     }
-    // FNV-1a; -0 is 0
+    // the hash is FNV-1a; adding 0 turns -0 into 0
     let bytes = numbers.iter().flat_map(|x| (x + 0.0).to_bits().to_le_bytes());
     let hash =
         bytes.fold(0xCBF2_9CE4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3));
@@ -127,15 +128,15 @@ impl From<PlanFile> for PlanSet {
 }
 
 impl PlanFile {
-    /// The plan file of a search's result.
+    /// Makes the plan file of a search's result.
     pub(crate) fn new(robot: &Robot, reduced: Reduced, rewritten: BTreeMap<Function, Rewritten>) -> Self {
         Self { robot: robot.name.clone(), fingerprint: fingerprint(robot), reduced, rewritten }
     }
 
-    /// Reads a plan file and checks that it belongs to `robot`; `name` is what messages call it.
+    /// Reads a plan file and checks that it belongs to `robot`; `name` is its name in messages.
     ///
     /// # Errors
-    /// What is wrong with it, with line and column; against all of that [`Remedy::SearchAfresh`] helps.
+    /// A report of what is wrong with it, with line and column; the remedy is always [`Remedy::SearchAfresh`].
     pub fn read(name: &str, text: &str, robot: &Robot) -> Result<Self, Report> {
         let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
         let refused =
@@ -149,7 +150,7 @@ impl PlanFile {
         Ok(file)
     }
 
-    /// Checks that the choices and the graphs are for such a robot.
+    /// Checks that the choices and the graphs can be used for the robot.
     fn fits(&self, root: &Node, robot: &Robot) -> Result<(), Mistake> {
         let rewritten = self.rewritten.iter();
         let rewritten =
@@ -187,8 +188,8 @@ impl PlanFile {
         Ok(())
     }
 
-    /// The functions whose programs the file describes, as a compiler takes them from it: the torques by the plan, and
-    /// those that are rewritten.
+    /// Returns the functions whose programs the file describes, with the choices that a compiler takes from it: the
+    /// torques by the plan, and the rewritten functions.
     #[must_use]
     pub fn described(&self, robot: &Robot) -> Vec<(Function, PlanSet)> {
         let plan = (rne_codegen::function_of_plan(robot), PlanSet::from(self.reduced.plan.clone()));
@@ -196,8 +197,8 @@ impl PlanFile {
         [plan].into_iter().chain(rewritten).collect()
     }
 
-    /// Where in the text of a plan file the cause of an error is that the compiler found in one of the functions that
-    /// it describes; what helps is [`Remedy::SearchAfresh`].
+    /// Returns a report of an error that the compiler found in one of the functions that a plan file describes, with
+    /// its place in the text; the remedy is [`Remedy::SearchAfresh`].
     #[must_use]
     pub fn located(name: &str, text: &str, (function, plans): (Function, &PlanSet), error: &CompileError) -> Report {
         let (place, message) = match error {
@@ -214,7 +215,7 @@ impl PlanFile {
     /// Checks that a function of the file takes as many operations as the file states.
     ///
     /// # Errors
-    /// The operations that are not those of the program; [`Remedy::CountAnew`] helps.
+    /// A report if the numbers of operations differ from those of the program; the remedy is [`Remedy::CountAnew`].
     pub fn counts(&self, name: &str, text: &str, program: &Program) -> Result<(), Report> {
         let rewritten = self.rewritten.get(&program.function).filter(|_| program.is_rewritten);
         let written = rewritten.map_or(self.reduced.operations, |rewritten| rewritten.operations);
@@ -263,7 +264,8 @@ const HEADING: &str = "\
 # and of the seven steps in single precision.
 ";
 
-/// The value of a key in a key …, or the key itself where the value stands below it, as far as the keys are found.
+/// Returns the place of the value at a path of nested keys, or of the last key if the value is written below it. A path
+/// whose keys are missing ends before them.
 fn place(root: &Node, keys: &[&str]) -> Range<usize> {
     let (mut found, mut node) = (0..0, root);
     for key in keys {
@@ -276,16 +278,16 @@ fn place(root: &Node, keys: &[&str]) -> Range<usize> {
     found
 }
 
-/// The [place] of a key in a text, which has been read before.
+/// Returns the [place] of a value at a path of keys in a text, which has been read before.
 fn value_of(text: &str, keys: &[&str]) -> Range<usize> {
     document::read("", text, KIND).map_or(0..0, |root| place(&root, keys))
 }
 
-/// A word of the graph of a function, counted from 1.
+/// Returns the place of a word of the graph of a function; words count from 1.
 fn word_of_graph(text: &str, function: Function, word: usize) -> Range<usize> {
     let graph = value_of(text, &["rewritten", function.name(), "graph"]);
     let Some((_, below)) = text.split_at_checked(graph.start) else { return graph };
-    // a text in lines of its own begins below its key
+    // a text that is written as a block begins below its key
     let is_below = below.starts_with("graph");
     let head = if is_below { below.find('\n').unwrap_or(below.len()) } else { 0 };
     let mut rest = below.get(head..).unwrap_or_default().trim_start();

@@ -13,7 +13,7 @@ use super::shapes::{Fields, Mistake, array, list, number, parsed, switch, text, 
 use super::yaml::Value;
 use super::{FORMAT, Fingerprint, PlanFile, Reduced, fingerprint};
 
-/// Reads a plan file that must be one of `robot` as it is.
+/// Reads a plan file, which must be for the present numbers of `robot`.
 pub(super) fn read(root: &Node, robot: &Robot) -> Result<PlanFile, Mistake> {
     belongs_to(root, robot)?;
     let keys = ["format", "robot", "fingerprint", "reduced", "rewritten"];
@@ -102,7 +102,7 @@ fn accuracy(node: &Node) -> Result<Accuracy, Mistake> {
     })
 }
 
-/// A relative error: finite, and not negative.
+/// Reads a relative error, which must be finite and not negative.
 fn difference(node: &Node) -> Result<f64, Mistake> {
     let difference = number(node)?;
     if difference.is_finite() && difference >= 0.0 {
@@ -172,7 +172,7 @@ fn switches(node: &Node) -> Result<Switches, Mistake> {
     Ok(switches)
 }
 
-/// A plan file; what is left out has its default.
+/// Writes a plan file. Choices with default values are left out.
 pub(super) fn written(file: &PlanFile) -> Value {
     let PlanFile { robot, fingerprint, reduced, rewritten } = file;
     let functions = rewritten.iter().map(|(function, rewritten)| (function.name(), written_function(rewritten)));
@@ -253,7 +253,7 @@ fn written_joint(joint: &JointPlan) -> Value {
     Value::Mapping(entries.into_iter().flatten().collect())
 }
 
-/// A choice that is not made is not written.
+/// Returns key and value of a choice; `None`, so that nothing is written, for a choice that is not made.
 fn chosen<T: Default + PartialEq>(
     key: &'static str,
     value: &T,

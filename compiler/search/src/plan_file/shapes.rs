@@ -1,5 +1,5 @@
-//! The shapes of values in a plan file: mappings with known keys, lists, words and numbers. The first mistake ends the
-//! reading, for a program has written the file.
+//! The shapes of values in a plan file: mappings with known keys, lists, words and numbers. Reading ends at the first
+//! mistake, because a program has written the file.
 
 use std::fmt::Display;
 use std::ops::Range;
@@ -31,7 +31,7 @@ impl Mistake {
     }
 }
 
-/// A mapping of which each key is known.
+/// A mapping that has only known keys.
 pub(super) struct Fields<'d> {
     node: &'d Node,
     what: &'static str,
@@ -51,7 +51,7 @@ impl<'d> Fields<'d> {
         Ok(Self { node, what })
     }
 
-    /// The value of a key that must be there.
+    /// Reads the value of a key that must be there.
     pub(super) fn required<T>(
         &self,
         key: &str,
@@ -61,7 +61,7 @@ impl<'d> Fields<'d> {
         read(self.node.get(key).ok_or_else(missing)?)
     }
 
-    /// The value of a key, or the default where it is not there.
+    /// Reads the value of a key; returns the default if the key is not there.
     pub(super) fn optional<T: Default>(
         &self,
         key: &str,
@@ -71,7 +71,7 @@ impl<'d> Fields<'d> {
     }
 }
 
-/// A list.
+/// Reads a list.
 pub(super) fn list<T>(node: &Node, read: impl Fn(&Node) -> Result<T, Mistake>) -> Result<Vec<T>, Mistake> {
     match &node.content {
         Content::Sequence(items) => items.iter().map(|item| read(item)).collect(),
@@ -79,7 +79,7 @@ pub(super) fn list<T>(node: &Node, read: impl Fn(&Node) -> Result<T, Mistake>) -
     }
 }
 
-/// A list of exactly `N`.
+/// Reads a list of exactly `N` items.
 pub(super) fn array<const N: usize, T>(
     node: &Node,
     read: impl Fn(&Node) -> Result<T, Mistake>,
@@ -89,7 +89,7 @@ pub(super) fn array<const N: usize, T>(
     items.try_into().map_err(|_| Mistake::new(node.span.clone(), format!("a list of {found} where {N} are needed")))
 }
 
-/// A text.
+/// Reads a text.
 pub(super) fn text(node: &Node) -> Result<&str, Mistake> {
     match &node.content {
         Content::Scalar(scalar) => Ok(&scalar.text),
@@ -97,12 +97,12 @@ pub(super) fn text(node: &Node) -> Result<&str, Mistake> {
     }
 }
 
-/// The value that a text spells in the grammar of its type.
+/// Reads a text, and parses it as a value of type `T`.
 pub(super) fn parsed<T: FromStr<Err: Display>>(node: &Node) -> Result<T, Mistake> {
     text(node)?.parse().map_err(|error: T::Err| Mistake::new(node.span.clone(), error.to_string()))
 }
 
-/// The word must be one of these words.
+/// Reads a word, which must be one of `words`, and returns its value.
 pub(super) fn word<T: Copy>(node: &Node, what: &str, words: &[(T, &str)]) -> Result<T, Mistake> {
     let word = text(node)?;
     words.iter().find(|(_, name)| *name == word).map(|(value, _)| *value).ok_or_else(|| {
@@ -113,7 +113,7 @@ pub(super) fn word<T: Copy>(node: &Node, what: &str, words: &[(T, &str)]) -> Res
     })
 }
 
-/// The value must be `true` or `false`.
+/// Reads `true` or `false`.
 pub(super) fn switch(node: &Node) -> Result<bool, Mistake> {
     match plain(node) {
         Some("true") => Ok(true),
@@ -122,15 +122,15 @@ pub(super) fn switch(node: &Node) -> Result<bool, Mistake> {
     }
 }
 
-/// A whole number, not negative.
+/// Reads a whole number that is not negative.
 pub(super) fn whole<T: TryFrom<usize>>(node: &Node) -> Result<T, Mistake> {
-    // the same digits, and nothing else: no sign, no zero before them
+    // only the digits that the number is written with: no sign, no zero before them
     let whole = |digits: &str| digits.parse().ok().filter(|number: &usize| number.to_string() == digits);
     let number = plain(node).and_then(whole).and_then(|number| T::try_from(number).ok());
     number.ok_or_else(|| Mistake::wrong_shape(node, "a whole number"))
 }
 
-/// A decimal number, or YAML's words for infinity and not-a-number.
+/// Reads a decimal number, or YAML's words for infinity and not-a-number.
 pub(super) fn number(node: &Node) -> Result<f64, Mistake> {
     let number = match plain(node) {
         Some(".inf") => Some(f64::INFINITY),

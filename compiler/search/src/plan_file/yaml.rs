@@ -7,14 +7,14 @@ use std::fmt::Write;
 pub(super) enum Value {
     /// A text of one line that is written without quotes.
     Plain(String),
-    /// A text.
+    /// A text, which is quoted where YAML needs it.
     Text(String),
     List(Vec<Value>),
     Mapping(Vec<(&'static str, Value)>),
 }
 
 impl Value {
-    /// A number, with all digits that it needs to be read back.
+    /// Writes a number with all digits that it needs to be read back.
     pub(super) fn number(value: f64) -> Self {
         let magnitude = value.abs();
         Self::Plain(match value {
@@ -34,7 +34,8 @@ impl Value {
         out
     }
 
-    /// A mapping or a list in lines of its own; the first begins where `out` ends, the others behind `indent` blanks.
+    /// Writes a mapping or a list in lines of its own; the first line begins where `out` ends, the others after
+    /// `indent` blanks.
     fn block(&self, indent: usize, out: &mut String) {
         let margin = " ".repeat(indent);
         match self {
@@ -87,7 +88,8 @@ impl Value {
     }
 }
 
-/// A text: as it is where it can mean nothing else, in lines of its own where it has lines, else in quotation marks.
+/// Returns a text as YAML: without quotes if it can mean nothing else, as a block if it consists of lines, else in
+/// quotation marks.
 fn scalar(text: &str, indent: usize) -> String {
     let is_line = |line: &str| !line.is_empty() && !line.starts_with(' ') && is_visible(line);
     if let Some(lines) = text.strip_suffix('\n').filter(|lines| lines.split('\n').all(is_line)) {

@@ -121,7 +121,8 @@ impl Pattern {
     }
 }
 
-/// The meaning of the name of a column, whose rows are numbers or lists. A list is never that of a single joint.
+/// Returns the meaning of the name of a column of numbers or, with `is_list`, of lists. A column of lists never belongs
+/// to a single joint.
 pub(crate) fn meaning(name: &str, is_list: bool) -> Meaning {
     if is_list {
         return by(&LISTS, name);

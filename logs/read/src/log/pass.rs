@@ -78,7 +78,7 @@ pub enum Interruption {
     Beginning,
     /// Nothing was measured for some time.
     Gap {
-        /// s
+        /// The duration of the gap, s.
         seconds: f64,
     },
     /// Time went back.

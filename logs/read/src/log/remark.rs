@@ -19,7 +19,7 @@ pub enum Remark {
     File(String),
     /// Positions of a joint may be in degrees: no unit is given, and their range is wide.
     MayBeDegrees {
-        /// The joint by the log's name.
+        /// The name of the joint in the log.
         joint: String,
         /// The range of the positions, rad, if they are in radians.
         range: f64,
@@ -42,7 +42,7 @@ pub enum Remark {
     },
     /// A position keeps one value while the joint moves.
     PositionFrozen {
-        /// The joint by the log's name.
+        /// The name of the joint in the log.
         joint: String,
         /// The times of the first and of the last sample with the value, s.
         times: [f64; 2],

@@ -1,4 +1,4 @@
-//! Survey of a log, by one reading of it.
+//! Surveys a log by reading it once.
 
 mod agreement;
 mod runs;
@@ -23,8 +23,8 @@ use crate::signal::spikes::{Spike, Spikes};
 use crate::{Log, LogError};
 
 impl Log {
-    /// Reads the log once: runs, ranges, what is missing, and the cut-off that its spectrum chooses. `progress` is told
-    /// the share that was read, 0 to 1.
+    /// Reads the log once and reports runs, ranges, messages that are left out, and a cut-off from the spectrum of the
+    /// motion. `progress` is called with the fraction that was read, 0 to 1.
     ///
     /// # Errors
     ///
@@ -33,8 +33,8 @@ impl Log {
         Survey::of(self, progress)
     }
 
-    /// How much of the longest run a filter of a cut-off, Hz, leaves, s: zero, where it drops all of it. The survey is
-    /// of this log, by whatever filter.
+    /// Returns the duration that a filter with this cut-off, Hz, leaves of the longest run, s; zero if it drops the
+    /// whole run. The survey is of this log, with any filter.
     #[must_use]
     #[expect(clippy::cast_precision_loss, reason = "states of a run")]
     pub fn left(&self, survey: &Survey, cutoff: f64) -> f64 {
@@ -43,16 +43,17 @@ impl Log {
     }
 }
 
-/// Seconds of a segment of the spectrum, and those that are tried where no run is as long.
+/// Length of a segment of the spectrum, s, and the shorter lengths that are tried if no run is long enough.
 const SEGMENTS: [f64; 3] = [4.0, 2.0, 1.0];
 
-/// The lowest cut-off that a spectrum chooses, Hz: a lower one costs seconds at both ends of a run.
+/// The lowest cut-off that is chosen from a spectrum, Hz: a lower one would drop seconds at both ends of a run.
 const LOWEST: f64 = 2.0;
 
-/// The highest cut-off that a spectrum chooses, of the rate: beyond it differences are no derivatives.
+/// The highest cut-off that is chosen from a spectrum, as a part of the sampling rate: above it, differences do not
+/// approximate derivatives.
 const HIGHEST_CHOSEN: f64 = 0.2;
 
-/// Positions over more than this, rad, may be degrees.
+/// Range of positions, rad, above which they may be in degrees.
 const WIDEST: f64 = 4.0 * std::f64::consts::PI;
 
 /// Survey of a log.
@@ -61,58 +62,61 @@ const WIDEST: f64 = 4.0 * std::f64::consts::PI;
 pub struct Survey {
     /// Counts of messages that were read, and of those that were left out.
     pub counts: Counts,
-    /// The runs, the first thousand of them.
+    /// The first thousand runs.
     pub runs: Vec<Run>,
-    /// How many runs there are.
+    /// Number of runs.
     pub run_count: u64,
-    /// States of the longest run on an even grid, as the filter takes them.
+    /// Number of states of the longest run after interpolation to an even grid.
     pub longest: u64,
-    /// Efforts that stand far out of those about them for a sample or two, the farthest ten thousand of each joint, and
-    /// fewer of more than a hundred joints; in the motions, unless
-    /// [`Options::leave_out_spikes`](crate::Options::leave_out_spikes) says otherwise.
+    /// Efforts of one or two samples that differ strongly from the samples before and after. At most the ten thousand
+    /// largest spikes of each joint are kept, and fewer with more than a hundred joints. The motions contain them,
+    /// unless [`Options::leave_out_spikes`](crate::Options::leave_out_spikes) is set.
     pub spikes: Vec<Spike>,
-    /// The first number that made a message invalid, of those that [`Counts::not_finite`] counts.
+    /// The first number that made a message invalid; [`Counts::not_finite`] counts such messages.
     pub invalid_sample: Option<InvalidSample>,
-    /// By joint: the least and the greatest position, rad or m.
+    /// For each joint the smallest and largest position, rad or m.
     pub positions: Vec<(f64, f64)>,
-    /// By joint: the least and the greatest velocity, rad/s or m/s; empty where the log has none.
+    /// For each joint the smallest and largest velocity, rad/s or m/s; empty if the log has no velocities.
     pub velocities: Vec<(f64, f64)>,
-    /// By joint: the least and the greatest torque, N m, or force, N; empty where the log has none.
+    /// For each joint the smallest and largest torque, N m, or force, N; empty if the log has no efforts.
     pub efforts: Vec<(f64, f64)>,
-    /// By joint: how far velocities are from the differences of positions, root mean square, of those differences;
-    /// empty where the log has no velocities.
+    /// For each joint the difference between measured velocities and differences of positions, root mean square,
+    /// relative to the latter; empty if the log has no velocities.
     pub disagreement: Vec<f64>,
-    /// Positions that keep one value while the measured velocity says that the joint moves.
+    /// Positions that keep one value although the measured velocity shows that the joint moves.
     pub frozen_positions: Vec<FrozenPosition>,
     /// The cut-off of the filter.
     pub cutoff: Cutoff,
-    /// States at each end of a run that the filter drops; a run with no more than twice as many gives none.
+    /// Number of states at each end of a run that the filter drops. A run with at most twice this number gives no
+    /// states.
     pub dropped: usize,
 }
 
-/// The cut-off of the filter, and where it is from.
+/// The cut-off of the filter, and its source.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cutoff {
-    /// The options say it.
+    /// The options give the cut-off.
     Given {
-        /// Hz
+        /// The cut-off, Hz.
         hertz: f64,
     },
-    /// The spectrum of positions chose it: what moves is in the pass band, which ends at two thirds of the cut-off.
+    /// The cut-off follows from the spectrum of positions: the motion is in the pass band, which ends at two thirds of
+    /// the cut-off.
     Spectrum {
-        /// Hz
+        /// The cut-off, Hz.
         hertz: f64,
-        /// By joint the frequency at which its motion goes under in noise, Hz.
+        /// For each joint the frequency, Hz, above which its motion cannot be distinguished from noise.
         ends: Vec<f64>,
-        /// Whether it is the lowest or the highest that is chosen, 2 Hz or a fifth of the rate.
+        /// Whether the cut-off is limited to the lowest or highest one that is chosen: 2 Hz, or a fifth of the sampling
+        /// rate.
         bounded: bool,
     },
-    /// No run is as long as a segment of the spectrum, a second or 64 states.
+    /// No cut-off: all runs are shorter than a segment of the spectrum, one second or 64 states.
     Unknown,
 }
 
 impl Cutoff {
-    /// Hz; none if it is not known.
+    /// Returns the cut-off, Hz; `None` if there is none.
     #[must_use]
     pub fn hertz(&self) -> Option<f64> {
         match self {
@@ -174,8 +178,8 @@ impl Survey {
         })
     }
 
-    /// The joint whose positions may be degrees, and their range: nobody said that they are radians, and they range
-    /// over more than 4π.
+    /// Returns the joint whose positions may be in degrees, and their range: no unit is given, and the range is more
+    /// than 4π.
     #[must_use]
     pub fn may_be_degrees(&self, log: &Log) -> Option<(usize, f64)> {
         if log.options.angles != Angles::Unsaid {
@@ -188,7 +192,7 @@ impl Survey {
 }
 
 impl Log {
-    /// The cut-off of the options, or else the one that the spectra of positions choose.
+    /// Returns the cut-off of the options or, without one, that from the spectra of positions.
     fn cutoff(&self, spectra: &[Spectrum]) -> Result<Cutoff, LogError> {
         let rate = 1.0 / self.layout.step;
         match self.options.cutoff {
@@ -205,34 +209,35 @@ impl Log {
         }
     }
 
-    /// Seconds of a stamp, ns, since the origin.
+    /// Converts a stamp, ns, to seconds since the origin.
     #[expect(clippy::cast_precision_loss, reason = "a quarter of a ns after a month")]
     pub(crate) fn seconds(&self, time: i64) -> f64 {
         time.saturating_sub(self.layout.origin) as f64 * 1e-9
     }
 
-    /// States at each end of a run that a filter drops, if it needs `half` numbers on each side.
+    /// Returns the number of states at each end of a run that are dropped, if the filter needs `half` numbers on each
+    /// side.
     pub(crate) fn dropped(&self, half: usize) -> usize {
         half.saturating_add(self.of_differences())
     }
 
-    /// States at each end of a run that differences drop.
+    /// Returns the number of states at each end of a run that are dropped because of differences.
     pub(crate) fn of_differences(&self) -> usize {
         if self.layout.has_velocities { Kernel::of_difference() } else { 2 * Kernel::of_difference() }
     }
 }
 
-/// The findings that a survey gathers from state to state.
+/// The results that a survey gathers state by state.
 struct Gathered {
     spectra: [Spectrum; 3],
     ranges: Vec<(f64, f64)>,
     spikes: Spikes,
-    /// The places of efforts among the numbers of a state.
+    /// The indices of efforts among the numbers of a state.
     efforts: Range<usize>,
     agreement: Agreement,
     frozen_positions: FrozenPositions,
     runs: Runs,
-    /// The even grid of this run, and its rows so far with those of the runs before.
+    /// The even grid of this run, and the number of rows so far, including previous runs.
     grid: Option<Grid>,
     rows: u64,
 }

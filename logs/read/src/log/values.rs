@@ -1,4 +1,4 @@
-//! The texts in a column of a table, such as the names of the arms that it is of.
+//! Counts the texts in a column of a table, such as the names of arms.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -12,15 +12,15 @@ use crate::{Log, LogError, Options};
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct LabelValue {
-    /// The text; empty where the cell is empty.
+    /// The text; empty for empty cells.
     pub value: String,
-    /// How many rows have it.
+    /// Number of rows with this text.
     pub rows: u64,
 }
 
 impl Log {
-    /// Counts the texts in a column of tables, in the order in which they occur. The numbers of a column count as
-    /// texts. `progress` is told the fraction that was read, 0 to 1.
+    /// Counts the texts in a column of tables, in the order in which they occur. Numbers are treated as texts.
+    /// `progress` is called with the fraction that was read, 0 to 1.
     ///
     /// # Errors
     /// If a file cannot be read to its end or is no table, or the column is missing or has more than a thousand texts.

@@ -1,4 +1,5 @@
-//! A wide symmetric filter by Fourier transforms: the cost for each number grows with the logarithm of the width only.
+//! Applies a wide symmetric filter by Fourier transforms: the cost for each number grows only with the logarithm of the
+//! width.
 //!
 //! Overlap and save (A. V. Oppenheim, R. W. Schafer, "Discrete-Time Signal Processing", 3rd ed., 2010, section 8.7.3).
 
@@ -10,19 +11,19 @@ use rustfft::{Fft, FftPlanner};
 
 use crate::limits::work;
 
-/// A filter whose sum is one, by blocks that begin at the first number.
+/// A filter with unit sum, which is applied in blocks from the first number on.
 #[derive(Clone)]
 pub(crate) struct Convolution {
     forward: Arc<dyn Fft<f64>>,
     inverse: Arc<dyn Fft<f64>>,
-    /// The transform of the filter; it is real, for the filter is symmetric.
+    /// The Fourier transform of the filter, which is real because the filter is symmetric.
     gains: Vec<f64>,
-    /// How many numbers on each side the filter has.
+    /// Number of weights of the filter on each side of the middle.
     half: usize,
 }
 
 impl Convolution {
-    /// Makes a convolution of a filter's weights, from the middle outwards.
+    /// Makes a convolution from the weights of a filter, from the middle outwards.
     pub(crate) fn new(weights: &[f64]) -> Self {
         let half = weights.len() - 1;
         let length = (3 * half).next_power_of_two();
@@ -39,25 +40,25 @@ impl Convolution {
         Self { forward, inverse: planner.plan_fft_inverse(length), gains, half }
     }
 
-    /// Numbers that a block makes of [`Convolution::length`] numbers.
+    /// Returns how many filtered numbers a block gives from [`Convolution::length`] numbers.
     pub(crate) fn block(&self) -> usize {
         self.length() - 2 * self.half
     }
 
-    /// Numbers that a block is made of.
+    /// Returns how many input numbers a block needs.
     pub(crate) fn length(&self) -> usize {
         self.gains.len()
     }
 
-    /// The first `count` numbers that have all their neighbours, filtered. What a block makes depends on all that it is
-    /// made of, in the last bits: pieces are the whole where each begins with a block, and has what its last block is
-    /// made of, or all that there is.
+    /// Returns the first `count` filtered numbers for which all neighbours are known. The last bits of a block's
+    /// results depend on all its input. So pieces give the same bits as the whole only if each piece begins with a
+    /// block, and has all input of its last block, or all numbers that exist.
     pub(crate) fn smooth(&self, numbers: &[f64], count: usize) -> Vec<f64> {
         let mut filtered = Vec::with_capacity(count.next_multiple_of(self.block()));
         let mut values = vec![Complex::default(); self.length()];
         while filtered.len() < count {
             let numbers = &numbers[filtered.len()..];
-            // what stands still stays as it is
+            // subtracts the first number, so that a constant is unchanged
             let level = numbers[0];
             values.fill(Complex::default());
             for (value, number) in values.iter_mut().zip(numbers) {
@@ -69,7 +70,7 @@ impl Convolution {
                 *value *= gain;
             }
             self.inverse.process(&mut values);
-            // the first number that has all its neighbours is the middle of the first of them
+            // the first result that has all neighbours is `half` numbers after the block's start
             filtered.extend(values[self.half..][..self.block()].iter().map(|value| value.re + level));
         }
         filtered.truncate(count);

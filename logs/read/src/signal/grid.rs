@@ -1,34 +1,36 @@
-//! Samples at jittering times as samples at even ones.
+//! Resamples samples with jittering times to even times.
 
 use std::collections::VecDeque;
 
 /// Resamples one run to an even grid that begins at its first sample.
 ///
-/// Between the middle two of four samples: the cubic through the four. At the ends of a run, and where samples are
-/// closer than half a step, where that cubic would blow up their noise: the straight line.
+/// Between the middle two of four samples, it interpolates by the cubic through the four. At the ends of a run, it
+/// interpolates linearly, and also where samples are closer than half a step, because the cubic would amplify their
+/// noise.
 pub(crate) struct Grid {
-    /// ns
+    /// Step of the grid, ns.
     step: f64,
     /// Time of the run's first sample, ns.
     begin: i64,
-    /// The samples about the next rows, with ns since the run's first.
+    /// The samples around the next rows, with their times since the run's first sample, ns.
     near: VecDeque<(f64, Vec<f64>)>,
-    /// The next row of the grid.
+    /// Index of the next row of the grid.
     row: u64,
-    /// How many samples the run had.
+    /// Number of samples of the run.
     count: u64,
 }
 
 impl Grid {
-    /// Steps by which the last sample of a run may be before a row that has it: stamps are rounded.
+    /// Largest time, in steps, by which the last sample of a run may be before the grid's last row, because stamps are
+    /// rounded.
     pub(crate) const CLOSE: f64 = 1e-3;
 
-    /// A grid of a step, ns, for a run that begins at a time, ns.
+    /// Makes a grid with this step, ns, for a run that begins at this time, ns.
     pub(crate) fn new(step: f64, begin: i64) -> Self {
         Self { step, begin, near: VecDeque::with_capacity(4), row: 0, count: 0 }
     }
 
-    /// Takes the next sample; `emit` takes the rows that are known by it.
+    /// Adds the next sample; `emit` is called with each row that can now be computed.
     #[expect(clippy::cast_precision_loss, reason = "ns since the run's beginning")]
     pub(crate) fn push(&mut self, time: i64, numbers: &[f64], emit: &mut impl FnMut(&[f64])) {
         let recycled = if self.near.len() == 4 { self.near.pop_front() } else { None };
@@ -44,7 +46,7 @@ impl Grid {
         }
     }
 
-    /// Ends the run: the rows of its last interval.
+    /// Ends the run; `emit` is called with the rows of its last interval.
     pub(crate) fn finish(mut self, emit: &mut impl FnMut(&[f64])) {
         match self.near.len() {
             0 => {}
@@ -53,11 +55,11 @@ impl Grid {
         }
     }
 
-    /// The rows between a sample and the next one; with `last` also that at its end.
+    /// Computes the rows between a sample and the next one; with `last` also the row at its end.
     #[expect(clippy::cast_precision_loss, reason = "rows are fewer than 2^53")]
     fn emit(&mut self, first: usize, last: bool, emit: &mut impl FnMut(&[f64])) {
         let (begin, end) = (self.near[first].0, self.near[first + 1].0);
-        // the last sample is one of the grid
+        // the grid also has a row at the last sample
         let end = if last { end + Self::CLOSE * self.step } else { end };
         let is_cubic = first == 1
             && self.near.len() == 4

@@ -1,49 +1,48 @@
-//! The filter: a symmetric low-pass of finite support, and central differences.
+//! The filter of logs: a symmetric low-pass filter of finite length, and central differences.
 //!
-//! A window of Kaiser over the ideal low-pass (A. V. Oppenheim, R. W. Schafer, "Discrete-Time Signal Processing", 3rd
-//! ed., 2010, section 7.6; J. F. Kaiser, 1974): with the cut-off `f_c` and the step `T`,
+//! The ideal low-pass filter with a Kaiser window (A. V. Oppenheim, R. W. Schafer, "Discrete-Time Signal Processing",
+//! 3rd ed., 2010, section 7.6; J. F. Kaiser, 1974): with the cut-off `f_c` and the step `T`,
 //!
 //! `h_k = 2 f_c T sinc(2 f_c T k) I0(β sqrt(1 − (k/M)²)) / I0(β)`, |k| ≤ M, divided by their sum.
 //!
-//! It passes frequencies below 2/3 f_c and stops those above 4/3 f_c, both to a thousandth; at f_c it halves. It
-//! is symmetric, so its phase is zero. Derivatives are central differences of eighth order (B. Fornberg, 1988) of what
-//! it returns; they are short of the derivative of a sine by less than (ωT)⁸/630 of it.
+//! It passes frequencies below 2/3 f_c and stops those above 4/3 f_c, both up to a thousandth; at f_c the gain is one
+//! half. It is symmetric, so its phase is zero. Derivatives are central differences of eighth order (B. Fornberg, 1988)
+//! of the filtered numbers. For a sine, they are too small by less than the part (ωT)⁸/630.
 
 use crate::limits::work;
 use crate::signal::convolution::Convolution;
 
-/// Attenuation of the stop band, dB: half a thousandth passes. The pass band may ripple as much about a gain that
-/// ripples itself.
+/// Attenuation of the stop band, dB: half a thousandth passes. The ripple of the pass band has the same size.
 const ATTENUATION: f64 = 66.0;
 
-/// Half the width of the transition, of the cut-off.
+/// Half the width of the transition band, as a part of the cut-off.
 const HALF_TRANSITION: f64 = 1.0 / 3.0;
 
-/// Central differences of eighth order; those on the left are their negatives.
+/// Weights of central differences of eighth order on the right; those on the left are their negatives.
 const DIFFERENCES: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
 
-/// A filter of more numbers on each side is applied by Fourier transforms.
+/// Number of weights on each side above which a filter is applied by Fourier transforms.
 const WIDE: usize = 1024;
 
 /// A symmetric filter.
 #[derive(Clone, Debug)]
 pub(crate) struct Kernel {
-    /// From the middle outwards.
+    /// The weights from the middle outwards.
     weights: Vec<f64>,
-    /// How it is applied, if it is wide.
+    /// The convolution that applies the filter, if it is wide.
     convolution: Option<Convolution>,
-    /// s
+    /// Step between numbers, s.
     step: f64,
 }
 
-/// The highest cut-off, of the rate: its transition ends at half the rate.
+/// The highest cut-off as a part of the sampling rate: its transition band ends at half the rate.
 pub(crate) const HIGHEST: f64 = 0.5 / (1.0 + HALF_TRANSITION);
 
-/// How much lower than the cut-off the pass band ends.
+/// Ratio of the end of the pass band to the cut-off.
 pub(crate) const PASSED: f64 = 1.0 - HALF_TRANSITION;
 
 impl Kernel {
-    /// The low-pass of a cut-off, Hz, at a step, s.
+    /// Makes the low-pass filter with this cut-off, Hz, for this step, s.
     #[expect(clippy::cast_precision_loss, reason = "weights of a filter that is shorter than a run")]
     pub(crate) fn low_pass(cutoff: f64, step: f64) -> Self {
         use std::f64::consts::PI;
@@ -62,48 +61,51 @@ impl Kernel {
         Self { weights, convolution, step }
     }
 
-    /// How many numbers on each side the low-pass of a cut-off, Hz, at a step, s, needs: told before it is made, for a
-    /// low cut-off may need more than there are, or than any memory has.
+    /// Returns how many numbers on each side the low-pass filter with this cut-off, Hz, needs for this step, s. It is
+    /// known before the filter is made, because a low cut-off may need more numbers than a run or the memory has.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it ends at the largest number")]
     pub(crate) fn half_of(cutoff: f64, step: f64) -> usize {
         let transition = 2.0 * std::f64::consts::PI * cutoff * step * 2.0 * HALF_TRANSITION;
         ((ATTENUATION - 8.0) / (2.285 * transition) / 2.0).ceil() as usize
     }
 
-    /// The lowest cut-off, Hz, at a step, s, whose low-pass needs at most `half` numbers on each side.
+    /// Returns the lowest cut-off, Hz, whose low-pass filter needs at most `half` numbers on each side, for this step,
+    /// s.
     #[expect(clippy::cast_precision_loss, reason = "states of a run")]
     pub(crate) fn lowest_of(half: usize, step: f64) -> f64 {
         (ATTENUATION - 8.0) / (2.285 * 2.0 * half as f64) / (2.0 * std::f64::consts::PI * step * 2.0 * HALF_TRANSITION)
     }
 
-    /// How many numbers on each side the low-pass needs.
+    /// Returns how many numbers on each side the low-pass filter needs.
     pub(crate) fn half(&self) -> usize {
         self.weights.len() - 1
     }
 
-    /// How many numbers on each side a difference needs.
+    /// Returns how many numbers on each side a difference needs.
     pub(crate) const fn of_difference() -> usize {
         DIFFERENCES.len()
     }
 
-    /// The length of a piece is a multiple of this number.
+    /// Returns the number of which the length of a piece must be a multiple.
     pub(crate) fn block(&self) -> usize {
         self.convolution.as_ref().map_or(1, Convolution::block)
     }
 
-    /// How many numbers there must be behind a piece, if the run has as many, so that pieces are the whole.
+    /// Returns how many numbers must follow the beginning of the last block, if the run has so many, so that pieces
+    /// give the same bits as the whole run.
     pub(crate) fn behind(&self) -> usize {
         self.convolution.as_ref().map_or(0, Convolution::length)
     }
 
-    /// The first `count` numbers that have all their neighbours, `half()` on each side, filtered.
+    /// Returns the first `count` filtered numbers for which all neighbours are known, `half()` on each side.
     pub(crate) fn smooth(&self, numbers: &[f64], count: usize) -> Vec<f64> {
         let half = self.half();
         if let Some(convolution) = &self.convolution {
             return convolution.smooth(numbers, count);
         }
         work::add(count * half);
-        // the same order of additions wherever a piece begins, so that pieces are the whole bit for bit
+        // the order of additions does not depend on the beginning of a piece, so that pieces give the same bits as the
+        // whole run
         let at = |window: &[f64]| {
             let pairs = (1..=half).map(|k| self.weights[k] * (window[half - k] + window[half + k]));
             self.weights[0] * window[half] + pairs.sum::<f64>()
@@ -111,7 +113,7 @@ impl Kernel {
         numbers[..count + 2 * half].windows(2 * half + 1).map(at).collect()
     }
 
-    /// The derivative of numbers that have all their neighbours: four fewer at each end.
+    /// Returns the derivative of the numbers for which all neighbours are known: four fewer at each end.
     pub(crate) fn differentiate(&self, numbers: &[f64]) -> Vec<f64> {
         let at = |window: &[f64]| {
             let pairs = (1..=4).map(|k| DIFFERENCES[k - 1] * (window[4 + k] - window[4 - k]));
@@ -121,7 +123,7 @@ impl Kernel {
     }
 }
 
-/// The modified Bessel function I0, by its series.
+/// Returns the modified Bessel function I0, by its series.
 fn bessel(x: f64) -> f64 {
     let mut term = 1.0;
     let mut sum = 1.0;
@@ -161,7 +163,8 @@ mod tests {
         }
     }
 
-    /// By Fourier transforms the numbers are those of the sum, and the work hardly grows with the filter.
+    /// Fourier transforms give the same numbers as the direct sum, and the work hardly grows with the width of the
+    /// filter.
     #[test]
     #[expect(clippy::cast_precision_loss, reason = "small")]
     fn wide_filters_are_applied_as_narrow_ones_are() {
@@ -181,7 +184,7 @@ mod tests {
                 assert!((found - expected).abs() < 1e-13, "{found} {expected}");
             }
             assert!(work < 100 * count as u64 && of_sums == (count * wide.half()) as u64, "{work} {of_sums}");
-            // what stands still, does so to the last bit
+            // a constant is unchanged to the last bit
             let still = vec![0.1; wide.behind()];
             assert!(wide.smooth(&still, 50).iter().all(|number| *number == 0.1));
         }
@@ -210,7 +213,7 @@ mod tests {
         let found = kernel.differentiate(&numbers);
         assert_eq!(found.len(), 1);
         assert!((found[0] - derivative(1.0)).abs() < 1e-10, "{}", found[0]);
-        // of a sine, as the bound says
+        // the error for a sine is below the bound of the module's documentation
         for frequency in [1.0_f64, 5.0, 10.0, 15.0] {
             let w = 2.0 * PI * frequency;
             let numbers: Vec<f64> = (-4..=4).map(|i| (w * f64::from(i) * 0.01).sin()).collect();

@@ -1,6 +1,6 @@
-//! The number in the middle.
+//! The median.
 
-/// The median of numbers, the mean of the middle two of an even count; 0 of none.
+/// Returns the median of numbers: for an even count the mean of the middle two; 0 without numbers.
 #[must_use]
 pub fn median(mut numbers: Vec<f64>) -> f64 {
     numbers.sort_unstable_by(f64::total_cmp);

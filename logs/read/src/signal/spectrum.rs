@@ -1,8 +1,9 @@
-//! Where the motion of a log ends and its noise begins: the spectrum of positions.
+//! Finds from the spectrum of positions the frequency at which the motion of a log ends and its noise begins.
 //!
-//! The method of P. D. Welch (1967): segments of a power of two of rows, at least `seconds` long, half overlapping,
-//! their line of least squares subtracted, in a window of Blackman and Harris (F. J. Harris, 1978, four terms, side
-//! lobes at −92 dB). Segments of very high rates, and of more than 64 columns, are shorter, so that memory is bounded.
+//! The method of P. D. Welch (1967): segments whose number of rows is a power of two, at least `seconds` long, with
+//! half overlap; their least-squares line is subtracted, and they are multiplied by a Blackman-Harris window (F. J.
+//! Harris, 1978, four terms, side lobes at −92 dB). Segments of very high rates, and of more than 64 columns, are
+//! shorter, so that memory is bounded.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -12,33 +13,33 @@ use rustfft::{Fft, FftPlanner};
 
 use crate::limits::MOST_NUMBERS;
 
-/// Power above this many times the noise floor is motion.
+/// Power above this multiple of the noise floor counts as motion.
 const ABOVE_FLOOR: f64 = 10.0;
 
-/// The floor is at least this share of the greatest power: less is not seen beside it through the window.
+/// Smallest noise floor as a part of the largest power: the window cannot resolve less.
 const LEAST_FLOOR: f64 = 1e-10;
 
-/// Frequencies over which power is averaged before it is compared, on each side.
+/// Number of neighbouring frequencies on each side over which power is averaged before it is compared.
 const SMOOTHED: usize = 2;
 
-/// The spectra of some columns, summed over the segments so far.
+/// The power spectra of some columns, summed over the segments so far.
 pub(crate) struct Spectrum {
     fft: Arc<dyn Fft<f64>>,
     window: Vec<f64>,
-    /// By column: the rows of the segment that grows.
+    /// For each column, the rows of the current segment.
     rows: Vec<Vec<f64>>,
-    /// By column and frequency; empty before the first segment.
+    /// The power by column and frequency; empty before the first segment.
     power: Vec<Vec<f64>>,
     segments: u64,
     rate: f64,
 }
 
 impl Spectrum {
-    /// Spectra of columns at a rate, Hz, by segments of at least `seconds`.
+    /// Sets up spectra of columns with this sampling rate, Hz, in segments of at least `seconds`.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "bounded")]
     pub(crate) fn new(columns: usize, rate: f64, seconds: f64) -> Self {
         let room = (MOST_NUMBERS / columns.max(1)).clamp(64, 65_536);
-        // the power of two below
+        // the largest power of two that is not larger
         let longest = 1 << room.ilog2();
         let length = ((seconds * rate).clamp(64.0, 65_536.0).ceil() as usize).next_power_of_two().min(longest);
         let window = |i: usize| {
@@ -55,7 +56,7 @@ impl Spectrum {
         }
     }
 
-    /// Takes a row of a run.
+    /// Adds a row of a run.
     pub(crate) fn push(&mut self, row: &[f64]) {
         for (rows, number) in self.rows.iter_mut().zip(row) {
             rows.push(*number);
@@ -81,13 +82,14 @@ impl Spectrum {
         }
     }
 
-    /// Ends a run: what is left of it is no segment.
+    /// Ends a run; the rest that is shorter than a segment is dropped.
     pub(crate) fn end_run(&mut self) {
         self.rows.iter_mut().for_each(Vec::clear);
     }
 
-    /// By column the frequency, Hz, above which there is no motion: no power, averaged over five neighbours, of ten
-    /// times the floor, which is the median of the upper half of the spectrum. None if no run had a segment.
+    /// Returns for each column the frequency, Hz, above which there is no motion. There, the power, averaged over five
+    /// neighbours, is at most ten times the noise floor, which is the median of the upper half of the spectrum. `None`
+    /// if no run had a segment.
     #[expect(clippy::cast_precision_loss, reason = "frequencies are few")]
     pub(crate) fn ends(&self) -> Option<Vec<f64>> {
         if self.segments == 0 {
@@ -110,7 +112,7 @@ impl Spectrum {
     }
 }
 
-/// The line of least squares through rows: its first value, and what it grows by from row to row.
+/// Returns the least-squares line through rows: its first value, and its increase from row to row.
 #[expect(clippy::cast_precision_loss, reason = "rows of a segment")]
 fn line(rows: &[f64]) -> (f64, f64) {
     let count = rows.len() as f64;
@@ -127,7 +129,7 @@ mod tests {
 
     #[test]
     fn motion_ends_where_its_fastest_sine_is() {
-        // a sine of 3 Hz in noise of a thousandth of it
+        // a sine of 3 Hz with noise of a thousandth of its amplitude
         let mut random = fastrand::Rng::with_seed(5);
         let mut spectrum = Spectrum::new(2, 200.0, 4.0);
         for i in 0..8000 {
@@ -140,7 +142,7 @@ mod tests {
         assert_eq!(ends[1], 0.0, "noise alone is no motion");
     }
 
-    /// Numbers that are held, of a log at a megahertz that never ends.
+    /// The count of stored numbers is bounded, also for a long log with a sampling rate of 1 MHz.
     #[test]
     fn many_columns_hold_no_more_numbers_than_few() {
         for columns in [1, 64, 65, 1024] {

@@ -1,48 +1,50 @@
-//! Efforts that no arm has had: a sample or two that stand far out of those about them.
+//! Finds spikes of efforts: one or two samples that differ so strongly from their neighbours that no arm can have had
+//! these efforts.
 //!
-//! An effort is held against the median of five about it, which a step does not move and a spike of two samples does
-//! not either (F. R. Hampel, The influence curve and its role in robust estimation, JASA 69, 1974). It is a spike where
-//! it is off by far more than efforts are elsewhere in the log, and by more than the joint takes but for one of a
-//! hundred samples: what a sensor says that fails more often than that stays.
+//! An effort is compared with the median of the five samples around it, which a step does not change, nor a spike of
+//! two samples (F. R. Hampel, The influence curve and its role in robust estimation, JASA 69, 1974). It is a spike if
+//! it differs by far more than other efforts of the log do, and by more than the joint's effort in 99 of 100 samples.
+//! So a sensor that fails more often than that has no spikes.
 //!
-//! A low-pass spreads a spike over all that it reaches, where it looks like a push of some length. So spikes are found
-//! in what was measured, before any filter.
+//! A low-pass filter spreads a spike over the length of its kernel, so that it looks like a push. So spikes are
+//! searched in the measured efforts, before any filter.
 
 use std::collections::{BTreeMap, VecDeque};
 
-/// Samples whose median a sample is compared with, and those on one side of it.
+/// Number of samples of the median, and number of samples on each side of the middle one.
 const WINDOW: usize = 5;
 const SIDE: usize = 2;
 
-/// A spike differs from the median by this factor more than nine of ten samples do.
+/// Smallest ratio of the distance of a spike from the median to the distance that nine of ten samples do not exceed.
 const FAR: f64 = 30.0;
 
-/// Candidates that are kept while the log is read: of a joint, and of all.
+/// Largest number of candidates that are kept while the log is read: for each joint, and for all joints.
 const KEPT: usize = 10_000;
 const KEPT_OF_ALL: usize = 1 << 20;
 
-/// Spikes are rare: where more than this part of the states has one, efforts are so.
+/// Largest part of the states that may have a spike. If more have one, it is normal for these efforts, and there are no
+/// spikes.
 const RARE: f64 = 0.02;
 
-/// Bins of a histogram in each octave, and the least octave: what is smaller is the same to any arm.
+/// Number of bins of a histogram in each octave, and the lowest octave, which also counts all smaller numbers.
 const BINS: f64 = 8.0;
 const LEAST_OCTAVE: f64 = -128.0;
 
-/// An effort that stands far out of those about it, for a sample or two.
+/// An effort of one or two samples that differs strongly from the samples before and after.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Spike {
-    /// The number of its message or row, from 1, header and comments not counted.
+    /// The number of the message or row, from 1, header and comments not counted.
     pub message: u64,
-    /// s
+    /// Time, s.
     pub time: f64,
-    /// Its place among the joints that are read, from 0.
+    /// Index of the joint among those that are read, from 0.
     pub joint: usize,
-    /// N m or N
+    /// The effort, N m or N.
     pub effort: f64,
 }
 
-/// How often numbers of each size were there, to an eighth of an octave: memory does not grow.
+/// Counts numbers by their size, with a resolution of an eighth of an octave, so that memory is bounded.
 #[derive(Default)]
 struct Histogram {
     bins: BTreeMap<i32, u64>,
@@ -59,7 +61,7 @@ impl Histogram {
         }
     }
 
-    /// The size that this part of all sizes does not exceed; `None` without sizes.
+    /// Returns the size that this part of all numbers does not exceed; `None` without numbers.
     #[expect(clippy::cast_precision_loss, reason = "a part of states")]
     fn quantile(&self, part: f64) -> Option<f64> {
         let mut below = 0;
@@ -78,17 +80,18 @@ struct Sample {
     effort: f64,
 }
 
-/// One joint.
+/// The search for spikes of one joint.
 #[derive(Default)]
 struct Joint {
     near: VecDeque<Sample>,
-    /// Whether the window has moved on since the run began.
+    /// Whether the window has been full since the run began.
     has_begun: bool,
     sizes: Histogram,
     distances: Histogram,
-    /// The farthest samples, with their distances.
+    /// The samples with the largest distances from the median, with these distances.
     candidates: Vec<(f64, Sample)>,
-    /// How many of them are kept, and the distance of the nearest: what is nearer is no candidate any more.
+    /// Number of candidates that are kept, and the smallest distance among them. Samples with smaller distances are no
+    /// longer added.
     kept: usize,
     least: f64,
 }
@@ -115,7 +118,7 @@ impl Joint {
         self.has_begun = false;
     }
 
-    /// Holds samples of the window against its median.
+    /// Compares samples of the window with its median.
     fn look(&mut self, places: std::ops::RangeInclusive<usize>) {
         let mut efforts: Vec<f64> = self.near.iter().map(|sample| sample.effort).collect();
         efforts.sort_by(f64::total_cmp);
@@ -142,7 +145,7 @@ impl Joint {
     }
 }
 
-/// The spikes of a log that passes by, by joint.
+/// Finds the spikes of each joint while a log is read.
 pub(crate) struct Spikes {
     joints: Vec<Joint>,
 }
@@ -153,7 +156,7 @@ impl Spikes {
         Self { joints: (0..joints).map(|_| Joint { kept, ..Joint::default() }).collect() }
     }
 
-    /// Takes the efforts of a state.
+    /// Adds the efforts of a state.
     pub(crate) fn push(&mut self, message: u64, time: f64, efforts: &[f64]) {
         for (joint, effort) in self.joints.iter_mut().zip(efforts) {
             joint.push(Sample { message, time, effort: *effort });
@@ -194,7 +197,7 @@ mod tests {
 
     fn wave() -> Vec<f64> {
         let mut random = fastrand::Rng::with_seed(4);
-        // with the step that friction makes where a joint turns
+        // with the step of friction where a joint reverses
         let at = |i: u32| {
             let phase = 0.1 * f64::from(i);
             5.0 * phase.sin() + phase.cos().signum() + 0.1 * (random.f64() - 0.5)
@@ -217,7 +220,7 @@ mod tests {
 
     #[test]
     fn what_lasts_and_what_is_usual_is_none() {
-        // a payload, a push of three samples, pulses of a gripper, an arm that stands still
+        // no spikes: a payload, a push of three samples, pulses of a gripper, an arm at rest
         let mut efforts = wave();
         efforts[250..].iter_mut().for_each(|effort| *effort += 100.0);
         assert_eq!(found(&efforts), []);

@@ -119,7 +119,7 @@ pub(crate) fn forward_dynamics<'s>(
 
 /// Returns the solution of A f = b by A = L D Lᵀ; row i of `lower` has the elements (i, 0) to (i, i) of A.
 fn solved<'s>(builder: &'s Builder, lower: &[Vec<Symbol<'s>>], b: Vec<Symbol<'s>>) -> Vec<Symbol<'s>> {
-    // each element of L, with that of L D
+    // the rows of L and of L D: for each element both values
     let mut rows: Vec<Vec<[Symbol<'s>; 2]>> = Vec::new();
     let mut inverses: Vec<Symbol<'s>> = Vec::new();
     let mut x = b;

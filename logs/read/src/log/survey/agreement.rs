@@ -1,6 +1,7 @@
-//! Velocities against the differences of positions.
+//! Compares measured velocities with differences of positions.
 
-/// Velocities against differences of positions: trapezia over each interval.
+/// Compares differences of positions with the integral of measured velocities, by the trapezoidal rule over each
+/// interval.
 pub(super) struct Agreement {
     joints: usize,
     pub(super) previous: Option<(i64, Vec<f64>)>,

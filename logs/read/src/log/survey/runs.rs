@@ -1,24 +1,24 @@
-//! The runs of a log.
+//! Lists the runs of a log.
 
 use crate::log::pass::Interruption;
 use crate::signal::grid::Grid;
 
-/// Runs that are listed; of others only the number is kept.
+/// Largest number of runs that are listed; further runs are only counted.
 const LISTED: usize = 1000;
 
-/// A run: states without an interruption.
+/// A run: successive states without an interruption.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Run {
-    /// Why it begins.
+    /// The reason for which the run begins.
     pub begins: Interruption,
-    /// Its first time, s.
+    /// Time of the first state, s.
     pub start: f64,
-    /// s
+    /// Duration, s.
     pub duration: f64,
-    /// How many states it has.
+    /// Number of states.
     pub states: u64,
-    /// The root mean square deviation of intervals from the log's step, s.
+    /// The root mean square deviation of intervals from the log's median interval, s.
     pub jitter: f64,
     /// The longest interval, s.
     pub longest: f64,
@@ -29,7 +29,7 @@ pub struct Run {
 pub(super) struct Runs {
     ended: Vec<Run>,
     count: u64,
-    /// s
+    /// Duration of the longest run, s.
     longest: f64,
     last: Option<Run>,
     time: f64,
@@ -64,7 +64,7 @@ impl Runs {
         }
     }
 
-    /// Rows of the longest run on a grid of this step, s.
+    /// Returns the number of rows of the longest run on a grid with this step, s.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows of a run")]
     pub(super) fn longest(&mut self, step: f64) -> u64 {
         self.end_run();
