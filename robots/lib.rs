@@ -33,7 +33,7 @@ pub fn all() -> impl Iterator<Item = &'static RobotFile> {
     ROBOTS.iter().chain(TREES)
 }
 
-/// Returns the shipped robot with this name; `None` if there is none.
+/// Returns the shipped robot with this name; `None` if no robot has it.
 #[must_use]
 pub fn find(name: &str) -> Option<&'static RobotFile> {
     all().find(|robot| robot.name == name)

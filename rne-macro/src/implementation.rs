@@ -195,10 +195,10 @@ impl Target<'_> {
     /// Whether a method uses the instructions that the processor has, and not only those for which the program is
     /// compiled.
     ///
-    /// The seven steps must have the same bits on every processor. Short code without sines stays as it is: the test of
-    /// the processor and the call cost one or two nanoseconds, and values of inlined code stay in registers. Measured
-    /// are consecutive calls in `f64`, in a plain build on an AMD EPYC with AVX-512 (`benches/plain_build.rs` with
-    /// these arms):
+    /// The seven steps must have the same bits on every processor. Short code without sines is compiled only once: the
+    /// test of the processor and the call cost one or two nanoseconds, and values of inlined code stay in registers.
+    /// Measured are consecutive calls in `f64`, in a plain build on an AMD EPYC with AVX-512 (`benches/plain_build.rs`
+    /// with these arms):
     ///
     /// | | operations, angles | ns: inlined | asked |
     /// |---|---|---:|---:|

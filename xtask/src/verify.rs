@@ -42,7 +42,7 @@ struct Step {
     /// Environment variables of the command.
     variables: &'static [(&'static str, &'static str)],
     command: &'static [&'static str],
-    /// What the step needs; it is skipped if this is missing.
+    /// Requirements of the step; it is skipped if they are not met.
     needs: Needs,
 }
 
@@ -50,7 +50,7 @@ struct Step {
 /// select by default.
 const TESTS_OF_REST: &str = "TESTS_OF_REST";
 
-/// What a step needs to run.
+/// A requirement of a step.
 enum Needs {
     Nothing,
     /// The oldest compiler that Cargo.toml allows, which rustup installs.

@@ -24,8 +24,8 @@ pub(crate) struct Given<'a, T> {
     pub(crate) element: usize,
 }
 
-/// Checks the inputs and returns them as the arguments of the function. Of inputs that the function does not take only
-/// the name is checked.
+/// Checks the inputs and returns them as the arguments of the function. If the function does not take an input, only
+/// the name of this input is checked.
 fn arguments<'a, T: Number>(
     function: &CompiledFunction,
     inputs: impl Iterator<Item = Result<Given<'a, T>, Failure>>,

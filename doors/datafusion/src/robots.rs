@@ -99,8 +99,8 @@ impl Robots {
         Ok(self.with(&name, [text.as_bytes(), &[]], arm))
     }
 
-    /// Adds a robot under a name. `files` are the bytes of the robot file and of the plan file, the latter empty if
-    /// there is none.
+    /// Adds a robot under a name. `files` are the bytes of the robot file and of the plan file, the latter empty if it
+    /// does not exist.
     fn with(mut self, name: &str, files: [&[u8]; 2], arm: CompiledArm) -> Self {
         let mut hash = Sha256::digest(files.concat()).iter().fold(String::new(), |mut hash, byte| {
             let _ = write!(hash, "{byte:02x}");

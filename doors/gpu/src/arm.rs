@@ -53,7 +53,7 @@ impl GpuRollout {
     }
 }
 
-/// What a launch computes: a function, or a rollout by this function.
+/// The computation of a launch: a function, or a rollout by this function.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Work {
     Function,

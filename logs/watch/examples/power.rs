@@ -1,12 +1,12 @@
-//! Prints what `rne watch` detects: friction and payloads of several sizes, computed into two public logs and into
-//! simulated logs, and how often it gives an alarm without a reason.
+//! Prints which changes `rne watch` detects: friction and payloads of several sizes, added by computation to two public
+//! logs and to simulated logs. It also prints the rate of false alarms.
 //!
 //! ```sh
 //! cargo run --release -p rne-watch --example power
 //! cargo run --release -p rne-watch --example power -- 30
 //! ```
 //!
-//! The number is that of simulated arms; without it there are 300, which takes some minutes.
+//! The argument is the number of simulated arms. The default is 300, which takes some minutes.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -17,22 +17,22 @@ use rne_identify::Structure;
 use rne_logs::Motion;
 use rne_watch::{Baseline, Cause, Changes};
 
-/// Parts of a joint's Coulomb friction, and of a large payload.
+/// Sizes of changes, as parts of a joint's Coulomb friction, or of a large payload.
 const SIZES: [f64; 5] = [0.10, 0.15, 0.25, 0.50, 1.00];
 
-/// How much of a public log is quiet, from its beginning and from its end.
+/// Parts of a public log, from its beginning and from its end, that are used as the quiet log.
 const SPLITS: [f64; 2] = [0.5, 0.6];
 
-/// Motions that are not those of the quiet log: factors of the amplitude and of the frequencies.
+/// Motions that differ from that of the quiet log: factors of the amplitude and of the frequencies.
 const MOTIONS: [[f64; 2]; 7] = [[0.1, 1.0], [0.3, 1.0], [1.0, 0.3], [1.0, 0.5], [0.5, 2.0], [1.0, 2.0], [2.0, 1.0]];
 
-/// Gains of a channel of efforts: dead, of the opposite sign, of another unit or torque constant.
+/// Gains of a channel of efforts: dead, with the opposite sign, with another unit or torque constant.
 const GAINS: [f64; 4] = [0.0, -1.0, 0.5, 0.8];
 
 /// Delays of all efforts, s.
 const DELAYS: [f64; 2] = [0.01, 0.03];
 
-/// Logs of one kind and size of change.
+/// Counts of logs with one kind and size of change.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cell {
     logs: u32,
@@ -86,7 +86,7 @@ fn print(rows: &[Row]) {
     }
 }
 
-/// Alarms of logs in which nothing has changed.
+/// Counts of logs in which nothing has changed, and of their alarms.
 #[derive(Default)]
 struct Quiet {
     logs: u32,
@@ -103,7 +103,7 @@ impl Quiet {
 
     fn print(&self, what: &str) {
         let hours = self.seconds / 3600.0;
-        // for no alarm the bound of 95 % is three
+        // without any alarm, the 95 % bound of their expected number is three
         let most = if self.alarms == 0 { 3.0 } else { f64::from(self.alarms) };
         let bound = if self.alarms == 0 { "at most " } else { "" };
         println!(

@@ -10,57 +10,58 @@ use crate::candidate::{Candidate, Scale};
 use crate::contact::ContactNoise;
 use crate::score::{Estimate, Score};
 
-/// Rows of a stretch that is left out at a time.
+/// Number of rows of a part of the logs that is left out at a time.
 const ROWS: u64 = 20;
 
-/// Stretches that are left out one after the other: at least and at most this many.
+/// Smallest and largest number of parts that are left out one after the other.
 const PARTS: [usize; 2] = [4, 64];
 
-/// The weight of the mean of all candidates of a kind, in stretches.
+/// The weight of the mean over all joints when the inflation of one candidate is estimated, in parts.
 const SHARED: f64 = 4.0;
 
-/// The error of a robot file on another motion than that of its identification, in errors between two logs: files of
-/// the first half of a public log, compared with the second half, have changes of 0.8 thresholds with 1.
+/// The error of a robot file on another motion than that of its identification, in multiples of the error between two
+/// logs. With a value of 1, files from the first half of a public log, compared with the second half, show changes of
+/// up to 0.8 thresholds.
 const DOUBT_OF_FILE: f64 = 2.5;
 
-/// Rows of a joint for each unknown that they may depend on.
+/// Smallest number of rows of a joint for each unknown that they may depend on.
 const ENOUGH: f64 = 2.75;
 
-/// A squared statistic counts as this at most.
+/// Upper limit of a squared statistic in the mean.
 const LARGEST_SQUARE: f64 = 36.0;
 
-/// The parameters of an arm by quiet logs, and how far its model can be trusted.
+/// The parameters of an arm from quiet logs, and the errors of its model.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Baseline {
-    /// Hz: the low-pass of both sides of the equations of motion.
+    /// Cut-off of the low-pass filter of both sides of the equations of motion, Hz.
     pub cutoff: f64,
     /// The parameters with the information of the quiet logs.
     pub model: FittedModel,
-    /// Sizes of the arm's friction, speeds and efforts.
+    /// Magnitudes of the arm's friction, speeds and efforts.
     pub scale: Scale,
-    /// The factor by which the deviation of each candidate is larger than white errors make it, at least 1, in the
-    /// order of [`Candidate::all`](crate::Candidate::all).
+    /// For each candidate, in the order of [`Candidate::all`](crate::Candidate::all), the factor, at least 1, by which
+    /// its standard deviation is larger than with white errors.
     pub inflation: Vec<f64>,
-    /// Degrees of freedom of the deviations, for Student's t.
+    /// Degrees of freedom of the standard deviations, for Student's t.
     pub freedom: f64,
-    /// Root mean square of what the model leaves of each joint's torque, N m or N.
+    /// Root mean square of the model's residual torque of each joint, N m or N.
     pub residual: Vec<f64>,
-    /// Rows of each joint.
+    /// Number of rows of each joint.
     pub rows: u64,
-    /// s
+    /// Duration of the motions, s.
     pub duration: f64,
-    /// The beginning and the end of the quiet logs. `None` where their times do not count from 1970.
+    /// The beginning and the end of the quiet logs. `None` if their times do not count from 1970.
     pub span: Option<[UtcTime; 2]>,
-    /// The factor by which the error of the model is larger than between two logs of one arm: 1, or more for the links
-    /// of a robot file, which come from another motion.
+    /// The factor by which the error of the model is larger than between two logs of one arm: 1 for quiet logs, more
+    /// for the parameters of a robot file, which come from another motion.
     pub doubt: f64,
-    /// The noise of the observer, if it was measured.
+    /// The noise of the momentum observer, if it was measured.
     pub contact: Option<ContactNoise>,
 }
 
 impl Baseline {
-    /// The equations of a robot for a low-pass of this cut-off, Hz.
+    /// Returns the equations of a robot for a low-pass filter with this cut-off, Hz.
     #[must_use]
     pub fn structure(robot: &Robot, cutoff: f64) -> Structure {
         let mut options = Options::default();
@@ -68,11 +69,11 @@ impl Baseline {
         Structure::new(robot, options)
     }
 
-    /// The baseline of quiet logs. `pass` hands on every motion with the number of its run, each time it is called.
+    /// Makes the baseline from quiet logs. `pass` is called several times and passes every motion with the number of
+    /// its run to its argument each time.
     ///
     /// # Errors
-    /// When a motion is of another robot; when the motions make too few rows, or have no efforts; or what `pass` fails
-    /// with.
+    /// When a motion is of another robot; when the motions give too few rows, or have no efforts; or when `pass` fails.
     pub fn of<E: From<MotionError>>(
         structure: &Structure,
         pass: impl FnMut(&mut dyn FnMut(u64, &Motion) -> Result<(), MotionError>) -> Result<(), E>,
@@ -102,11 +103,11 @@ impl Baseline {
         })
     }
 
-    /// Refuses a baseline of too few rows for its unknowns.
+    /// Refuses a baseline with too few rows for its unknowns.
     pub(crate) fn check(&self, structure: &Structure) -> Result<(), WatchError> {
         #[allow(clippy::cast_precision_loss)] // some hundred
         let [rows, unknowns, others] = [self.rows as f64, structure.count() as f64, (structure.dof() - 1) as f64];
-        // of friction a joint feels its own
+        // a joint's torque depends on its own friction only, not on that of the other joints
         let needed = ENOUGH * (unknowns - 3.0 * others);
         if rows >= needed {
             return Ok(());
@@ -115,13 +116,13 @@ impl Baseline {
         Err(WatchError::ShortBaseline { duration: self.duration, needed: self.duration + more, cutoff: self.cutoff })
     }
 
-    /// s: the time for which one row stands.
+    /// Returns the time between two rows, s.
     pub(crate) fn row(&self) -> f64 {
         Options::row(self.cutoff)
     }
 
-    /// The same baseline with the parameters of the robot file in place of those of the quiet logs: for a log that is
-    /// its own baseline.
+    /// Returns this baseline with the parameters of the robot file instead of those of the quiet logs, for a log that
+    /// is its own baseline.
     #[must_use]
     pub fn against_file(mut self, structure: &Structure) -> Self {
         self.doubt = DOUBT_OF_FILE;
@@ -131,8 +132,8 @@ impl Baseline {
     }
 }
 
-/// The mean square of each candidate's statistic in parts of the quiet logs, each compared with all others: 1 if errors
-/// are white; shrunk to the mean of all joints.
+/// Compares each of `parts` parts of the quiet logs with all others. Returns for each candidate the mean square of its
+/// statistic, which is 1 if errors are white, shrunk towards the mean of all joints.
 fn inflation(structure: &Structure, model: &FittedModel, stretches: &Stretches, parts: usize) -> Vec<f64> {
     let dof = structure.dof();
     let list = stretches.list();
@@ -158,8 +159,8 @@ fn inflation(structure: &Structure, model: &FittedModel, stretches: &Stretches, 
     sums.iter().enumerate().map(root_mean_square).collect()
 }
 
-/// The root mean square of what the model of all other quarters leaves of each joint's torque in a quarter of the quiet
-/// logs, N m or N.
+/// Returns the root mean square of each joint's residual torque, N m or N, where each quarter of the quiet logs is
+/// compared with the model of the other quarters.
 fn residual(structure: &Structure, model: &FittedModel, stretches: &Stretches) -> Vec<f64> {
     let list = stretches.list();
     let quarters = (0..PARTS[0]).map(|part| part * list.len() / PARTS[0]..(part + 1) * list.len() / PARTS[0]);
@@ -174,7 +175,7 @@ fn residual(structure: &Structure, model: &FittedModel, stretches: &Stretches) -
     sums.iter().zip(&model.noise).map(|(sum, noise)| sum.root_mean_square().unwrap_or(*noise).max(*noise)).collect()
 }
 
-/// The sum of the products of the rows of a joint: of all unknowns, then of its torque.
+/// Returns the normal equations of a joint over some stretches: the products of all unknowns, then of its torque.
 pub(crate) fn products<'a>(
     structure: &Structure,
     joint: usize,
@@ -186,7 +187,7 @@ pub(crate) fn products<'a>(
     sum
 }
 
-/// The products of all joints.
+/// Returns the normal equations of each joint over some stretches.
 pub(crate) fn products_of_joints<'a>(
     structure: &Structure,
     stretches: impl IntoIterator<Item = &'a Stretch>,
@@ -195,7 +196,7 @@ pub(crate) fn products_of_joints<'a>(
     (0..structure.dof()).map(|joint| products(structure, joint, stretches.iter().copied())).collect()
 }
 
-/// The squares of what a model leaves of the torques of a joint.
+/// The weighted sum of squared residuals of a joint's torques, and the sum of the weights.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Residual {
     squares: f64,
@@ -218,17 +219,17 @@ impl Residual {
     }
 
     pub(crate) fn mean_square(self) -> f64 {
-        // weights are one over the variance
+        // a weight is the reciprocal of the variance
         if self.weight > 0.0 { (self.squares / self.weight).max(0.0) } else { 0.0 }
     }
 
-    /// N m or N; `None` without rows.
+    /// Returns the root mean square of the residual, N m or N; `None` without rows.
     pub(crate) fn root_mean_square(self) -> Option<f64> {
         (self.weight > 0.0).then(|| self.mean_square().sqrt())
     }
 }
 
-/// The squared statistics of stretches, compared with the model of all others.
+/// Returns the squared statistic of each candidate for some stretches, compared with the model of all other stretches.
 fn left_out(structure: &Structure, model: &FittedModel, stretches: &[Stretch]) -> Option<Vec<f64>> {
     let others = model.without(structure, stretches)?;
     let stretches: Vec<&Stretch> = stretches.iter().collect();

@@ -1,4 +1,4 @@
-//! Baselines as files: saved once, and used for every later log of the arm.
+//! Writes and reads baseline files, which are made once and used for every later log of the arm.
 
 use std::fmt::Write as _;
 
@@ -11,22 +11,22 @@ use rne_model::{Report, Robot, one_line};
 use crate::contact::{ContactNoise, JointNoise};
 use crate::{Baseline, Candidate, Scale};
 
-/// The format of baseline files.
+/// The version of the format of baseline files.
 const FORMAT: u32 = 2;
 
 const KIND: Kind = Kind { name: "a baseline file", format: FORMAT };
 
-/// The beginning and the end of the quiet logs, UTC.
+/// The keys of the beginning and the end of the quiet logs, UTC.
 const KEYS_OF_SPAN: [&str; 2] = ["quiet_since", "quiet_until"];
 
-/// No number of a baseline is larger.
+/// Largest magnitude of a number in a baseline file.
 const LARGEST: f64 = 1e60;
 
-/// Two values of the robot file that differ by a smaller part of themselves are the same.
+/// Relative difference below which two values of a robot file count as equal.
 const SAME: f64 = 1e-9;
 
 impl Baseline {
-    /// The text of a baseline file; `logs` says in words from which logs it was made.
+    /// Returns the text of a baseline file; `logs` describes its logs in words.
     #[must_use]
     pub fn to_yaml(&self, robot: &Robot, logs: &str) -> String {
         let structure = Self::structure(robot, self.cutoff);
@@ -85,7 +85,7 @@ impl Baseline {
     /// Reads a baseline file of a robot; `name` is for messages.
     ///
     /// # Errors
-    /// When the text is no baseline file, or one of another robot file, with the place.
+    /// When the text is no baseline file, or that of another robot file; the report gives the position.
     pub fn from_yaml(name: &str, text: &str, robot: &Robot) -> Result<Self, Report> {
         let root = document::read(name, text, KIND)?;
         let read = Reading { name, text, root: &root };
@@ -137,7 +137,7 @@ impl Baseline {
     }
 }
 
-/// A number with all its digits, as YAML writes it.
+/// Formats a number with all its digits for YAML.
 fn written(number: f64) -> String {
     if number.is_infinite() { ".inf".to_owned() } else { format!("{number:?}") }
 }
@@ -173,7 +173,7 @@ impl Reading<'_> {
         self.number_of(self.node(key)?)
     }
 
-    /// The span of the quiet logs, which a baseline has if their times were dates.
+    /// Reads the span of the quiet logs, which a baseline has if their times were dates.
     fn span(&self) -> Result<Option<[UtcTime; 2]>, Report> {
         if self.root.get(KEYS_OF_SPAN[0]).is_none() {
             return Ok(None);
@@ -215,7 +215,7 @@ impl Reading<'_> {
         }
     }
 
-    /// The noise of each joint: infinite for a joint without efforts.
+    /// Reads the noise of each joint, which is infinite for a joint without efforts.
     fn noise(&self, dof: usize) -> Result<Vec<f64>, Report> {
         let node = self.node("noise")?;
         let Content::Sequence(items) = &node.content else { return self.numbers("noise", dof) };
@@ -229,7 +229,7 @@ impl Reading<'_> {
         items.iter().map(number).collect()
     }
 
-    /// The transition of the friction of each joint, as one of `ways`.
+    /// Reads the transition of the friction of each joint, an index below `ways`.
     fn transitions(&self, dof: usize, ways: usize) -> Result<Vec<usize>, Report> {
         let transitions = self.numbers("transitions", dof)?;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // it saturates
@@ -240,7 +240,7 @@ impl Reading<'_> {
         Ok(transitions)
     }
 
-    /// The noise of contacts, which a baseline of parameters alone has not.
+    /// Reads the noise of the momentum observer, which a baseline for parameters only does not have.
     fn contact(&self, dof: usize) -> Result<Option<ContactNoise>, Report> {
         match self.list("contact")?.as_slice() {
             [] => Ok(None),

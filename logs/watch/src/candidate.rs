@@ -12,18 +12,18 @@ pub enum Candidate {
     Coulomb(usize),
     /// Viscous friction of a joint, N m s/rad or N s/m.
     Viscous(usize),
-    /// The part of a joint's torque that does not depend on the motion, N m or N.
+    /// The constant part of a joint's torque, N m or N.
     Offset(usize),
-    /// The mass that the link with the tip carries in addition, kg.
+    /// The additional mass on the link with the tip, kg.
     Payload,
-    /// The delay of the efforts against the positions, s.
+    /// The time by which the efforts lag behind the positions, s.
     Delay,
-    /// The gain of a joint's effort: 1 where the log has the torque of the baseline, 0 where it has nothing of it.
+    /// The gain of a joint's effort: 1 if the log has the torque of the baseline, 0 if it has none of it.
     Gain(usize),
 }
 
 impl Candidate {
-    /// Every candidate of an arm.
+    /// Returns every candidate of an arm.
     #[must_use]
     pub fn all(dof: usize) -> Vec<Self> {
         let parameters = [Self::Coulomb, Self::Viscous, Self::Offset].into_iter();
@@ -34,7 +34,7 @@ impl Candidate {
             .collect()
     }
 
-    /// The joint, counted from 0; a payload and the delay have none.
+    /// Returns the joint, counted from 0; `None` for a payload and the delay.
     #[must_use]
     pub fn joint(self) -> Option<usize> {
         match self {
@@ -56,8 +56,9 @@ impl Candidate {
         }
     }
 
-    /// The changes of all unknowns, and of the gain of each joint, for a change of one of this candidate's numbers: a
-    /// column for each number. A payload has four, its mass and its three first moments, kg m; the others have one.
+    /// Returns one column for each number of this candidate: the changes of all unknowns, and of the gain of each
+    /// joint, if that number changes by 1. A payload has four numbers, its mass, kg, and its three first moments, kg m;
+    /// the others have one.
     pub(crate) fn columns(self, structure: &Structure) -> DMatrix<f64> {
         let count = structure.count() + structure.dof();
         let unit = |at: Option<usize>| {
@@ -85,10 +86,11 @@ impl Candidate {
     }
 }
 
-/// Numbers of a payload that a log tells: its mass and its first moments. Its inertia is too small a part of torques.
+/// Count of a payload's numbers that a log determines: its mass and its first moments. The part of its inertia in the
+/// torques is too small.
 pub(crate) const MOMENTS: usize = 4;
 
-/// Sizes of changes that follow from the arm itself.
+/// Magnitudes of an arm from which the sizes of relevant changes follow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
     /// Coulomb friction of each joint, N m or N: that of the baseline, at least 2 % of the joint's effort.
@@ -97,12 +99,12 @@ pub struct Scale {
     pub speed: Vec<f64>,
     /// Root mean square of each joint's effort, N m or N.
     pub effort: Vec<f64>,
-    /// Mass of all links, kg; 0 where the file has none.
+    /// Mass of all links, kg; 0 if the file has no masses.
     pub mass: f64,
 }
 
 impl Scale {
-    /// The scale of a baseline: the model that was fitted, and the products of all rows of each joint.
+    /// Makes the scale from the fitted model of a baseline, and the normal equations of each joint.
     pub(crate) fn of(structure: &Structure, model: &FittedModel, totals: &[DMatrix<f64>]) -> Self {
         let joints = 0..structure.dof();
         let effort: Vec<f64> =
@@ -120,14 +122,14 @@ impl Scale {
         }
     }
 
-    /// The smallest change that is an event.
+    /// Returns the smallest change that can be an event.
     #[must_use]
     pub fn least(&self, candidate: Candidate) -> f64 {
         self.least_and_error(candidate)[0]
     }
 
-    /// The deviation of a parameter between logs of an arm that has not changed: the error of the model, which does not
-    /// become smaller when a log becomes longer.
+    /// Returns the standard deviation of a parameter between logs of an arm that has not changed. It is an error of the
+    /// model, which does not decrease with the length of a log.
     #[must_use]
     pub fn model_error(&self, candidate: Candidate) -> f64 {
         self.least_and_error(candidate)[1]
@@ -148,19 +150,19 @@ impl Scale {
         }
     }
 
-    /// Whether a candidate's friction is known well enough for this scale.
+    /// Whether the candidate of a statistic is determined well enough to detect its smallest event.
     #[must_use]
     pub fn is_watched(&self, statistic: &Statistic) -> bool {
         statistic.deviation < 2.0 * self.least(statistic.candidate)
     }
 
-    /// A mass, kg; for an arm that is lighter than a person can lift, in proportion to its own mass.
+    /// Returns a mass, kg, which is reduced for an arm lighter than [`LIGHT_ARM`] in proportion to the mass of the arm.
     fn payload(&self, mass: f64) -> f64 {
         if self.mass > 0.0 { mass.min(mass * self.mass / LIGHT_ARM) } else { mass }
     }
 }
 
-/// Root mean square of each joint's speed, rad/s or m/s, by the products of all rows of each joint.
+/// Returns the root mean square of each joint's speed, rad/s or m/s, from the normal equations of each joint.
 pub(crate) fn speeds(structure: &Structure, totals: &[DMatrix<f64>]) -> Vec<f64> {
     let speed = |(joint, total): (usize, &DMatrix<f64>)| {
         let at = FittedModel::place(structure, joint, FrictionParameter::Viscous);
@@ -169,7 +171,7 @@ pub(crate) fn speeds(structure: &Structure, totals: &[DMatrix<f64>]) -> Vec<f64>
     totals.iter().enumerate().map(speed).collect()
 }
 
-/// The mean square of a column of a joint's rows; without a column that of its efforts.
+/// Returns the mean square of a column of a joint's rows, or of its efforts if no column is given.
 fn mean_square(structure: &Structure, joint: usize, total: &DMatrix<f64>, column: Option<usize>) -> f64 {
     let ones = FittedModel::place(structure, joint, FrictionParameter::Offset).map_or(0.0, |one| total[(one, one)]);
     let at = column.unwrap_or(structure.count());

@@ -1,4 +1,4 @@
-//! The changes of an arm's parameters between a baseline and a log.
+//! Finds the changes of an arm's parameters between a baseline and a log.
 
 use std::ops::Range;
 
@@ -13,16 +13,16 @@ use crate::event::{Cause, Event, unit};
 use crate::selection::{Finding, Selection, Statistic};
 use crate::sensor::{Frozen, exchange};
 
-/// The error of the model has grown where its residual is this many times that of the baseline.
+/// Ratio of a residual to that of the baseline above which the error of the model counts as grown.
 const GROWN: f64 = 3.0;
 
-/// s: so long before and after a constant effort the filters change the effort.
+/// Time before and after a constant effort in which the filters change the effort, s.
 const EDGE: f64 = 1.0;
 
-/// A time in a log: the number of the run, and s.
+/// A time in a log: the number of the run, and the time, s.
 type Instant = (u64, f64);
 
-/// A change of all unknowns and gains from one time to another one.
+/// A change of all unknowns and gains between two times of a log.
 #[derive(Clone, Debug, PartialEq)]
 struct Window {
     ends: [Instant; 2],
@@ -33,25 +33,25 @@ struct Window {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Changes {
-    /// The changes that are events, the one that explains most first.
+    /// The changes that are events; the one that explains most comes first.
     pub events: Vec<Event>,
-    /// All other parameters, with their thresholds.
+    /// The changes of all other parameters, with their thresholds.
     pub statistics: Vec<Statistic>,
     /// Root mean square of the torque of each joint that the baseline's model with all changes does not explain, N m
     /// or N.
     pub residual: Vec<f64>,
-    /// The root mean square of the efforts over that of the quiet logs, in the median over the joints. Far from 1, the
-    /// efforts have another unit.
+    /// The root mean square of the efforts over that of the quiet logs; the median over the joints. If it is far from
+    /// 1, the efforts have another unit.
     pub effort_ratio: f64,
-    /// The joints whose efforts are exchanged in the log, counted from 0: all other results are of the log with these
-    /// efforts exchanged back.
+    /// The two joints whose efforts are exchanged in the log, counted from 0. All other results are for the log with
+    /// these efforts exchanged back.
     pub exchanged: Option<[usize; 2]>,
     windows: Vec<Window>,
 }
 
 impl Changes {
-    /// The changes of a log in which the efforts of two joints are exchanged, by the equations with these efforts
-    /// exchanged back.
+    /// Finds the changes of a log in which the efforts of two joints are exchanged, from the equations with these
+    /// efforts exchanged back.
     pub(crate) fn of_exchanged(
         structure: &Structure,
         baseline: &Baseline,
@@ -64,7 +64,7 @@ impl Changes {
         Some(found)
     }
 
-    /// Whether the effort of a joint repeats a value at a time of a run.
+    /// Whether the effort of a joint repeats one value during some times of a run.
     pub(crate) fn is_frozen(&self, joint: usize, run: u64, times: Range<f64>) -> bool {
         let is_near = |event: &Event| event.since - EDGE < times.end && times.start < event.until + EDGE;
         self.events.iter().any(|event| {
@@ -72,7 +72,7 @@ impl Changes {
         })
     }
 
-    /// The changes of a log, given by its equations; `None` where it is too short to compare.
+    /// Finds the changes of a log, which is given by its equations; `None` if it is too short to compare.
     #[must_use]
     pub fn of(structure: &Structure, baseline: &Baseline, log: &Stretches) -> Option<Self> {
         let frozen = Frozen::all(structure, baseline, log.list());
@@ -82,10 +82,10 @@ impl Changes {
         let mut events: Vec<Event> = frozen.iter().map(|frozen| frozen.event(structure, log.list())).collect();
         events.extend(findings.iter().map(|found| event(structure, baseline, &selection, found)));
         let residual = residual(baseline, &selection);
-        // the errors of a file are those of another motion
+        // residuals cannot be compared with a robot file, whose errors are those of another motion
         let has_quiet_log = baseline.doubt == 1.0;
         for (joint, (now, before)) in residual.iter().zip(&baseline.residual).enumerate() {
-            // a change that was found has a shape of its own, which the model need not have
+            // the model may not have the exact shape of a detected change, so a residual may remain
             let is_explained =
                 findings.iter().any(|found| found.statistic.candidate.joint().is_none_or(|of| of == joint));
             // friction at rest has any value between both directions
@@ -96,8 +96,8 @@ impl Changes {
         }
         let ends = |window: &Range<usize>| {
             let list = &selection.stretches[window.clone()];
-            // a change that is there from the first row to the last is also there before and after them, in runs that
-            // are too short to have rows
+            // a change from the first row to the last one also exists before and after them, in runs that are too short
+            // to have rows
             let begin = list.first().filter(|_| window.start > 0);
             let end = list.last().filter(|_| window.end < selection.stretches.len());
             [
@@ -111,7 +111,7 @@ impl Changes {
         Some(Self { events, statistics: selection.statistics(), residual, effort_ratio, exchanged: None, windows })
     }
 
-    /// The torques that the changes add along a motion of a run, joint by joint, N m or N.
+    /// Returns for each joint the torques that the changes add along a motion of a run, N m or N.
     ///
     /// # Errors
     /// When the motion is of another robot, or has numbers that are not finite.
@@ -149,7 +149,7 @@ impl Changes {
         Ok(sum)
     }
 
-    /// The statistic that is nearest to its threshold, of those that the logs determine.
+    /// Returns the statistic that is nearest to its threshold, among those that the logs determine.
     #[must_use]
     pub fn nearest(&self, scale: &Scale) -> Option<&Statistic> {
         let watched = self.statistics.iter().filter(|statistic| scale.is_watched(statistic));
@@ -157,7 +157,8 @@ impl Changes {
     }
 }
 
-/// The efforts of a log over those of the baseline, in the median over the joints that have efforts in both.
+/// Returns the ratio of the efforts of a log to those of the baseline; the median over the joints that have efforts in
+/// both.
 fn effort_ratio(structure: &Structure, baseline: &Baseline, log: &Stretches) -> f64 {
     let totals = products_of_joints(structure, log.list());
     let now = Scale::of(structure, &baseline.model, &totals).effort;
@@ -166,7 +167,7 @@ fn effort_ratio(structure: &Structure, baseline: &Baseline, log: &Stretches) -> 
     if ratios.is_empty() { 1.0 } else { median(ratios) }
 }
 
-/// Values that come later by a delay, s.
+/// Returns values delayed by `delay`, s.
 fn late(time: &[f64], values: &[f64], delay: f64) -> Vec<f64> {
     let mut next = 0;
     let at = |instant: f64| {
@@ -186,7 +187,7 @@ fn late(time: &[f64], values: &[f64], delay: f64) -> Vec<f64> {
     time.iter().map(|time| time - delay).map(at).collect()
 }
 
-/// The values of a candidate in the robot file and in the baseline.
+/// Returns the values of a candidate in the robot file and in the baseline.
 pub(crate) fn values(structure: &Structure, baseline: &Baseline, candidate: Candidate) -> [f64; 2] {
     let place = |joint, parameter| FittedModel::place(structure, joint, parameter);
     let at = match candidate {
@@ -251,8 +252,8 @@ fn grown(structure: &Structure, selection: &Selection<'_>, joint: usize, [value,
     }
 }
 
-/// The root mean square of what the model leaves of each joint, with all changes that were found, N m or N; over
-/// the stretches in which nobody touches the arm.
+/// Returns the root mean square of each joint's residual torque, N m or N, with all changes that were found, over the
+/// stretches without contacts.
 fn residual(baseline: &Baseline, selection: &Selection<'_>) -> Vec<f64> {
     let unknowns = selection.unknowns();
     let of_joint = |joint: usize| {

@@ -1,4 +1,4 @@
-//! The dates of events: of a change that a whole log has, the span of time in which it began.
+//! Gives events their dates. A change that lasts over a whole log gets the span of time in which it began.
 
 use rne_identify::ArmLog;
 use rne_logs::UtcTime;
@@ -17,14 +17,14 @@ impl<'a> Dates<'a> {
         Self { log, span: log.span(), quiet }
     }
 
-    /// Gives events their dates.
+    /// Sets the dates of events.
     pub(crate) fn give(&self, events: &mut [Event]) {
         let layout = self.log.log().layout();
         for event in events {
             let [start, end] = self.span.map_or([None; 2], |span| span.map(Some));
             event.since_time = if event.is_whole { start } else { layout.utc(event.since) };
             event.until_time = if event.lasts { end } else { layout.utc(event.until) };
-            // the error of a model is a mean over the log: nobody tried when it grew
+            // the error of a model is a mean over the log, so its beginning is unknown
             if event.is_whole && event.cause != Cause::Model {
                 [event.not_before, event.not_after] = beside(self.span, self.quiet);
             }
@@ -32,8 +32,8 @@ impl<'a> Dates<'a> {
     }
 }
 
-/// When a change that a whole log has was not there yet, and when it was not there any more: the end of quiet logs that
-/// end before the log begins, and the beginning of those that begin after its end.
+/// Returns when a change over a whole log did not exist yet, and when it did not exist any more: the end of quiet logs
+/// before the log, and the beginning of quiet logs after it.
 fn beside(span: Option<[UtcTime; 2]>, quiet: Option<[UtcTime; 2]>) -> [Option<UtcTime>; 2] {
     let (Some([start, end]), Some([quiet_start, quiet_end])) = (span, quiet) else { return [None; 2] };
     [Some(quiet_end).filter(|before| *before <= start), Some(quiet_start).filter(|after| *after >= end)]
@@ -49,7 +49,7 @@ mod tests {
         let log = Some([at(100), at(200)]);
         assert_eq!(beside(log, Some([at(0), at(50)])), [Some(at(50)), None]);
         assert_eq!(beside(log, Some([at(300), at(350)])), [None, Some(at(300))]);
-        // quiet logs before and after the log, or at the same time, bound nothing
+        // quiet logs that overlap the log give no bound
         assert_eq!(beside(log, Some([at(0), at(350)])), [None; 2]);
         assert_eq!((beside(log, None), beside(None, log)), ([None; 2], [None; 2]));
     }

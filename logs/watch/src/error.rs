@@ -1,4 +1,4 @@
-//! The reason why nothing can be watched.
+//! Errors of watching.
 
 use std::fmt;
 
@@ -8,47 +8,47 @@ use rne_identify::{ArmLogError, MotionError, PassError};
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum WatchError {
-    /// A motion of another number of joints than the robot's.
+    /// A motion or a baseline has another number of joints than the robot.
     Joints {
-        /// Joints of the robot.
+        /// Number of joints of the robot.
         expected: usize,
-        /// Joints of the motion, or of the baseline.
+        /// Number of joints of the motion or of the baseline.
         found: usize,
     },
-    /// A list of a motion that is not as long as its times: which one, and of which joint, counted from 1.
+    /// A list of a motion is not as long as its times: the name of the list, and its joint, counted from 1.
     Length(&'static str, usize),
-    /// A number that is not finite, or a time that is not later than the one before: the index of its sample.
+    /// The sample with this index has a number that is not finite, or a time that is not later than the previous one.
     Sample(usize),
-    /// Fewer samples than there must be.
+    /// There are too few samples.
     TooFew {
         /// The number of samples.
         found: usize,
-        /// The least number of samples.
+        /// The smallest number of samples that is needed.
         needed: usize,
     },
     /// The efforts of all joints are zero.
     NoEffort,
     /// A log is too short to be compared with the baseline.
     ShortLog {
-        /// s: the duration of its motions.
+        /// The duration of its motions, s.
         duration: f64,
-        /// s: more than this is needed.
+        /// A longer duration than this is needed, s.
         needed: f64,
-        /// Hz: the low-pass.
+        /// Cut-off of the low-pass filter, Hz.
         cutoff: f64,
     },
     /// The logs of the baseline are too short to determine the parameters of the arm.
     ShortBaseline {
-        /// s: the duration of the motions.
+        /// The duration of the motions, s.
         duration: f64,
-        /// s: the least duration.
+        /// The duration that is needed, s.
         needed: f64,
-        /// Hz: the low-pass.
+        /// Cut-off of the low-pass filter, Hz.
         cutoff: f64,
     },
-    /// A setting that is not a number above zero: its name.
+    /// The setting with this name is not a number above zero.
     Setting(&'static str),
-    /// A motion is not one of the robot.
+    /// A motion does not fit the robot.
     Motion(MotionError),
     /// A log cannot be read to its end.
     Log(ArmLogError),

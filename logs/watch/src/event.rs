@@ -1,4 +1,4 @@
-//! Events: one for each cause.
+//! Events with their causes.
 
 use rne_logs::UtcTime;
 use rne_model::{JointKind, Robot};
@@ -10,12 +10,12 @@ use crate::Candidate;
 pub enum Cause {
     /// The friction of a joint has changed: wear, a brake, cold or lost grease.
     Friction,
-    /// The arm carries a mass that it did not carry before, or lost one.
+    /// The arm carries an additional mass, or lost one.
     Payload,
-    /// Something touched the arm for a time: a collision, a hand.
+    /// Something touched the arm for some time, such as an obstacle or a hand.
     Contact,
-    /// The effort of a joint has an offset or another gain, or all efforts have another delay: a sensor, a spring, a
-    /// brake, another recorder.
+    /// The effort of a joint has an offset or another gain, or all efforts have another delay, because of a sensor, a
+    /// spring, a brake or another recorder.
     Sensor,
     /// The error of the model has grown, and no single parameter explains it.
     Model,
@@ -34,7 +34,7 @@ impl Cause {
         }
     }
 
-    /// The cause that a changed parameter has.
+    /// Returns the cause of a change of this parameter.
     #[must_use]
     pub const fn of(candidate: Candidate) -> Self {
         match candidate {
@@ -57,49 +57,49 @@ impl std::fmt::Display for Cause {
 pub struct Event {
     /// The cause that explains most.
     pub cause: Cause,
-    /// The joint, counted from 0; a payload and the delay have none.
+    /// The joint, counted from 0; `None` for a payload and the delay.
     pub joint: Option<usize>,
-    /// The parameter: `coulomb`, `viscous`, `offset`, `gain`, `delay`, `mass`, `external` (the largest torque of the
-    /// environment), `residual` (the root mean square of what the model leaves), `frozen` (the value that an effort
-    /// repeats), `frozen_position` (the value that a position repeats) or `exchanged` (the efforts of `joint` and of
-    /// the joint in `others`; it has no value).
+    /// The parameter: `coulomb`, `viscous`, `offset`, `gain`, `delay`, `mass`, `external` (the largest external
+    /// torque), `residual` (the root mean square of the model's residual), `frozen` (the value that an effort repeats),
+    /// `frozen_position` (the value that a position repeats) or `exchanged` (the efforts of `joint` and of the joint in
+    /// `others`; it has no value).
     pub parameter: &'static str,
     /// The value in the log, in `unit`.
     pub value: f64,
-    /// The value in the robot file, in `unit`; of a residual the value of the baseline.
+    /// The value in the robot file, in `unit`; for a residual, the value of the baseline.
     pub file_value: f64,
     /// The value of the baseline, in `unit`.
     pub baseline_value: f64,
-    /// Standard deviation of the value; not a number for contacts and residuals.
+    /// Standard deviation of the value; NaN for residuals.
     pub deviation: f64,
-    /// Half the width of the interval of 95 %; not a number for contacts and residuals.
+    /// Half the width of the 95 % confidence interval; NaN for contacts and residuals.
     pub half_interval: f64,
-    /// The change that would be an event; not a number for contacts.
+    /// The smallest change that would be an event; NaN for contacts.
     pub threshold: f64,
     /// The unit of all values.
     pub unit: &'static str,
-    /// The number of the run in which it begins, from 0.
+    /// The number of the run in which the event begins, from 0.
     pub run: u64,
-    /// The time at which it begins, s.
+    /// The time at which the event begins, s.
     pub since: f64,
-    /// The time at which it ends, s.
+    /// The time at which the event ends, s.
     pub until: f64,
-    /// Whether it lasts from the beginning of the log to its end.
+    /// Whether the event lasts from the beginning of the log to its end.
     pub is_whole: bool,
-    /// Whether it lasts until the end of the log.
+    /// Whether the event lasts until the end of the log.
     pub lasts: bool,
-    /// The date at which it begins; that of the beginning of the log if it lasts from there to the end. `None` where
-    /// the times of the log do not count from 1970.
+    /// The date at which the event begins; that of the beginning of the log if the event lasts over the whole log.
+    /// `None` if the times of the log do not count from 1970.
     pub since_time: Option<UtcTime>,
-    /// The date at which it ends; that of the end of the log if it lasts until then.
+    /// The date at which the event ends; that of the end of the log if the event lasts until then.
     pub until_time: Option<UtcTime>,
-    /// For a change that the whole log has: the end of the quiet logs, where they end before the log begins. The change
-    /// began after it.
+    /// For a change over the whole log: the end of the quiet logs, if they end before the log begins. The change began
+    /// after this date.
     pub not_before: Option<UtcTime>,
-    /// For a change that the whole log has: the beginning of the quiet logs, where they begin after the log ends. The
-    /// change ended before it.
+    /// For a change over the whole log: the beginning of the quiet logs, if they begin after the log ends. The change
+    /// ended before this date.
     pub not_after: Option<UtcTime>,
-    /// Further joints that the same event moves, counted from 0.
+    /// Further joints of the same event, counted from 0.
     pub others: Vec<usize>,
     /// Further friction parameters of the joint, each of which would explain the change almost as well: `coulomb` or
     /// `viscous`.
@@ -107,7 +107,7 @@ pub struct Event {
 }
 
 impl Event {
-    /// An event of a cause of which nothing else is known: values and times are 0, deviations are not numbers.
+    /// Makes an event with a cause only: values and times are 0, deviations are NaN.
     pub(crate) fn blank(cause: Cause) -> Self {
         Self {
             cause,
@@ -134,14 +134,14 @@ impl Event {
         }
     }
 
-    /// The change of the value against the baseline.
+    /// Returns the change of the value against the baseline.
     #[must_use]
     pub fn change(&self) -> f64 {
         self.value - self.baseline_value
     }
 }
 
-/// The unit of a candidate's value.
+/// Returns the unit of a candidate's value.
 #[must_use]
 pub fn unit(robot: &Robot, candidate: Candidate) -> &'static str {
     let kind = candidate.joint().and_then(|joint| robot.independent_joint(joint)).map(|joint| joint.row.kind);

@@ -1,10 +1,10 @@
-//! Watches an arm by its logs: parameters that have changed against a quiet log ([`Baseline`], [`Changes`]), contacts
-//! ([`contacts`]), both as events with one cause each ([`watch`], [`Event`]), and the parameters from log to log
-//! ([`Trend`]).
+//! Watches an arm by its logs: finds parameters that have changed against a quiet log ([`Baseline`], [`Changes`]) and
+//! contacts ([`contacts`]), reports both as events with one cause each ([`watch`], [`Event`]), and compares the
+//! parameters from log to log ([`Trend`]).
 //!
-//! A change is estimated by least squares over both logs, which have all parameters in common but the changed ones: the
-//! module `score` has the equations, `selection` the competition of the causes. Contacts are found by the momentum
-//! observer in what the changes leave.
+//! A change is estimated by least squares over both logs, which have all parameters in common except the changed ones.
+//! The module `score` has the equations, and `selection` chooses among possible causes. Contacts are found by the
+//! momentum observer after the torques of the changes have been subtracted.
 //!
 //! ```no_run
 //! use rne_identify::{ArmLog, ArmLogOptions, Purpose};

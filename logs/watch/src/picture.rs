@@ -1,4 +1,4 @@
-//! The picture of a log that was watched.
+//! Draws the picture of a watched log.
 
 use rne_model::{Robot, one_line};
 use rne_plot::{Band, Panel, PanelCurve, panels};
@@ -7,10 +7,10 @@ use crate::contact::contact_limits;
 use crate::event::Event;
 use crate::{Report, Settings};
 
-/// The residual torque of each joint, measured less what the robot file predicts, with its root mean square; the
-/// observer's torque with its thresholds, and the events, as an SVG. The torques of changed parameters are drawn as
-/// their own curve. Thresholds that are far beyond the curves are cut off. Empty without signals. `about` says what the
-/// log is. Texts of the robot file are shown and do nothing.
+/// Returns an SVG with the residual torque of each joint (measured less predicted by the robot file) and its root mean
+/// square, the observer's torque with its thresholds, and the events. The torques of changed parameters are a separate
+/// curve. Thresholds far above the curves are cut off. Empty without signals. `about` describes the log. Texts of the
+/// robot file are escaped.
 #[must_use]
 pub fn svg(robot: &Robot, report: &Report, settings: &Settings, about: &str) -> String {
     let Some(signals) = &report.signals else { return String::new() };
@@ -56,19 +56,19 @@ pub fn svg(robot: &Robot, report: &Report, settings: &Settings, about: &str) -> 
     panels(&format!("Watched: {title}"), title, about, &signals.time, &joints.map(panel).collect::<Vec<_>>())
 }
 
-/// Root mean square of the curve that is drawn.
+/// Returns the root mean square of a curve.
 fn root_mean_square(values: &[f64]) -> f64 {
     #[allow(clippy::cast_precision_loss)] // samples of a picture
     let count = values.len().max(1) as f64;
     (values.iter().map(|value| value * value).sum::<f64>() / count).sqrt()
 }
 
-/// Three decimals of what is small, none of what is large: a curve says no more.
+/// Formats a number with three decimals or, from 10 on, with one.
 fn significant(value: f64) -> String {
     if value < 10.0 { format!("{value:.3}") } else { format!("{value:.1}") }
 }
 
-/// An event in words: `friction of elbow: coulomb 9.9 ± 0.5 N m, 0.3 s to 18.9 s`.
+/// Describes an event in words, such as `friction of elbow: coulomb 9.9 ± 0.5 N m, 0.3 s to 18.9 s`.
 fn words(robot: &Robot, event: &Event) -> String {
     let joint = event.joint.map_or(String::new(), |joint| format!(" of {}", one_line(robot.coordinate_name(joint))));
     let deviation = if event.deviation.is_finite() { format!(" ± {:.3}", event.deviation) } else { String::new() };

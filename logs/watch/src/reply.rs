@@ -1,5 +1,4 @@
-//! Events and trends as data for other programs, as `rne watch --json` and Python give them: docs/control/watch.md
-//! lists the keys.
+//! The reports on events and trends that `rne watch --json` and Python return; docs/control/watch.md lists their keys.
 
 use rne_identify::JointError;
 use rne_logs::UtcTime;
@@ -13,14 +12,14 @@ use crate::report::Report;
 use crate::selection::Statistic;
 use crate::trend::Trend;
 
-/// The result for a log, for a format that serde writes. Numbers that are not finite are missing.
+/// The report on a log, which serde can write in any format. Numbers that are not finite are null.
 #[derive(Debug, Serialize)]
 pub struct WatchReply {
     robot: String,
     log: String,
-    /// The logs or the file of the baseline.
+    /// Names of the logs, or of the file, of the baseline.
     baseline: String,
-    /// Hz
+    /// Cut-off of the low-pass filter, Hz.
     low_pass: f64,
     read_to: f64,
     events: Vec<OfEvent>,
@@ -45,18 +44,19 @@ struct OfEvent {
     since: f64,
     until: f64,
     whole: bool,
-    /// Whether it lasts until the end of the log.
+    /// Whether the event lasts until the end of the log.
     lasts: bool,
-    /// RFC 3339, UTC: the dates of `since` and `until`, or the beginning and end of the log if the change exists
-    /// already, or still.
+    /// Dates of `since` and `until` by RFC 3339, UTC; those of the beginning and end of the log if the change already
+    /// exists there, or still exists.
     since_time: Option<String>,
     until_time: Option<String>,
-    /// When the change was not there: the end of the quiet logs before the log, the beginning of those after it.
+    /// Dates at which the change did not exist: the end of quiet logs before the log, and the beginning of quiet logs
+    /// after it.
     not_before_time: Option<String>,
     not_after_time: Option<String>,
     /// Further joints of a contact.
     also: Vec<usize>,
-    /// Causes that the log cannot tell from this one: `temperature`, `speed`, `coulomb`, `viscous`.
+    /// Causes that the log cannot distinguish from this one: `temperature`, `speed`, `coulomb`, `viscous`.
     rivals: Vec<&'static str>,
 }
 
@@ -71,7 +71,7 @@ struct OfParameter {
     threshold: f64,
     ratio: f64,
     unit: &'static str,
-    /// Whether the quiet log determines it.
+    /// Whether the quiet log determines the parameter.
     watched: bool,
 }
 
@@ -81,7 +81,7 @@ struct OfJoint {
     name: String,
     error: Option<f64>,
     unfiltered: Option<f64>,
-    /// N m or N, root mean square: what is left with all changes, and before.
+    /// Root mean square of the residual torque with all changes, and of the baseline, N m or N.
     residual: f64,
     residual_of_baseline: f64,
     /// The standard deviation of the torque that the momentum observer finds without any contact, N m or N. A contact
@@ -132,7 +132,7 @@ impl OfEvent {
 }
 
 impl WatchReply {
-    /// The reply on a log with the name `log`, whose baseline is called `words`.
+    /// Makes the report on a log with the name `log`; `words` describes its baseline.
     #[must_use]
     pub fn of(
         robot: &Robot,
@@ -177,7 +177,7 @@ impl WatchReply {
     }
 }
 
-/// A trend, for a format that serde writes. Numbers that are not finite are missing.
+/// The report on a trend, which serde can write in any format. Numbers that are not finite are null.
 #[derive(Debug, Serialize)]
 pub struct TrendReply {
     robot: String,
@@ -215,7 +215,7 @@ struct OfFriction {
 }
 
 impl TrendReply {
-    /// The reply on a trend with the events of each log, whose baseline is called `words`.
+    /// Makes the report on a trend with the events of each log; `words` describes the baseline.
     #[must_use]
     pub fn of(robot: &Robot, words: &str, trend: &Trend, events: &[Vec<Event>]) -> Self {
         let rows = trend.rows.iter().zip(events).map(|(row, events)| {

@@ -1,4 +1,4 @@
-//! Watching the logs of an arm: changes of its parameters first, then contacts in what these leave.
+//! Watches the logs of an arm: finds changes of its parameters first, then contacts in the remaining torques.
 
 use rne_identify::{ArmLog, Part, Stretches, Structure};
 use rne_logs::{FrozenPosition, Motion};
@@ -10,42 +10,42 @@ use crate::event::{Cause, Event, unit};
 use crate::sensor::exchanged_efforts;
 use crate::{Baseline, Candidate, Changes, Settings, Signals, WatchError};
 
-/// s: contacts that are closer are one, such as those on both sides of the border of two pieces.
+/// Time below which two contacts are joined, s, such as those on both sides of the border of two pieces.
 const JOINED: f64 = 0.25;
 
-/// Rows of each joint, without which a log cannot be compared.
+/// Smallest number of rows of each joint with which a log can be compared.
 const FEWEST: u64 = 2;
 
-/// States of a picture.
+/// Number of states in a picture.
 const DRAWN: u64 = 20_000;
 
-/// A model is worse on motions that it has not seen. In another log the noise of the observer is larger by the first
-/// factor, and the error of the model's terms, which may have any sign there, by the second.
+/// Factors by which a model is worse on motions other than that of its identification: for the noise of the observer,
+/// and for the error of the model's terms, which may have any sign there.
 const ELSEWHERE: [f64; 2] = [1.5, 2.0];
 
 /// The result for a log.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Report {
-    /// Events, one for each cause: changes of parameters in the order of what they explain, then contacts by time.
+    /// Events, one for each cause: changes of parameters, the one that explains most first, then contacts by time.
     pub events: Vec<Event>,
     /// The comparison of all parameters with the baseline.
     pub changes: Changes,
     /// The noise of the observer from which the thresholds of contacts follow.
     pub contact: ContactNoise,
-    /// The signals of the log, thinned for a picture.
+    /// The signals of the log for a picture, with only some of the samples.
     pub signals: Option<Signals>,
-    /// For the same samples the torques that changed parameters add, joint by joint, N m or N.
+    /// The torques that changed parameters add, for each joint at the samples of `signals`, N m or N.
     pub explained: Vec<Vec<f64>>,
-    /// Whether the picture ends where time goes back.
+    /// Whether the picture ends early, because the times of the log go back there.
     pub is_cut: bool,
 }
 
 impl Baseline {
-    /// The baseline of logs in which nothing happened; they are opened to watch.
+    /// Makes the baseline from quiet logs, which are opened with [`Purpose::Watch`](rne_identify::Purpose::Watch).
     ///
     /// # Errors
-    /// When the logs are too short, not logs of the robot, or cannot be read.
+    /// When the logs are too short, do not fit the robot, or cannot be read.
     pub fn of_logs(
         robot: &Robot,
         quiet: &ArmLog,
@@ -64,19 +64,19 @@ impl Baseline {
         Ok(baseline)
     }
 
-    /// The baseline of a log itself, against the robot file: for an arm of which there is no quiet log.
+    /// Makes a baseline from a log itself and the robot file, for an arm without a quiet log.
     ///
     /// # Errors
-    /// When the log is too short, not one of the robot, or cannot be read.
+    /// When the log is too short, does not fit the robot, or cannot be read.
     pub fn of_file(robot: &Robot, log: &ArmLog, progress: &mut dyn FnMut(f64)) -> Result<Self, WatchError> {
         let structure = Self::structure(robot, log.cutoff());
         Ok(Self::of_parameters(&structure, log, progress)?.against_file(&structure))
     }
 
-    /// The baseline of logs for changes of parameters alone, without the noise of contacts.
+    /// Makes a baseline from logs for changes of parameters only, without the noise of the momentum observer.
     ///
     /// # Errors
-    /// When the logs are too short, not logs of the robot, or cannot be read.
+    /// When the logs are too short, do not fit the robot, or cannot be read.
     pub fn of_parameters(
         structure: &Structure,
         log: &ArmLog,
@@ -91,11 +91,12 @@ impl Baseline {
     }
 }
 
-/// Looks for events in logs of a robot, which are opened to watch with the low-pass of the baseline. `is_drawn` keeps
-/// what a picture needs; `progress` is called with the fraction of each pass that was read.
+/// Finds events in logs of a robot, which are opened with [`Purpose::Watch`](rne_identify::Purpose::Watch) and the
+/// cut-off of the baseline. `is_drawn` keeps the data for a picture; `progress` is called with the fraction of each
+/// pass that was read.
 ///
 /// # Errors
-/// When the logs are too short, not logs of the robot, or cannot be read.
+/// When the logs are too short, do not fit the robot, or cannot be read.
 pub fn watch(
     robot: &Robot,
     baseline: &Baseline,
@@ -142,7 +143,7 @@ pub fn watch(
     }
     let frozen: Vec<Event> = log.survey().frozen_positions.iter().map(|frozen| of_position(robot, frozen)).collect();
     if !frozen.is_empty() {
-        // every torque that the model predicts needs the position
+        // with a wrong position, all predicted torques are wrong, so only this event is reported
         events = frozen;
     }
     Dates::of(log, baseline.span).give(&mut events);
@@ -150,14 +151,14 @@ pub fn watch(
     Ok(Report { events: one_cause(&events), changes, contact, signals, explained, is_cut })
 }
 
-/// The signals of a picture, of some states only.
+/// The signals for a picture, for some of the states.
 struct Drawn {
-    /// The number of states of which one is drawn.
+    /// One of this number of states is drawn.
     stride: usize,
     signals: Option<Signals>,
-    /// The torques of each joint that are explained already, N m or N.
+    /// The torques of each joint that changes already explain, N m or N.
     explained: Vec<Vec<f64>>,
-    /// Whether the time begins anew, so that the rest is not drawn.
+    /// Whether the times go back, so that the rest is not drawn.
     is_cut: bool,
 }
 
@@ -184,7 +185,7 @@ impl Drawn {
     }
 }
 
-/// A position that keeps one value while its joint moves.
+/// Makes the event of a position that keeps one value while its joint moves.
 fn of_position(robot: &Robot, frozen: &FrozenPosition) -> Event {
     let [since, until] = frozen.times;
     Event {
@@ -200,14 +201,16 @@ fn of_position(robot: &Robot, frozen: &FrozenPosition) -> Event {
     }
 }
 
-/// Contacts of one joint that are more than a person or an obstacle makes.
+/// Number of contacts of one joint that is too large for a person or an obstacle, so that they count as an error of the
+/// model.
 const MANY: usize = 6;
 
-/// s: what is left of a change where it begins or ends within the log is no contact.
+/// Time around the beginning or end of a change within the log in which a remaining torque is no contact, s.
 const EDGE: f64 = 1.0;
 
-/// One event for one cause. A contact makes the error of the model grow. Six contacts are an error of the model.
-/// A change that begins or ends within the log leaves a short torque there.
+/// Removes events that are effects of another event, so that each cause has one event. A contact also increases the
+/// error of the model. Six contacts are an error of the model. A change that begins or ends within the log leaves a
+/// short torque there.
 fn one_cause(events: &[Event]) -> Vec<Event> {
     let is_of = |event: &Event, cause: Cause, joint: usize| {
         event.cause == cause && (event.joint == Some(joint) || event.others.contains(&joint))
@@ -229,10 +232,10 @@ fn one_cause(events: &[Event]) -> Vec<Event> {
     events.iter().filter(is_kept).cloned().collect()
 }
 
-/// Compares the parameters of an arm in logs with a baseline, without a look for contacts.
+/// Compares the parameters of an arm in logs with a baseline, without searching for contacts.
 ///
 /// # Errors
-/// When the logs are too short, not logs of the robot, or cannot be read.
+/// When the logs are too short, do not fit the robot, or cannot be read.
 pub fn changes(
     structure: &Structure,
     baseline: &Baseline,
@@ -271,13 +274,13 @@ pub fn changes(
     Err(WatchError::ShortLog { duration, needed: duration + more, cutoff: baseline.cutoff })
 }
 
-/// Torques of a run's motion that are explained already, joint by joint, N m or N; without any joint, none is.
+/// Returns for each joint the torques of a run's motion that are explained already, N m or N; empty if there are none.
 type Explain<'a> = &'a dyn Fn(u64, &Motion) -> Result<Vec<Vec<f64>>, WatchError>;
 
-/// Takes the signals of a piece of a run, with the torques that are explained already.
+/// Receives the signals of a piece of a run, with the torques that are explained already.
 type Take<'a> = &'a mut dyn FnMut(u64, Signals, &[Vec<f64>]) -> Result<(), WatchError>;
 
-/// The noise of each piece of a log that is long enough.
+/// Estimates the noise of each piece of a log that is long enough.
 fn noise(
     robot: &Robot,
     log: &ArmLog,
@@ -293,7 +296,8 @@ fn noise(
     Ok(all)
 }
 
-/// Hands on the signals of each piece of a log that is long enough, less what is explained already.
+/// Passes the signals of each piece of a log that is long enough to `take`, less the torques that are explained
+/// already.
 fn each_signals(
     robot: &Robot,
     log: &ArmLog,
@@ -321,7 +325,7 @@ fn each_signals(
     if pieces == 0 { Err(WatchError::TooFew { found: 0, needed: 1 }) } else { Ok(()) }
 }
 
-/// Events of a run: contacts of several joints at one time have one cause.
+/// Makes events of the contacts of a run: contacts of several joints at the same time are one event.
 fn touches(robot: &Robot, noise: &ContactNoise, run: u64, contacts: Vec<Contact>) -> Vec<Event> {
     let strength = |contact: &Contact| contact.peak.abs() / noise.joints[contact.joint].deviation;
     let mut groups: Vec<Vec<Contact>> = Vec::new();
@@ -375,7 +379,7 @@ mod tests {
         many.extend(vec![contact; MANY]);
         assert_eq!(causes(&many), [(Cause::Model, Some(1)), (Cause::Contact, Some(0))]);
         assert_eq!(causes(&[model]), [(Cause::Model, Some(1))]);
-        // friction from 5 s on: a contact where it begins is what it leaves, a later one is none
+        // friction changes at 5 s: a contact at that time is an effect of the change, a later one is not
         let friction = Event { since: 5.0, until: 20.0, lasts: true, ..event(Cause::Friction, 2) };
         let at = |since: f64| Event { since, until: since + 0.2, ..event(Cause::Contact, 2) };
         let found = causes(&[friction, at(4.9), at(9.0)]);

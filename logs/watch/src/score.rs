@@ -1,15 +1,15 @@
-//! The estimate of a change: least squares over two logs that have all parameters in common but the changed ones.
+//! Estimates a change by least squares over two logs that have all parameters in common except the changed ones.
 //!
-//! Let θ be the parameters of the baseline and M their information, N the products of the watched rows, r the products
-//! of these rows with what θ leaves of the torques, and F columns that are added for the changed parameters:
+//! Let θ be the parameters of the baseline and M their information matrix, X the rows of the watched log and N = Xᵀ X,
+//! r the residual of its torques with θ, and F columns that are added for the changed parameters:
 //!
 //! ```text
 //! L = (M + N)⁻¹     G = Fᵀ F - Fᵀ X L Xᵀ F     g = Fᵀ r - Fᵀ X L r     δ = G⁻¹ g     covariance = G⁻¹
 //! ```
 //!
-//! Friction, offsets and a payload are parameters of the model already. So F is X times some directions, over a window
-//! of time, and the products of short stretches are all that is needed. For the gain of a joint's effort X has one more
-//! column, the torques X θ of this joint, whose number is 0 in the baseline and no common parameter.
+//! Friction, offsets and a payload are already parameters of the model. So F is X times some directions over a window
+//! of time, and the normal equations of short stretches are sufficient. For the gain of a joint's effort, X has one
+//! more column, the torques X θ of this joint. Its parameter is 0 in the baseline, and not common to both logs.
 //!
 //! G. C. Chow, Tests of equality between sets of coefficients in two linear regressions, Econometrica 28 (1960),
 //! 591-605. Woodbury's formula for L.
@@ -22,21 +22,22 @@ use rne_identify::{FittedModel, LIGHTEST_PAYLOAD, PAYLOAD_REACH, Stretch, Struct
 use crate::baseline;
 use crate::candidate::{Candidate, MOMENTS};
 
-/// Rounds in which the first moments of a payload follow its mass.
+/// Number of iterations that adapt the prior of a payload's first moments to its mass.
 const ROUNDS: usize = 4;
 
 /// The sums over a log from which the estimates of all changes follow.
 #[derive(Clone, Debug)]
 pub(crate) struct Score {
-    /// Products of the columns, and of the columns with what the baseline leaves, up to each stretch.
+    /// Cumulative sums up to each stretch: products of the columns, and of the columns with the residual of the
+    /// baseline.
     products: Vec<DMatrix<f64>>,
     left: Vec<DVector<f64>>,
-    /// L
+    /// The matrix L.
     covariance: DMatrix<f64>,
-    /// L times all of `left`.
+    /// L times the last sum of `left`.
     shift: DVector<f64>,
     candidates: Vec<(Candidate, DMatrix<f64>)>,
-    /// The columns of all candidates.
+    /// The directions of all candidates, side by side.
     columns: DMatrix<f64>,
 }
 
@@ -54,7 +55,7 @@ pub(crate) struct Estimate {
     pub(crate) values: Vec<f64>,
     /// Standard deviation of the first number, for errors that are white.
     pub(crate) deviation: f64,
-    /// By how much the sum of squares falls.
+    /// The decrease of the sum of squares.
     pub(crate) drop: f64,
 }
 
@@ -64,7 +65,7 @@ impl Estimate {
     }
 }
 
-/// A change with the products of its columns, before and behind L.
+/// A change with the products of its columns, without and with the factor L.
 #[derive(Clone, Debug)]
 pub(crate) struct Projected {
     pub(crate) change: Change,
@@ -73,7 +74,8 @@ pub(crate) struct Projected {
 }
 
 impl Score {
-    /// `None` where the information is not positive. `is_dead` says of each joint whether its effort is zero.
+    /// Computes the sums; `None` if the information matrix is not positive definite. `is_dead` is true for joints whose
+    /// effort is zero.
     pub(crate) fn new(
         structure: &Structure,
         model: &FittedModel,
@@ -112,8 +114,8 @@ impl Score {
         &self.candidates
     }
 
-    /// The change of the parameters that both logs have in common, beside changes of other parameters: these, each with
-    /// its window, as changes of all unknowns and gains.
+    /// Returns the change of the parameters that both logs have in common, given the other changes, each with its
+    /// window and as changes of all unknowns and gains.
     pub(crate) fn common(&self, changes: &[(Range<usize>, DVector<f64>)]) -> DVector<f64> {
         let mut shift = self.shift.clone();
         for (window, change) in changes {
@@ -132,7 +134,7 @@ impl Score {
         Projected { change, products, common }
     }
 
-    /// Every candidate over one window.
+    /// Projects every candidate over one window.
     fn projected_in(&self, window: &Range<usize>) -> Vec<Projected> {
         let products = self.products_in(window) * &self.columns;
         let common = &self.covariance * &products;
@@ -149,7 +151,7 @@ impl Score {
         scores.collect()
     }
 
-    /// Fᵀ F - Fᵀ X L Xᵀ F of two changes.
+    /// Returns Fᵀ F - Fᵀ X L Xᵀ F of two changes.
     fn gram(&self, a: &Projected, b: &Projected) -> DMatrix<f64> {
         let columns = |of: &Projected| &self.candidates[of.change.candidate].1;
         let (of_a, of_b) = (&a.change.window, &b.change.window);
@@ -166,26 +168,26 @@ impl Score {
         }
     }
 
-    /// Fᵀ r - Fᵀ X L r.
+    /// Returns Fᵀ r - Fᵀ X L Xᵀ r.
     fn slope(&self, of: &Projected) -> DVector<f64> {
         let left = &self.left[of.change.window.end] - &self.left[of.change.window.start];
         self.candidates[of.change.candidate].1.tr_mul(&left) - of.products.tr_mul(&self.shift)
     }
 
-    /// By how much the sum of squares of one stretch falls when a change is added to a shift of all unknowns.
+    /// Returns the decrease of the sum of squares of one stretch if a change is added to a shift of all unknowns.
     pub(crate) fn gain(&self, at: usize, shift: &DVector<f64>, change: &DVector<f64>) -> f64 {
         let products = self.products_in(&(at..at + 1));
         let left = &self.left[at + 1] - &self.left[at];
         2.0 * change.dot(&(left - &products * shift)) - change.dot(&(&products * change))
     }
 
-    /// The estimate of every candidate over one window, beside changes that are given.
+    /// Estimates every candidate over one window, together with the given changes.
     pub(crate) fn estimates(&self, window: &Range<usize>, given: &[Projected]) -> Vec<Option<Estimate>> {
         let before = self.fitted(&given.iter().collect::<Vec<_>>()).map_or(0.0, |fitted| fitted.drop);
         self.projected_in(window).iter().map(|last| self.beside(given, last, before)).collect()
     }
 
-    /// The estimate of one change beside others that are given.
+    /// Estimates one change together with the given changes.
     pub(crate) fn estimate(&self, change: Change, given: &[Projected]) -> Option<Estimate> {
         let before = self.fitted(&given.iter().collect::<Vec<_>>()).map_or(0.0, |fitted| fitted.drop);
         self.beside(given, &self.projected(change), before)
@@ -202,7 +204,7 @@ impl Score {
         })
     }
 
-    /// The changes of all unknowns by some changes together, each over its window.
+    /// Estimates some changes together; returns each as a change of all unknowns, with its window.
     pub(crate) fn changes(&self, given: &[Projected]) -> Option<Vec<(Range<usize>, DVector<f64>)>> {
         let mut values = self.fitted(&given.iter().collect::<Vec<_>>())?.values.into_iter();
         let score = |projected: &Projected| {
@@ -231,7 +233,7 @@ impl Score {
                 gram.view_mut((at.1, at.0), (block.ncols(), block.nrows())).copy_from(&block.transpose());
             }
         }
-        // what no row tells stays finite
+        // keeps numbers finite that no row determines
         for at in 0..size {
             gram[(at, at)] += TINY * gram[(at, at)].abs() + TINY;
         }
@@ -258,7 +260,7 @@ impl Score {
     }
 }
 
-/// Adds the products of a joint's rows, with those of the torques that the model gives to the joint.
+/// Adds the products of a joint's rows, including the column of the torques that the model predicts for the joint.
 fn add(
     structure: &Structure,
     model: &FittedModel,
@@ -274,7 +276,7 @@ fn add(
     let rest = total.view((0, count), (count, 1)).column(0) - &with_torques;
     let gain = count + joint;
     if is_dead {
-        // its rows say that the gain is 0, which is 1 less than before, and nothing else
+        // the rows of a dead effort only show that the gain has changed by -1
         let product = model.solution.dot(&with_torques);
         products[(gain, gain)] += product;
         left[gain] -= product;
@@ -290,7 +292,7 @@ fn add(
     left[gain] += model.solution.dot(&rest);
 }
 
-/// Information of numbers about which no row says anything.
+/// Information that is added for numbers that no row determines.
 const TINY: f64 = 1e-9;
 
 struct Fitted {

@@ -1,4 +1,4 @@
-//! The choice among the candidates: the change that explains most is taken first, then the next one beside it.
+//! Chooses among the candidates: first the change that explains most, then the next one in addition to it.
 
 mod window;
 
@@ -20,24 +20,25 @@ use rne_identify::SLOWEST;
 /// in 0.3 % of all cases.
 const DEVIATIONS: f64 = 3.0;
 
-/// In standard deviations: the same for a change that does not last from the beginning to the end of the log. It is
-/// larger, because many times are tried, each of which noise can exceed. The value was chosen by experiment.
+/// In standard deviations: a change that does not last from the beginning to the end of the log is an event if it is
+/// larger than this. The number is larger, because many times are tried and noise may exceed the threshold at each. The
+/// value was chosen by experiment.
 const DEVIATIONS_OF_PART: f64 = 3.3;
 
-/// A factor: the smallest size of a change that does not last for the whole log, in smallest sizes of one that does.
-/// The value was chosen by experiment.
+/// A factor: the smallest size of a change that does not last for the whole log, relative to one that does. The value
+/// was chosen by experiment.
 const SIZE_OF_PART: f64 = 1.5;
 
-/// In squared standard deviations: a change begins or ends within the log only if this explains so much more of the
-/// residuals. The value was chosen by experiment.
+/// In squared standard deviations: a change begins or ends within the log only if this explains at least so much more
+/// of the residuals. The value was chosen by experiment.
 const GAIN: f64 = 10.0;
 
-/// In squared standard deviations: what a payload must explain more than friction does. It has three more numbers,
-/// which explain 3 in the mean even if there is no payload. Twice that was chosen by experiment.
+/// In squared standard deviations: how much more a payload must explain than friction does. It has three more
+/// parameters, which explain 3 on average even without a payload. Twice that was chosen by experiment.
 const PAID_BY_PAYLOAD: f64 = 6.0;
 
-/// A part of what the gain of an effort explains: so much more must it explain than another change does, because a gain
-/// changes the whole torque at once. The value was chosen by experiment.
+/// A part of what the gain of an effort explains: the gain must explain more than another change by this part, because
+/// it changes the whole torque. The value was chosen by experiment.
 const PAID_BY_GAIN: f64 = 0.2;
 
 /// The standard deviation of a gain by errors of the model, as a part of the ratio between the residual of the joint
@@ -49,26 +50,26 @@ const UNEXPLAINED: f64 = 0.5;
 /// experiment.
 const LIKE: f64 = 3.0;
 
-/// A number of changes: no log has more of them. The value was chosen by experiment.
+/// The largest number of changes in a log. The value was chosen by experiment.
 const MOST: usize = 4;
 
-/// A part of what the first change explains: a further change that explains less is taken for an error in the model of
-/// the first, unless it is larger than `LARGE` thresholds. The values were chosen by experiment.
+/// A part of what the first change explains: a further change that explains less counts as an error in the model of the
+/// first, unless it is larger than `LARGE` thresholds. The values were chosen by experiment.
 const REST: f64 = 0.15;
 const LARGE: f64 = 3.0;
 
-/// In seconds: errors of the model are alike over so long a time, so a change over a shorter time is less certain. The
+/// In seconds: errors of the model are correlated over this time, so a change over a shorter time is less certain. The
 /// value was chosen by experiment.
 const ALIKE: f64 = 8.0;
 
-/// The mean square of a stretch that stands out, over the median of all stretches: 7² / 0.455. The median of the square
-/// of normal noise of the deviation 1 is 0.455, and a stretch stands out at seven deviations.
+/// The smallest mean square of a stretch that is an outlier, over the median of all stretches: 7² / 0.455. The median
+/// of the square of normal noise with standard deviation 1 is 0.455, and an outlier has seven standard deviations.
 const OUTLIER: f64 = 108.0;
 
-/// A number of rounds in which stretches that stand out are left out. The value was chosen by experiment.
+/// The largest number of iterations that leave out outliers. The value was chosen by experiment.
 const ROUNDS: usize = 3;
 
-/// The estimate of a change that lasts, with the bounds that make it an event.
+/// The estimate of a change, with the threshold that makes it an event.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Statistic {
@@ -78,12 +79,12 @@ pub struct Statistic {
     pub change: f64,
     /// Standard deviation of the change.
     pub deviation: f64,
-    /// The change that would be an event.
+    /// The smallest change that would be an event.
     pub threshold: f64,
 }
 
 impl Statistic {
-    /// The size of the change as a part of its threshold.
+    /// Returns the size of the change as a part of its threshold.
     #[must_use]
     pub fn ratio(&self) -> f64 {
         self.change.abs() / self.threshold
@@ -97,7 +98,7 @@ pub(crate) struct Finding {
     pub(crate) window: Range<usize>,
 }
 
-/// The change that explains most: by how much the sum of squares falls, and its size in thresholds.
+/// The change that explains most, with the decrease of the sum of squares, and its size in thresholds.
 struct Largest {
     change: Change,
     drop: f64,
@@ -108,7 +109,7 @@ struct Largest {
 pub(crate) struct Selection<'a> {
     structure: &'a Structure,
     baseline: &'a Baseline,
-    /// The stretches that count.
+    /// The stretches that are used.
     pub(crate) stretches: Vec<&'a Stretch>,
     pub(crate) score: Score,
     /// The changes that were found.
@@ -118,7 +119,7 @@ pub(crate) struct Selection<'a> {
 }
 
 impl<'a> Selection<'a> {
-    /// The changes of a log; `None` where the log and the baseline together tell nothing.
+    /// Finds the changes of a log; `None` if the log and the baseline together give no information.
     pub(crate) fn of(structure: &'a Structure, baseline: &'a Baseline, stretches: &'a [Stretch]) -> Option<Self> {
         let mut selection = Self::selected(structure, baseline, stretches.iter().collect())?;
         for _ in 0..ROUNDS {
@@ -132,7 +133,8 @@ impl<'a> Selection<'a> {
         Some(selection)
     }
 
-    /// Selects changes, without the moments that explain one alone: a log has few of them, so half of it must remain.
+    /// Selects changes, and leaves out short moments that alone explain a change. A log has few of them, so at least
+    /// half of it must remain.
     fn selected(structure: &'a Structure, baseline: &'a Baseline, stretches: Vec<&'a Stretch>) -> Option<Self> {
         let count = stretches.len();
         let mut selection = Self::empty(structure, baseline, stretches)?;
@@ -144,7 +146,8 @@ impl<'a> Selection<'a> {
         Some(selection)
     }
 
-    /// The stretches that stand out from the others, with all changes that were found: somebody touches the arm there.
+    /// Returns the stretches whose residuals are outliers even with all changes that were found: something touches the
+    /// arm there.
     fn outliers(&self) -> Vec<usize> {
         let unknowns = self.unknowns();
         let mut found = Vec::new();
@@ -169,8 +172,8 @@ impl<'a> Selection<'a> {
         Some(selection)
     }
 
-    /// A gain of zero for each effort that is zero throughout the log, but not in the quiet log: no other change can
-    /// explain it, and without it the torques that are missing would be changes of other joints.
+    /// Returns a gain of zero for each effort that is always zero in the log, but not in the quiet log. No other change
+    /// can explain this effort. Without this gain, the missing torques would be explained by changes of other joints.
     fn dead_channels(&self) -> Vec<Projected> {
         let window = 0..self.score.len();
         let candidates = self.score.candidates().iter().enumerate();
@@ -182,7 +185,8 @@ impl<'a> Selection<'a> {
         is_dead(self.baseline, &self.stretches, joint)
     }
 
-    /// Selects changes, until no further one is an event; or returns the moment that explains the last one.
+    /// Selects changes until no further one is an event. If a short moment alone explains a change, stops and returns
+    /// the moment.
     fn select(&mut self) -> Option<Range<usize>> {
         let mut first = None;
         while self.given.len() < MOST {
@@ -205,7 +209,7 @@ impl<'a> Selection<'a> {
         None
     }
 
-    /// The change that explains most, of those that would be events.
+    /// Returns the change that explains most, among those that would be events.
     fn largest(&self) -> Option<Largest> {
         let mut best: Option<Largest> = None;
         for window in self.windows() {
@@ -226,8 +230,8 @@ impl<'a> Selection<'a> {
         best.map(|best| self.gain_in_place_of_offset(best))
     }
 
-    /// The gain of an effort where it explains more than the offset of this effort: most of a torque that is missing
-    /// can be its mean.
+    /// Returns the gain of an effort instead of its offset if the gain explains more. The offset may have won because
+    /// most of a missing torque can be its mean.
     fn gain_in_place_of_offset(&self, best: Largest) -> Largest {
         let Candidate::Offset(joint) = self.candidate(best.change.candidate) else { return best };
         let candidates = self.score.candidates();
@@ -242,8 +246,8 @@ impl<'a> Selection<'a> {
         }
     }
 
-    /// A payload that is too small for an event, but explains more than this: without it the event would be another
-    /// name for it.
+    /// Returns a payload that is too small for an event but explains more than `drop`. Without it, its effect would be
+    /// reported as another event.
     fn small_payload(&self, drop: f64) -> Option<Change> {
         let candidate = self.score.candidates().iter().position(|(of, _)| *of == Candidate::Payload)?;
         let change = Change { candidate, window: 0..self.score.len() };
@@ -273,7 +277,7 @@ impl<'a> Selection<'a> {
     fn is_event(&self, change: &Change, estimate: &Estimate) -> bool {
         let columns = |change: &Change| self.candidate(change.candidate);
         let is_gain = |candidate: Candidate| matches!(candidate, Candidate::Gain(_));
-        // the effort of a joint whose gain has changed tells nothing else
+        // if the gain of a joint's effort has changed, the effort does not show other changes of the joint
         let excludes = |given: &Projected| {
             let (one, other) = (columns(&given.change), columns(change));
             one == other || (one.joint().is_some() && one.joint() == other.joint() && (is_gain(one) || is_gain(other)))
@@ -281,12 +285,12 @@ impl<'a> Selection<'a> {
         let is_given = self.given.iter().any(excludes);
         let statistic = self.statistic(change, estimate);
         let scale = &self.baseline.scale;
-        // what is hardly known is no change, however large it seems
+        // an uncertain change is no event, however large it seems
         let is_known = statistic.deviation < 2.0 * scale.least(statistic.candidate);
         !is_given && is_known && statistic.ratio() > 1.0
     }
 
-    /// The estimate of a change with its deviation, which is larger where only a part of the log tells it.
+    /// Returns a change with its standard deviation, which is larger if only a part of the log determines the change.
     fn statistic(&self, change: &Change, estimate: &Estimate) -> Statistic {
         let candidate = self.candidate(change.candidate);
         let Baseline { scale, inflation, doubt, residual, .. } = self.baseline;
@@ -301,11 +305,11 @@ impl<'a> Selection<'a> {
                 let ratio = self.speed_ratios[joint];
                 (ratio.max(1.0 / ratio) / LIKE).max(1.0)
             }
-            // friction that gives way over some travel comes later, the slower a joint is
+            // friction that changes its sign over a displacement seems delayed, and more so for slow joints
             Candidate::Delay => median(self.speed_ratios.iter().map(|ratio| 1.0 / ratio).collect()).max(1.0),
             _ => 1.0,
         };
-        // errors of the model are errors of a gain, too; an effort of zero has no such error
+        // errors of the model also cause errors of a gain, except if the effort is zero
         let unexplained = match candidate {
             Candidate::Gain(joint) if scale.effort[joint] > 0.0 && !self.is_dead(joint) => {
                 UNEXPLAINED * residual[joint] / scale.effort[joint]
@@ -313,7 +317,7 @@ impl<'a> Selection<'a> {
             _ => 0.0,
         };
         let model = unlike * alike * doubt * scale.model_error(candidate).max(unexplained);
-        // errors of the model average out over the joints; with dead channels there are fewer of them
+        // errors of the model average out over the joints, less so if some efforts are dead
         let dof = self.structure.dof();
         let alive = (0..dof).filter(|joint| !self.is_dead(*joint)).count().max(1);
         #[allow(clippy::cast_precision_loss)] // some joints
@@ -323,7 +327,7 @@ impl<'a> Selection<'a> {
         Statistic { candidate, change: estimate.value(), deviation, threshold }
     }
 
-    /// The changes that were found, each estimated beside all others: those that are events still.
+    /// Estimates each change that was found together with all others; returns those that still are events.
     pub(crate) fn findings(&self) -> Vec<Finding> {
         self.estimated().filter(|found| found.statistic.ratio() > 1.0).collect()
     }
@@ -337,8 +341,8 @@ impl<'a> Selection<'a> {
         })
     }
 
-    /// The statistics of all candidates that are no events, beside the changes that were found: over the whole log,
-    /// but for a change that was found over a part of it.
+    /// Returns the statistics of all candidates that are no events, estimated together with the changes that were
+    /// found. They are over the whole log, except for changes that were found over a part of it.
     pub(crate) fn statistics(&self) -> Vec<Statistic> {
         let whole = 0..self.score.len();
         let estimates = self.score.estimates(&whole, &self.given).into_iter().enumerate();
@@ -351,18 +355,18 @@ impl<'a> Selection<'a> {
         statistics.chain(small).collect()
     }
 
-    /// Whether a joint moves far less than in the quiet logs, or hardly at all.
+    /// Whether a joint moves far more slowly than in the quiet logs, or hardly at all.
     pub(crate) fn is_slow(&self, joint: usize) -> bool {
         self.speed_ratios[joint] * LIKE < 1.0
     }
 
-    /// The residual of the torques of a joint in a stretch, with these unknowns and gains.
+    /// Returns the residual of the torques of a joint in a stretch, with these unknowns and gains.
     pub(crate) fn residual(&self, joint: usize, stretch: &Stretch, unknowns: &DVector<f64>) -> Residual {
         let of_joint = of_joint(self.structure, &self.baseline.model, joint, unknowns);
         Residual::of(self.structure, joint, stretch, &of_joint)
     }
 
-    /// The unknowns of the model and the gains at each stretch, with all changes that were found.
+    /// Returns the unknowns of the model and the gains at each stretch, with all changes that were found.
     pub(crate) fn unknowns(&self) -> Vec<DVector<f64>> {
         let changes = self.score.changes(&self.given).unwrap_or_default();
         let mut common = self.score.common(&changes);
@@ -374,13 +378,14 @@ impl<'a> Selection<'a> {
         (0..self.score.len()).map(at).collect()
     }
 
-    /// The changes of all unknowns by each finding, with its window.
+    /// Returns each change that was found as a change of all unknowns, with its window.
     pub(crate) fn changes(&self) -> Vec<(Range<usize>, DVector<f64>)> {
         self.score.changes(&self.given).unwrap_or_default()
     }
 }
 
-/// The unknowns of one joint's torque, of all unknowns and gains: a gain changes the whole torque of the baseline.
+/// Returns the unknowns for one joint's torque from all unknowns and gains: a gain changes the whole torque of the
+/// baseline.
 pub(crate) fn of_joint(
     structure: &Structure,
     baseline: &FittedModel,
@@ -390,7 +395,7 @@ pub(crate) fn of_joint(
     unknowns.rows(0, structure.count()) + &baseline.solution * unknowns[structure.count() + joint]
 }
 
-/// The ratio of each joint's speed to that in the quiet logs.
+/// Returns the ratio of each joint's speed to that in the quiet logs.
 fn speed_ratios(structure: &Structure, baseline: &Baseline, stretches: &[&Stretch]) -> Vec<f64> {
     let totals = products_of_joints(structure, stretches.iter().copied());
     let speeds = speeds(structure, &totals).into_iter().zip(&baseline.scale.speed);

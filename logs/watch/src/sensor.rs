@@ -1,5 +1,5 @@
-//! Channels of effort that do not measure their joint: a channel that repeats one value, and two channels that are
-//! exchanged. The torques that the baseline predicts tell both from an arm at rest.
+//! Finds channels of effort that do not measure their joint: a channel that repeats one value, and two channels that
+//! are exchanged. The torques that the baseline predicts distinguish both from an arm at rest.
 
 use std::ops::Range;
 
@@ -10,35 +10,35 @@ use crate::baseline::{Residual, products};
 use crate::event::{Cause, Event, unit};
 use crate::{Baseline, Candidate};
 
-/// s: a channel repeats its value at least as long.
+/// Shortest time for which a frozen channel repeats its value, s.
 const SHORTEST: f64 = 1.5;
 
-/// The deviation of a value that is repeated, in residuals of the quiet log: rounding, and no noise.
+/// Largest standard deviation of a value that is repeated, in residuals of the quiet log; it allows for rounding.
 const REPEATED: f64 = 1e-3;
 
-/// The deviation of the predicted torque meanwhile, in residuals of the quiet log.
+/// Smallest standard deviation of the predicted torque in that time, in residuals of the quiet log.
 const MOVES: f64 = 1.5;
 
-/// Cut-off periods of the low-pass over which it spreads a step.
+/// Time over which the low-pass filter spreads a step, in periods of the cut-off.
 const SPREAD: f64 = 2.0;
 
-/// The squared residuals of two joints fall by this factor if their efforts are exchanged back, and those of each joint
-/// alone by the square root of it.
+/// Smallest factor by which the squared residuals of two joints decrease if their efforts are exchanged back; those of
+/// each single joint decrease at least by its square root.
 const FALLS: f64 = 16.0;
 
-/// A joint may have another effort if its residual is larger than that of the quiet log by this factor.
+/// Ratio of a residual to that of the quiet log above which a joint may have the effort of another joint.
 const SUSPECT: f64 = 1.5;
 
-/// Joints that may have another effort, at most.
+/// Largest number of joints that are tried for exchanged efforts.
 const MOST: usize = 4;
 
-/// A channel of effort that repeats one value from some time to another one.
+/// A channel of effort that repeats one value for some time.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Frozen {
     pub(crate) joint: usize,
-    /// The stretches of the constant value.
+    /// The stretches in which the value is constant.
     window: Range<usize>,
-    /// N m or N
+    /// The repeated value, N m or N.
     value: f64,
 }
 
@@ -82,12 +82,12 @@ impl Sums {
 }
 
 impl Frozen {
-    /// The channels that repeat a value, other than zero throughout the log, while the predicted torque changes.
+    /// Returns the channels that repeat a value other than zero while the predicted torque changes.
     pub(crate) fn all(structure: &Structure, baseline: &Baseline, list: &[Stretch]) -> Vec<Self> {
         (0..structure.dof()).filter_map(|joint| Self::of(structure, baseline, list, joint)).collect()
     }
 
-    /// The longest time in which a channel repeats a value.
+    /// Returns the longest time in which a channel repeats a value.
     fn of(structure: &Structure, baseline: &Baseline, list: &[Stretch], joint: usize) -> Option<Self> {
         let residual = baseline.residual[joint];
         let mut longest: Option<(Range<usize>, Sums)> = None;
@@ -110,8 +110,8 @@ impl Frozen {
         (is_constant && duration >= SHORTEST && value != 0.0 && moves).then_some(Self { joint, window, value })
     }
 
-    /// The stretches without the rows that a channel spoils: also those next to its window, over which the low-pass
-    /// spreads the step to the constant value.
+    /// Returns the stretches without the rows that frozen channels affect. These include rows next to the window, over
+    /// which the low-pass filter spreads the step to the constant value.
     pub(crate) fn without(all: &[Self], baseline: &Baseline, list: &[Stretch]) -> Vec<Stretch> {
         let mut rest = list.to_vec();
         let spread = SPREAD / baseline.cutoff;
@@ -144,17 +144,17 @@ impl Frozen {
     }
 }
 
-/// Whether the effort of a joint is zero throughout, but not in the quiet log.
+/// Whether the effort of a joint is always zero, but not in the quiet log.
 pub(crate) fn is_dead(baseline: &Baseline, stretches: &[&Stretch], joint: usize) -> bool {
     baseline.scale.effort[joint] > 0.0 && stretches.iter().all(|stretch| stretch.is_silent(joint))
 }
 
-/// The two joints whose efforts are exchanged in a log, counted from 0, the smaller first: the model explains little of
-/// the log as it is, and nearly all if the efforts are exchanged back. `exchanged` gives the equations of the log with
-/// the efforts of two joints exchanged.
+/// Returns the two joints whose efforts are exchanged in a log, counted from 0, the smaller first, with the equations
+/// of the log with these efforts exchanged back. Only then does the model explain nearly all of the log. `exchanged`
+/// returns the equations of the log with the efforts of two joints exchanged.
 ///
 /// # Errors
-/// Those of `exchanged`.
+/// The errors of `exchanged`.
 pub fn exchanged_efforts<E>(
     structure: &Structure,
     baseline: &Baseline,
@@ -176,7 +176,7 @@ pub fn exchanged_efforts<E>(
         for &second in &suspects[at + 1..] {
             let pair = [first, second];
             let log = exchanged(pair)?;
-            // in squared residuals of the quiet log, so that both joints count
+            // relative to the squared residuals of the quiet log, so that both joints have the same weight
             let part = |of: f64, joint: usize| of / baseline.residual[joint].powi(2);
             let [now, then]: [[f64; 2]; 2] =
                 [pair.map(|joint| part(own[joint], joint)), pair.map(|joint| part(squares(&log, joint), joint))];
@@ -190,7 +190,7 @@ pub fn exchanged_efforts<E>(
     Ok(best.map(|(_, pair, log)| (pair, log)))
 }
 
-/// The event of two channels that are exchanged throughout a log.
+/// Makes the event of two channels that are exchanged in a whole log.
 pub(crate) fn exchange(structure: &Structure, [first, second]: [usize; 2], list: &[Stretch]) -> Event {
     Event {
         joint: Some(first),

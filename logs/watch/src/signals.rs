@@ -1,12 +1,12 @@
-//! The part of an arm's efforts that its model does not explain, along a motion.
+//! Computes the part of an arm's efforts that its model does not explain, along a motion.
 //!
 //! ```text
 //! residual = τ_measured - (τ(q, q̇, q̈) + friction(q̇))
 //! external = the momentum observer of τ_measured - friction(q̇), which needs no q̈
 //! ```
 //!
-//! The torques of the environment on the arm are the negative of what the actuators deliver for them: in free motion
-//! and in quasi-static contact `external` is about -`residual`, through a low-pass.
+//! External torques on the arm have the opposite sign of the actuator torques that balance them: in free motion and in
+//! quasi-static contact, `external` is about -`residual` after a low-pass filter.
 
 use rne_logs::{Motion, median};
 use rne_model::{Friction, Joint, Robot};
@@ -14,66 +14,67 @@ use rne_runtime::{DynArm, DynObserverState, WrongLength};
 
 use crate::WatchError;
 
-/// Fewer tell nothing.
+/// Smallest number of samples of a motion.
 const FEWEST: usize = 16;
 
-/// A joint creeps, or its friction changes its sign, up to this many times the speed below which it counts as at rest.
+/// Speed up to which friction is uncertain (the joint creeps), in multiples of the speed below which the joint counts
+/// as at rest.
 const CREEPING: f64 = 5.0;
 
-/// rad/s or m/s: of a joint whose friction changes its sign over a displacement, up to `CREEPING` times that it may
-/// stick, however still it stands.
+/// Speed at rest, rad/s or m/s, of a joint whose friction changes its sign over a displacement. It may stick up to
+/// `CREEPING` times this speed.
 const SLIPPING: f64 = 0.004;
 
-/// Time before and after creeping in which the residual of a joint has no meaning, s: what was measured passed a
-/// filter.
+/// Time before and after creeping in which the residual of a joint has no meaning, s, because the filter spreads
+/// measured values.
 const SMEARED: f64 = 0.05;
 
-/// Samples on both sides over which the filter of a log spreads what is sudden.
+/// Number of samples on both sides over which the filter of a log spreads a sudden change.
 const SPREAD: usize = 3;
 
-/// s: in so short a time the terms of a torque stay as large as they are.
+/// Time in which the terms of a torque hardly change, s.
 const COUNTED: f64 = 0.05;
 
-/// Less of what friction leaves open is nothing.
+/// Part of the uncertainty of friction below which it counts as zero.
 const FORGOTTEN: f64 = 0.02;
 
-/// A step that is this many times as long as the usual one is a gap, after which the observer begins anew.
+/// Ratio of a time step to the usual one above which it is a gap, after which the observer restarts.
 const GAP: f64 = 2.5;
 
 /// Signals along a motion: a list per joint, base to tip, each as long as `time`. N m, or N of a joint that slides.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Signals {
-    /// Seconds.
+    /// Times, s.
     pub time: Vec<f64>,
     /// The usual time between two samples, s.
     pub period: f64,
-    /// The measured efforts.
+    /// Measured efforts.
     pub measured: Vec<Vec<f64>>,
-    /// Measured, less the model with rotors and friction of the robot file.
+    /// Measured efforts less those of the model, with rotors and friction of the robot file.
     pub residual: Vec<Vec<f64>>,
-    /// Torques of the environment on the arm by the momentum observer.
+    /// External torques on the arm from the momentum observer.
     pub external: Vec<Vec<f64>>,
-    /// The range that friction leaves open, N m or N, 0 or more: a joint that creeps or turns back may be held by
-    /// anything between Coulomb's friction of both directions, whatever the file says of its speed.
+    /// The uncertainty of friction, N m or N, 0 or more: when a joint creeps or reverses, its friction may have any
+    /// value between Coulomb friction in both directions.
     pub open: Vec<Vec<f64>>,
-    /// Whether a joint creeps, or does so within a moment, so that its residual tells nothing.
+    /// Whether a joint creeps, shortly before or after, so that its residual has no meaning.
     pub creeps: Vec<Vec<bool>>,
-    /// The sum of the magnitudes of the terms that the model's torque is made of, N m or N, 0 or more: parameters that
-    /// are wrong by a part of themselves change the torque by that part of it at most.
+    /// The sum of the magnitudes of the terms of the model's torque, N m or N, 0 or more: if parameters are wrong by
+    /// some part, the torque is wrong by at most this part of the sum.
     pub terms: Vec<Vec<f64>>,
-    /// Magnitude of the joint's row of the mass matrix, kg m² or kg, by which noise of the velocities enters the
+    /// Magnitude of the joint's row of the mass matrix, kg m² or kg, which is the factor of velocity noise in the
     /// observer.
     pub inertia: Vec<Vec<f64>>,
-    /// Whether the observer has settled: not for three time constants behind the beginning and behind each gap.
+    /// Whether the observer has settled: false for three time constants after the beginning and after each gap.
     pub settled: Vec<bool>,
 }
 
 impl Signals {
-    /// The signals of a robot along a motion, the observer with this gain in Hz.
+    /// Computes the signals of a robot along a motion; `gain` is that of the observer, Hz.
     ///
     /// # Errors
-    /// When the motion is not one of the robot, too short, or has numbers that are not finite.
+    /// When the motion does not fit the robot, is too short, or has numbers that are not finite.
     pub fn new(robot: &Robot, motion: &Motion, gain: f64) -> Result<Self, WatchError> {
         check(robot.dof(), motion)?;
         if !(gain.is_finite() && gain > 0.0) {
@@ -139,7 +140,7 @@ impl Signals {
         Ok(Self { time, period, measured, residual, external, open, creeps, terms, inertia, settled })
     }
 
-    /// Every n-th sample, for pictures of a long motion.
+    /// Returns every `stride`-th sample, for pictures of a long motion.
     #[must_use]
     pub fn thinned(&self, stride: usize) -> Self {
         fn of<T: Clone>(list: &[T], stride: usize) -> Vec<T> {
@@ -162,7 +163,7 @@ impl Signals {
         }
     }
 
-    /// Appends the samples of what follows.
+    /// Appends the samples of the next motion.
     pub fn append(&mut self, next: Self) {
         self.time.extend(next.time);
         self.settled.extend(next.settled);
@@ -186,9 +187,9 @@ impl Signals {
         self.residual.len()
     }
 
-    /// The prediction error of a joint: the root mean square of measured less predicted, over the standard deviation of
-    /// the measured effort. 0 is a perfect model, 1 one that is no better than the mean. `None` where the effort does
-    /// not change.
+    /// Returns the prediction error of a joint: the root mean square of measured less predicted efforts, over the
+    /// standard deviation of the measured effort. 0 means a perfect model, and 1 a model that is no better than the
+    /// mean. `None` if the effort does not change.
     #[must_use]
     pub fn prediction_error(&self, joint: usize) -> Option<f64> {
         let (measured, residual) = (self.measured.get(joint)?, self.residual.get(joint)?);
@@ -201,12 +202,12 @@ impl Signals {
     }
 }
 
-/// The sum of the magnitudes of what each number of each link adds to the torques.
+/// Returns for each joint the sum of the magnitudes of the terms that each parameter of each link adds to its torque.
 fn magnitudes_of_terms(regressor: &[Vec<[f64; 10]>], parameters: &[[f64; 10]], model: &[f64]) -> Vec<f64> {
     let of_joint = |(row, model): (&Vec<[f64; 10]>, &f64)| {
         let terms = row.iter().flatten().zip(parameters.iter().flatten()).map(|(y, pi)| y * pi);
         let (links, magnitude) = terms.fold((0.0, 0.0), |(sum, most), term| (sum + term, most + f64::abs(term)));
-        // what the links do not make the rotors do
+        // the difference is the torque of the rotors
         magnitude + (model - links).abs()
     };
     regressor.iter().zip(model).map(of_joint).collect()
@@ -216,8 +217,8 @@ fn norm(row: &[f64]) -> f64 {
     row.iter().map(|number| number * number).sum::<f64>().sqrt()
 }
 
-/// The range that friction leaves open along a motion, sample by sample: where a joint creeps, and where it turns back
-/// between two samples.
+/// Returns the uncertainty of friction at each sample: not zero where a joint creeps, and where it reverses between two
+/// samples.
 fn left_open(joint: &Joint, qd: &[f64], still: f64) -> Vec<f64> {
     let of_file = joint.coulomb_displacement.map(|_| SLIPPING).or(joint.coulomb_width).unwrap_or(0.0);
     let slow = CREEPING * of_file.max(still);
@@ -229,7 +230,7 @@ fn left_open(joint: &Joint, qd: &[f64], still: f64) -> Vec<f64> {
     (0..qd.len()).map(open).collect()
 }
 
-/// Whether something is open within a moment.
+/// Whether friction is uncertain at a time, or shortly before or after.
 fn creeping(time: &[f64], open: &[f64]) -> Vec<bool> {
     let spread = spread(open);
     let pass = |order: &mut dyn Iterator<Item = usize>| {
@@ -247,7 +248,7 @@ fn creeping(time: &[f64], open: &[f64]) -> Vec<bool> {
     behind.into_iter().zip(before).map(|(behind, before)| behind || before).collect()
 }
 
-/// The largest within what the filter spreads.
+/// Returns the largest value among the neighbouring samples over which the filter spreads it.
 fn spread(open: &[f64]) -> Vec<f64> {
     let largest = |at: usize| {
         let near = &open[at.saturating_sub(SPREAD)..(at + SPREAD + 1).min(open.len())];
@@ -256,7 +257,7 @@ fn spread(open: &[f64]) -> Vec<f64> {
     (0..open.len()).map(largest).collect()
 }
 
-/// The range that was open, as an observer forgets it; it ends where it is less than `over`.
+/// Returns the uncertainty of friction with the decay of the observer after it; it ends where it is less than `over`.
 fn faded(time: &[f64], open: &[f64], gain: f64, over: f64) -> Vec<f64> {
     let mut open = spread(open);
     for at in 1..open.len() {
@@ -268,7 +269,7 @@ fn faded(time: &[f64], open: &[f64], gain: f64, over: f64) -> Vec<f64> {
     open
 }
 
-/// The speed of each joint below which it is as good as at rest: a fiftieth of its usual largest, the 95th percentile.
+/// Returns for each joint the speed below which it counts as at rest: a fiftieth of the 95th percentile of its speed.
 fn still(qd: &[Vec<f64>]) -> Vec<f64> {
     let of_joint = |rates: &Vec<f64>| {
         let mut speeds: Vec<f64> = rates.iter().map(|rate| rate.abs()).collect();
@@ -278,7 +279,7 @@ fn still(qd: &[Vec<f64>]) -> Vec<f64> {
     qd.iter().map(of_joint).collect()
 }
 
-/// The median of the steps.
+/// Returns the median of the time steps.
 fn usual_step(time: &[f64]) -> f64 {
     let steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
     if steps.is_empty() { 1.0 } else { median(steps) }
@@ -287,7 +288,7 @@ fn usual_step(time: &[f64]) -> f64 {
 /// Refuses a motion that cannot be watched.
 ///
 /// # Errors
-/// When the motion is not one of `dof` joints, too short, or has numbers that are not finite.
+/// When the motion does not have `dof` joints, is too short, or has numbers that are not finite.
 fn check(dof: usize, motion: &Motion) -> Result<(), WatchError> {
     let samples = motion.len();
     for (name, lists) in [("q", &motion.q), ("qd", &motion.qd), ("qdd", &motion.qdd), ("tau", &motion.tau)] {

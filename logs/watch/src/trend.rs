@@ -1,4 +1,4 @@
-//! Friction, residuals and a payload of an arm from log to log.
+//! Follows friction, residuals and the payload of an arm from log to log.
 
 use std::fmt::Write as _;
 
@@ -17,13 +17,13 @@ use crate::Baseline;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct TrendRow {
-    /// The name of the log, of the day or of the group.
+    /// The name of the log, the day or the group.
     pub name: String,
     /// Coulomb friction of each joint, N m or N.
     pub friction: Vec<TrendValue>,
     /// The payload, kg.
     pub payload: TrendValue,
-    /// Root mean square of what the model leaves of each joint's torque, N m or N.
+    /// Root mean square of the model's residual torque of each joint, N m or N.
     pub residual: Vec<f64>,
     /// The number of events.
     pub events: usize,
@@ -32,11 +32,11 @@ pub struct TrendRow {
 /// A parameter in one log.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrendValue {
-    /// The value in the log; not a number if the log does not determine it.
+    /// The value in the log; NaN if the log does not determine it.
     pub value: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the value.
     pub deviation: f64,
-    /// The change against the baseline that is an event.
+    /// The smallest change against the baseline that is an event.
     pub threshold: f64,
 }
 
@@ -53,7 +53,7 @@ pub struct Trend {
 }
 
 impl Trend {
-    /// A trend without rows.
+    /// Makes a trend without rows.
     #[must_use]
     pub fn new(structure: &Structure, baseline: &Baseline) -> Self {
         let joints = 0..structure.dof();
@@ -89,7 +89,7 @@ impl Trend {
         self.rows.push(TrendRow { name, friction, payload, residual, events });
     }
 
-    /// The rows as CSV: a header, then a line for each log; numbers have six digits.
+    /// Returns the rows as CSV: a header, then a line for each log; numbers have six digits.
     #[must_use]
     pub fn csv(&self, robot: &Robot) -> String {
         let name = |text: &str| {
@@ -114,8 +114,8 @@ impl Trend {
         text
     }
 
-    /// Coulomb friction of each joint and the payload over the names of the logs, with intervals of 95 % and the
-    /// thresholds of events, as an SVG. `about` names the logs that were compared.
+    /// Returns an SVG with Coulomb friction of each joint and the payload over the names of the logs, with 95 %
+    /// confidence intervals and the thresholds of events. `about` names the logs that were compared.
     #[must_use]
     pub fn svg(&self, robot: &Robot, about: &str) -> String {
         let names: Vec<String> = self.rows.iter().map(|row| row.name.clone()).collect();
@@ -132,10 +132,10 @@ impl Trend {
     }
 }
 
-/// Deviations of an interval of 95 %.
+/// Half the width of a 95 % confidence interval, in standard deviations.
 const INTERVAL: f64 = 1.96;
 
-/// The curves of a panel: the value, the ends of its interval, the thresholds.
+/// A panel with its curves: the value, the ends of its interval, the thresholds.
 struct Series {
     title: String,
     curves: [Vec<f64>; 5],

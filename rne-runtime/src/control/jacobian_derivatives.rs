@@ -1,5 +1,5 @@
-//! Derivatives of the Jacobian of the tip. Those of an [`Arm`] come from dual numbers through its Jacobian, and are
-//! exact up to rounding.
+//! Derivatives of the Jacobian of the tip. An [`Arm`] computes them by dual numbers through its Jacobian, exact up to
+//! rounding.
 
 use core::array::from_fn;
 

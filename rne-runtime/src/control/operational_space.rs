@@ -1,7 +1,7 @@
-//! Dynamics of the arm at its tip or at a frame: the operational-space inertia Λ = (J M⁻¹ Jᵀ)⁻¹ and the dynamically
+//! The dynamics of the arm at its tip or at a frame: the operational-space inertia Λ = (J M⁻¹ Jᵀ)⁻¹ and the dynamically
 //! consistent inverse J̄ = M⁻¹ Jᵀ Λ of the Jacobian. Source: O. Khatib, "A unified approach for motion and force
-//! control of robot manipulators: the operational space formulation", IEEE Journal of Robotics and Automation 3(1),
-//! 1987.
+//! control of robot manipulators: the operational space formulation", IEEE Journal of Robotics and Automation
+//! 3(1), 1987.
 //!
 //! M and J M⁻¹ Jᵀ are factored as L D Lᵀ, as in [forward dynamics](crate::ForwardDynamics).
 

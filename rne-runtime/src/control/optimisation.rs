@@ -1,6 +1,5 @@
-//! Derivatives for optimisers. Those of an [`Arm`] come from dual numbers through the seven steps: exact up to
-//! rounding, one direction at a time. Generated code computes them by other formulas, in reverse mode and by composite
-//! bodies.
+//! Derivatives for optimisers. An [`Arm`] computes them by dual numbers through the seven steps, exact up to rounding,
+//! one direction at a time. Generated code computes them by other formulas, in reverse mode and by composite bodies.
 
 use core::array::from_fn;
 

@@ -46,8 +46,7 @@ pub struct BaseParameter {
     /// Its value for the robot: kg m², kg m or kg, as `kept` has it.
     pub value: f64,
     /// Whether torques in double precision can distinguish it from the other base parameters, by the tolerance
-    /// [`BaseParameters::VISIBLE`]. Of parameters that they cannot distinguish, the torques only determine
-    /// combinations.
+    /// [`BaseParameters::VISIBLE`]. The torques determine only combinations of parameters that they cannot distinguish.
     pub is_visible: bool,
 }
 

@@ -24,7 +24,7 @@ impl PerJoint for Counted {
     }
 }
 
-/// Which joints are coordinates, and which joints they move by couplings.
+/// The couplings of a robot: its coordinates, and the joints that follow them.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Couplings<S> {
     /// The joints that follow no other, counted from 0.

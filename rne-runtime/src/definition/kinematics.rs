@@ -192,14 +192,15 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 
     /// The tip's acceleration at q̈ = 0: steps 1 and 2, and step 4 from joint to joint instead of by centres of mass,
-    /// which may be far away and have no part in it. s_i leads from joint i to joint i+1, the last to the tip:
+    /// which may be far away, and on which it does not depend. s_i leads from joint i to joint i+1, the last to the
+    /// tip:
     ///
     /// - R: p̈_{i+1} = R_iᵀ p̈_i + ω̇_i × s_i + ω_i × (ω_i × s_i)      p̈_1 = 0
     /// - P: the same + 2 q̇_i ω_i × e_i
     ///
     /// then the last p̈ and ω̇_n turned by R_n … R_1 and by the base.
     ///
-    /// A frame on another link than the last one stands in the place of the tip: the links behind it have no part.
+    /// A frame on another link than the last one replaces the tip; then the links after it have no effect.
     pub(crate) fn jacobian_rate_times_velocity<T: Scalar>(self, q: &[T], qd: &[T]) -> [T; 6] {
         let frame = self.observed();
         let zeros = self.zeros();

@@ -1,4 +1,4 @@
-//! Many states at once: registers with several lanes, and the programs that run in them.
+//! Computation of many states at once: registers with several lanes, and the programs that run in them.
 
 pub mod batch;
 #[cfg(feature = "machine")]

@@ -13,8 +13,8 @@ pub const fn unknown_frame(names: &[&str], name: &str, remark: &str) -> ! {
 }
 
 /// Returns the index of the name that is most similar to `name`, if they differ in one place only: in upper and lower
-/// case, in one letter that is missing, added or replaced, or in two swapped letters. Of equally similar names, it is
-/// the first.
+/// case, in one letter that is missing, added or replaced, or in two swapped letters. If several names are equally
+/// similar, it is the first of them.
 const fn nearest(names: &[&str], name: &str) -> Option<usize> {
     let (mut index, mut nearest, mut least) = (0, None, usize::MAX);
     while index < names.len() {

@@ -7,7 +7,7 @@ use std::fmt::Write;
 /// The largest growth of a count that is no error, per cent.
 const TOLERANCE: u64 = 2;
 
-/// What was counted: robot, form and function.
+/// The key of a count: robot, form and function.
 pub(crate) type Key = [String; 3];
 
 /// Counts of instructions per call, in the order in which they were measured.

@@ -13,9 +13,9 @@ use crate::formulate::ldlt::System;
 use crate::formulate::mass_matrix::OfBase;
 use crate::formulate::{
     Arm, AtTip, Closure, Contacts, FloatingStep, Frame, Frames, JointLoad, JointState, Motion, Outputs, Wrench,
-    actuation, adjoint, arm, base_rotation, by_joint, centre_of_mass, coriolis_matrix, derivatives, energy,
+    actuation, adjoint, arm, base_rotation, by_joint, centre_of_mass, coriolis_matrix, derivatives,
     floating_derivatives, floating_forward_dynamics, floating_mass_matrix, forward_dynamics, integrator, kinematics,
-    mass_matrix, momentum, on_base, pose_of_base, regressor, seven_steps, square,
+    mass_matrix, momentum, on_base, regressor, seven_steps, square,
 };
 use crate::function::Argument;
 use crate::ir::{Axis, Builder, Cause, Name, Quantity, Symbol, Vector, WithRespectTo};
@@ -265,22 +265,6 @@ impl<'s, 'r> Derivation<'s, 'r> {
             AtTip::Nothing | AtTip::Wrenches(_) | AtTip::Payload(_) => Vec::new(),
         };
         self.gathered(Quantity::Torque, &torques)
-    }
-
-    pub(super) fn kinetic_energy(&self) -> Outputs<'s> {
-        let base = self.builder.function.is_of_floating_base().then_some(&self.base);
-        let energy = energy::kinetic(&self.arm, &self.states, (base, &self.motions()));
-        vec![(Name::scalar(Quantity::Kinetic, 0), energy)]
-    }
-
-    pub(super) fn potential_energy(&self) -> Outputs<'s> {
-        let pose = self.is_floating().then(|| pose_of_base(self.builder));
-        let (frames, centres) = (self.frames_in_frame_0(), self.centres());
-        let energy = match &pose {
-            Some(pose) => energy::floating_potential(&self.arm, pose, &frames, &centres),
-            None => energy::potential(&self.arm, &frames, &centres),
-        };
-        vec![(Name::scalar(Quantity::Potential, 0), energy)]
     }
 
     pub(super) fn frames_in_frame_0(&self) -> Frames<'s> {

@@ -7,11 +7,30 @@
 //! A floating base is link 0. If its frame 0 has the origin p and the rotation R in the world:
 //! V = - Σ m_i (Rᵀ g · c_i + g · p).
 
-use crate::formulate::{Arm, Frame, Frames, JointState, Motion};
+use crate::formulate::derivation::Derivation;
+use crate::formulate::{Arm, Frame, Frames, JointState, Motion, Outputs, pose_of_base};
 use crate::ir::{Cause, Name, Quantity, Symbol, Vector};
 
+impl<'s> Derivation<'s, '_> {
+    pub(super) fn kinetic_energy(&self) -> Outputs<'s> {
+        let base = self.builder.function.is_of_floating_base().then_some(&self.base);
+        let energy = kinetic(&self.arm, &self.states, (base, &self.motions()));
+        vec![(Name::scalar(Quantity::Kinetic, 0), energy)]
+    }
+
+    pub(super) fn potential_energy(&self) -> Outputs<'s> {
+        let pose = self.is_floating().then(|| pose_of_base(self.builder));
+        let (frames, centres) = (self.frames_in_frame_0(), self.centres());
+        let energy = match &pose {
+            Some(pose) => floating_potential(&self.arm, pose, &frames, &centres),
+            None => potential(&self.arm, &frames, &centres),
+        };
+        vec![(Name::scalar(Quantity::Potential, 0), energy)]
+    }
+}
+
 /// Returns the kinetic energy of the links, plus that of a floating `base`, if there is one.
-pub(crate) fn kinetic<'s>(
+fn kinetic<'s>(
     arm: &Arm<'s>,
     states: &[JointState<'s>],
     (base, motions): (Option<&Motion<'s>>, &[Motion<'s>]),
@@ -54,19 +73,14 @@ pub(crate) fn kinetic<'s>(
 }
 
 /// Returns the potential energy of a robot on a fixed base; `frames` and gravity are in frame 0.
-pub(crate) fn potential<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Symbol<'s> {
+fn potential<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Symbol<'s> {
     let lost = lost(arm, arm.gravity, frames, centres);
     arm.builder.name(Name::scalar(Quantity::Potential, 0), -lost)
 }
 
 /// Returns the potential energy for a floating base with the given `pose` in the world; gravity is in world axes,
 /// `frames` are in frame 0.
-pub(crate) fn floating_potential<'s>(
-    arm: &Arm<'s>,
-    pose: &Frame<'s>,
-    frames: &Frames<'s>,
-    centres: &[Vector<'s>],
-) -> Symbol<'s> {
+fn floating_potential<'s>(arm: &Arm<'s>, pose: &Frame<'s>, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Symbol<'s> {
     let line = arm.builder.joint(0);
     let gravity = line.within(Quantity::Potential, || pose.rotation.transpose() * arm.gravity);
     let lost = lost(arm, gravity, frames, centres);

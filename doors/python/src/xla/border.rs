@@ -1,12 +1,12 @@
-//! What XLA calls: a C function that turns the call frame of XLA's foreign-function interface into slices.
+//! The C function that XLA calls. It turns the call frame of XLA's foreign-function interface into slices.
 //!
 //! This is the only module of the package with `unsafe`: a call frame consists of C's pointers, and nothing else can
 //! read it. The structs are those of `xla/ffi/api/c_api.h` (`jax.ffi.include_dir()` has it), as far as they are read
 //! here. Before a struct is used, its `struct_size`, which XLA states, must reach to the last field that is read.
 //! Before a pointer is used, it must not be NULL and must be aligned; lengths of axes are multiplied with checks, and
-//! the result shares no memory with an argument. Enums of C are integers here, because C may put any number there. What
-//! cannot be checked is XLA's promise: a pointer that is not NULL points to as much as the frame says, and stays so for
-//! the call. No panic crosses the border.
+//! the result shares no memory with an argument. Enums of C are integers here, because C may put any number there. The
+//! rest cannot be checked and is XLA's promise: a pointer that is not NULL points to as much as the frame says, and
+//! stays so for the call. No panic crosses the border.
 #![allow(unsafe_code)]
 
 mod checked;

@@ -1,4 +1,5 @@
-//! Contacts: torques of the environment, by the momentum observer, that are larger than its noise for a time of hold.
+//! Finds contacts: external torques from the momentum observer that stay above a threshold for a minimum time (the
+//! hold).
 
 mod noise;
 mod threshold;
@@ -17,12 +18,12 @@ pub struct Contact {
     pub start: f64,
     /// The time at which it ends, s: the end of the motion if it lasts until then.
     pub end: f64,
-    /// The largest torque of the environment on the arm, N m or N, less what friction leaves open.
+    /// The largest external torque on the arm, N m or N, less the uncertainty of friction.
     pub peak: f64,
 }
 
 impl Contact {
-    /// Contacts of the same joint that are closer than `gap`, s, made one, by their beginnings.
+    /// Joins contacts of the same joint that are closer than `gap`, s, and sorts them by their beginnings.
     #[must_use]
     pub fn joined(mut contacts: Vec<Self>, gap: f64) -> Vec<Self> {
         contacts.sort_by(|a, b| a.joint.cmp(&b.joint).then(a.start.total_cmp(&b.start)));
@@ -41,10 +42,10 @@ impl Contact {
     }
 }
 
-/// Looks for contacts in the signals of a motion.
+/// Finds the contacts in the signals of a motion.
 ///
 /// # Errors
-/// When the noise is of another number of joints, or a setting is not above 0.
+/// When the noise has another number of joints, or a setting is not above 0.
 pub fn contacts(signals: &Signals, noise: &ContactNoise, settings: &Settings) -> Result<Vec<Contact>, WatchError> {
     settings.check()?;
     let dof = signals.dof();
@@ -61,7 +62,7 @@ pub fn contacts(signals: &Signals, noise: &ContactNoise, settings: &Settings) ->
     Ok(found)
 }
 
-/// The threshold in deviations, and the samples of a hold.
+/// Returns the threshold in standard deviations, and the number of samples of the hold.
 fn threshold(signals: &Signals, settings: &Settings) -> (f64, usize) {
     let held = samples_in(settings.hold, signals.period);
     #[allow(clippy::cast_precision_loss)] // samples of a hold
@@ -69,7 +70,8 @@ fn threshold(signals: &Signals, settings: &Settings) -> (f64, usize) {
     (threshold::threshold(&Settings { hold, ..settings.clone() }, signals.dof()), held)
 }
 
-/// The largest torque of each joint at each sample that is no contact, N m or N, on both sides of the noise's mean.
+/// Returns for each joint and sample the largest torque that is no contact, N m or N, as a distance from the mean of
+/// the noise in both directions.
 #[must_use]
 pub fn contact_limits(signals: &Signals, noise: &ContactNoise, settings: &Settings) -> Vec<Vec<f64>> {
     let (threshold, _) = threshold(signals, settings);
@@ -82,20 +84,21 @@ fn limits(signals: &Signals, joint: usize, noise: &JointNoise, threshold: f64) -
     signals.open[joint].iter().enumerate().map(at_sample).collect()
 }
 
-/// Number of samples in a time, one at least.
+/// Returns the number of samples in a time, at least one.
 fn samples_in(time: f64, period: f64) -> usize {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // it saturates
     let samples = (time / period - 1e-9).ceil() as usize;
     samples.max(1)
 }
 
-/// The contacts of a joint: from the first of `hold` samples beyond the threshold until it is within half of it.
+/// Returns the contacts of a joint: from the first of `held` samples above the threshold until the torque is below half
+/// of it.
 fn of_joint(signals: &Signals, joint: usize, noise: &JointNoise, threshold: f64, held: usize) -> Vec<Contact> {
     let mut found = Vec::new();
     let limits = limits(signals, joint, noise, threshold);
     let mut open: Option<Contact> = None;
     let mut beyond = 0;
-    // what friction may be is no torque of the environment
+    // subtracts the uncertainty of friction, which may not be an external torque
     let sure = |at: usize| {
         let off = signals.external[joint][at] - noise.mean;
         off.signum() * (off.abs() - signals.open[joint][at]).max(0.0)
@@ -132,7 +135,7 @@ fn of_joint(signals: &Signals, joint: usize, noise: &JointNoise, threshold: f64,
     found
 }
 
-/// The number that is farther from zero.
+/// Returns the number with the larger magnitude.
 fn farther(a: f64, b: f64) -> f64 {
     if b.abs() > a.abs() { b } else { a }
 }

@@ -1,4 +1,4 @@
-//! The magnitude of the observer's external torques while nothing touches the arm.
+//! Estimates the noise of the momentum observer: its external torques while nothing touches the arm.
 
 use std::ops::Range;
 
@@ -7,47 +7,48 @@ use rne_logs::median;
 use super::contacts;
 use crate::{Settings, Signals, WatchError};
 
-/// The factor by which deviations are raised at a time.
+/// The factor by which standard deviations are raised in each step.
 const RAISE: f64 = 1.1;
 
-/// The largest error of a model in a quiet log counts as this many deviations.
+/// Number of standard deviations as which the largest error of a model in a quiet log counts.
 const BOUND: f64 = 3.0;
 
-/// Minimum number of samples that noise is estimated from.
+/// Smallest number of samples from which noise is estimated.
 const FEWEST: usize = 20;
 
 /// An autocorrelation below this counts as zero.
 const FORGOTTEN: f64 = 0.05;
 
-/// s: in such a time the error of a model does not change.
+/// Time in which the error of a model hardly changes, s.
 const HALF: f64 = 0.1;
 
-/// The median of the square of a normal number of deviation 1.
+/// The median of the square of a normal number with standard deviation 1.
 const MEDIAN: f64 = 0.4549;
 
-/// Products of an autocorrelation are counted up to here.
+/// Largest number of samples from which an autocorrelation is computed.
 const LONGEST: usize = 20_000;
 
-/// The parts of the model's torques that no deviation is below: what rounding and its relatives leave.
+/// Smallest standard deviation, as a part of the model's torques, because of rounding.
 const LEAST: f64 = 1e-6;
 
-/// The noise of the observer of one joint, and the error of its model.
+/// The noise of the momentum observer for one joint, and the error of the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointNoise {
     /// The median of the observer's torque, N m or N.
     pub mean: f64,
-    /// Its standard deviation where the motion is as usual, N m or N.
+    /// The standard deviation of the observer's torque in typical motion, N m or N.
     pub deviation: f64,
-    /// The deviation of the model's error, as a part of its [terms](Signals::terms).
+    /// The standard deviation of the model's error, as a part of its [terms](Signals::terms).
     pub part: f64,
     /// The median of the terms, N m or N.
     pub terms: f64,
-    /// The median of the [inertia](Signals::inertia), kg m² or kg: noise of the velocities grows with it.
+    /// The median of the [inertia](Signals::inertia), kg m² or kg: the effect of velocity noise grows with it.
     pub inertia: f64,
 }
 
 impl JointNoise {
-    /// The deviation of the observer at a sample. Noise and errors of the model are independent: their squares add up.
+    /// Returns the standard deviation of the observer's torque at a sample. Noise and errors of the model are
+    /// independent, so their squares are added.
     pub(crate) fn deviation_at(&self, terms: f64, inertia: f64) -> f64 {
         let larger = if self.inertia > 0.0 { (inertia / self.inertia).max(1.0) } else { 1.0 };
         let noise = self.deviation * larger;
@@ -56,18 +57,18 @@ impl JointNoise {
     }
 }
 
-/// The noise of the observer of every joint, base to tip.
+/// The noise of the momentum observer for every joint, base to tip.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactNoise {
-    /// One per joint.
+    /// The noise of each joint.
     pub joints: Vec<JointNoise>,
 }
 
 impl ContactNoise {
-    /// The noise in a segment of signals, in samples.
+    /// Estimates the noise in a segment of signals, which is given by its samples.
     ///
-    /// Medians and median deviations are taken, which a knock does not change; a deviation is raised by two of its own
-    /// standard errors, so that a short segment makes cautious thresholds.
+    /// It uses medians and median deviations, which a short knock does not change. A standard deviation is raised by
+    /// two of its own standard errors, so that a short segment gives cautious thresholds.
     ///
     /// # Errors
     /// When the segment is too short.
@@ -83,7 +84,7 @@ impl ContactNoise {
             let sure: Vec<usize> = settled.iter().copied().filter(|&at| signals.open[joint][at] == 0.0).collect();
             let seen = if sure.len() < FEWEST { settled } else { sure };
             let seen: Vec<f64> = seen.into_iter().map(|at| signals.external[joint][at]).collect();
-            // neighbours depend on each other: fewer numbers determine the deviation
+            // neighbouring samples are correlated, so the number of independent samples is smaller
             let alone = seen.len() / remembered(&seen).max(1);
             let (mean, deviation) = spread(&seen, alone, least.max(f64::MIN_POSITIVE));
             let usual = |lists: &[Vec<f64>]| median(lists[joint][quiet.clone()].to_vec());
@@ -98,8 +99,8 @@ impl ContactNoise {
         Ok(Self { joints: (0..signals.dof()).map(of_joint).collect::<Result<_, _>>()? })
     }
 
-    /// The medians of several segments, which a segment in which something happens does not change. `None` when there
-    /// are no segments.
+    /// Returns the medians over several segments, which a few disturbed segments do not change. `None` if there are no
+    /// segments.
     #[must_use]
     pub fn typical(segments: &[Self]) -> Option<Self> {
         Self::by_joint(segments, |all| {
@@ -114,8 +115,8 @@ impl ContactNoise {
         })
     }
 
-    /// The noise that covers several segments in which nothing happens: the means of all of them are within its
-    /// deviation, and no deviation is larger. `None` when there are no segments.
+    /// Returns a noise that covers several undisturbed segments: its standard deviation includes the means and
+    /// deviations of all of them. `None` if there are no segments.
     #[must_use]
     pub fn covering(segments: &[Self]) -> Option<Self> {
         Self::by_joint(segments, |all| {
@@ -131,7 +132,7 @@ impl ContactNoise {
         })
     }
 
-    /// Multiplies the deviations of the observer, and of the model's error.
+    /// Multiplies the standard deviations of the observer by `noise`, and those of the model's error by `model`.
     #[must_use]
     pub fn widened(mut self, noise: f64, model: f64) -> Self {
         for joint in &mut self.joints {
@@ -147,11 +148,12 @@ impl ContactNoise {
         Some(Self { joints: (0..dof).map(joint_noise).collect() })
     }
 
-    /// Takes the largest error of the model in a segment in which nothing happens for three of its deviations, and
-    /// raises the deviations of what would be a contact there, until nothing is: a model's errors are no normal noise.
+    /// Raises the noise by an undisturbed segment. The largest error of the model there counts as three standard
+    /// deviations. Then the standard deviations of joints with a contact there are raised until there is none, because
+    /// errors of a model are not normally distributed.
     ///
     /// # Errors
-    /// Those of [`contacts`].
+    /// The errors of [`contacts`].
     pub fn silent(mut self, signals: &Signals, settings: &Settings) -> Result<Self, WatchError> {
         for (at, joint) in self.joints.iter_mut().enumerate().take(signals.dof()) {
             let parts = WrongParts::new(signals, at, 0..signals.time.len());
@@ -172,7 +174,7 @@ impl ContactNoise {
         }
     }
 
-    /// The noise of standard deviations that are known, N m or N, with a model that has no error.
+    /// Makes the noise from known standard deviations, N m or N, for a model without errors.
     #[must_use]
     pub fn white(deviations: &[f64]) -> Self {
         let joints = deviations.iter().map(|&deviation| JointNoise { deviation, ..JointNoise::default() });
@@ -180,18 +182,19 @@ impl ContactNoise {
     }
 }
 
-/// The residual of a joint where friction leaves nothing open, with the samples.
+/// Returns the samples and residuals of a joint where friction is certain.
 fn known(signals: &Signals, joint: usize, samples: Range<usize>) -> Vec<(usize, f64)> {
     let (residual, creeps) = (&signals.residual[joint], &signals.creeps[joint]);
     samples.filter(|&at| !creeps[at]).map(|at| (at, residual[at])).collect()
 }
 
-/// The relative errors of a model's terms.
+/// The errors of a model's torque, relative to its terms.
 struct WrongParts {
-    /// Squares, growing: of means of the residual over segments that are so short that the model's error does not
-    /// change. Each is the product of its two halves, whose noise is not the same: of noise alone half are negative.
+    /// Squared relative errors in increasing order, one for each short segment, in which the model's error hardly
+    /// changes. Each is the product of the mean residuals of the segment's halves, whose noise is independent: with
+    /// noise only, half of the products are negative.
     squares: Vec<f64>,
-    /// Number of blocks that are independent of each other.
+    /// Number of independent segments.
     alone: usize,
 }
 
@@ -221,15 +224,15 @@ impl WrongParts {
         Self { squares, alone }
     }
 
-    /// A percentile of the squares, less the part that noise adds.
+    /// Returns a percentile of the squares, less the part that noise adds.
     fn square(&self, percent: usize) -> f64 {
         let Some(last) = self.squares.len().checked_sub(1) else { return 0.0 };
         let at = last * percent / 100;
         (self.squares[at] + self.squares[last - at].min(0.0)).max(0.0)
     }
 
-    /// The deviation, by the median, which what happens for less than half of the time does not change; raised by two
-    /// of its own standard errors.
+    /// Returns the standard deviation, from the median, which disturbances in less than half of the time hardly change;
+    /// it is raised by two of its own standard errors.
     fn deviation(&self) -> f64 {
         if self.squares.len() < FEWEST {
             return 0.0;
@@ -239,13 +242,14 @@ impl WrongParts {
         (self.square(50) / MEDIAN).sqrt() * (1.0 + 2.0 * error)
     }
 
-    /// The largest, but for one in a hundred.
+    /// Returns the largest relative error, except for the largest hundredth.
     fn largest(&self) -> f64 {
         self.square(99).sqrt()
     }
 }
 
-/// The median, and a standard deviation by the median deviation, of which `independent` numbers tell.
+/// Returns the median, and a standard deviation from the median deviation, raised by two of its standard errors for
+/// this number of `independent` numbers.
 fn spread(numbers: &[f64], independent: usize, least: f64) -> (f64, f64) {
     let mean = median(numbers.to_vec());
     let deviation = 1.4826 * median(numbers.iter().map(|x| (x - mean).abs()).collect());
@@ -254,7 +258,8 @@ fn spread(numbers: &[f64], independent: usize, least: f64) -> (f64, f64) {
     (mean, (deviation * (1.0 + 2.0 * error)).max(least))
 }
 
-/// For how many samples noise is correlated: 1 + 2 Σ ρ, over the lags until it is forgotten.
+/// Returns the number of samples over which noise is correlated: 1 + 2 Σ ρ, over the lags until the correlation ρ is
+/// negligible.
 fn remembered(numbers: &[f64]) -> usize {
     let numbers = &numbers[..numbers.len().min(LONGEST)];
     let mean = median(numbers.to_vec());

@@ -1,28 +1,28 @@
-//! The threshold of contacts, from a rate of false alarms.
+//! Computes the threshold of contacts from a rate of false alarms.
 //!
 //! Every joint gets the same share of the rate: the more joints there are, the higher is the threshold of each. Noise
-//! is taken to be normal, with the deviation of [`ContactNoise`](crate::ContactNoise), which changes along a motion
-//! with the error of the model.
+//! is assumed to be normal, with the standard deviation of [`ContactNoise`](crate::ContactNoise), which changes along a
+//! motion with the error of the model.
 //!
-//! If a signal must be above k deviations for a time of hold, then the rate of false alarms is at most 2 Q(k) / hold.
-//! This bound holds for noise of any spectrum: a signal that stays above for a hold is above at one of any instants
-//! that are a hold apart.
+//! If a signal must stay above k standard deviations for the time `hold`, the rate of false alarms is at most 2 Q(k) /
+//! hold, where Q is the upper tail of the normal distribution. This bound is valid for noise of any spectrum: a signal
+//! that stays above for this time is above at one of the instants of any grid with this step.
 
 use crate::Settings;
 
-/// The threshold of one of `dof` joints, in deviations.
+/// Returns the threshold of one of `dof` joints, in standard deviations.
 pub(super) fn threshold(settings: &Settings, dof: usize) -> f64 {
     #[allow(clippy::cast_precision_loss)] // at most 64 joints
     let share = settings.false_alarms / dof.max(1) as f64;
     quantile(0.5 * share / 3600.0 * settings.hold)
 }
 
-/// The k with Q(k) = p, for p below a half: noise of deviation 1 is above it with this probability.
+/// Returns the k with Q(k) = p, for p below a half: noise with standard deviation 1 is above k with this probability.
 fn quantile(p: f64) -> f64 {
     bisect(|k| 0.5 * libm::erfc(k * std::f64::consts::FRAC_1_SQRT_2) > p, 0.0, 38.0)
 }
 
-/// Where `is_below` turns false.
+/// Returns the number between `low` and `high` from which on `is_below` is false.
 fn bisect(is_below: impl Fn(f64) -> bool, mut low: f64, mut high: f64) -> f64 {
     for _ in 0..80 {
         let middle = 0.5 * (low + high);

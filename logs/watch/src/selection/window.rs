@@ -1,4 +1,4 @@
-//! The time at which a change begins and ends, and moments that are no changes.
+//! Finds the times at which a change begins and ends, and short moments that are contacts instead of changes.
 
 use std::ops::Range;
 
@@ -13,20 +13,21 @@ use crate::score::{Change, Projected, Score};
 const STEP: f64 = 1.0;
 const STEPS: usize = 64;
 
-/// In seconds: a change lasts at least as long. The value was chosen by experiment.
+/// In seconds: the shortest duration of a change. The value was chosen by experiment.
 const SHORTEST: f64 = 3.0;
 
-/// In seconds: a change that so short a moment of the log explains is a contact and no change of a parameter. The value
-/// was chosen by experiment.
+/// In seconds: if a moment of at most this duration explains a change, it is a contact and no change of a parameter.
+/// The value was chosen by experiment.
 const MOMENT: f64 = 1.0;
 
 impl Selection<'_> {
-    /// Whether a change may have this window: a recorder has one delay throughout a log.
+    /// Whether a change may have this window. A delay must last for the whole log, because it is a property of the
+    /// recorder.
     pub(super) fn may_begin(&self, change: &Change) -> bool {
         self.candidate(change.candidate) != Candidate::Delay || change.window == (0..self.score.len())
     }
 
-    /// s: of the stretches of a window, without what lies between runs.
+    /// Returns the duration of the stretches of a window, s, without the time between runs.
     pub(super) fn duration(&self, window: &Range<usize>) -> f64 {
         let of_rows: u64 = self.stretches[window.clone()].iter().map(|stretch| stretch.rows).sum();
         #[allow(clippy::cast_precision_loss)]
@@ -34,7 +35,7 @@ impl Selection<'_> {
         rows * self.baseline.row()
     }
 
-    /// The windows that are tried: from the beginning, or from some time later, to the end.
+    /// Returns the windows that are tried first: from the beginning, or from some later time, to the end of the log.
     pub(super) fn windows(&self) -> Vec<Range<usize>> {
         let count = self.score.len();
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
@@ -44,7 +45,8 @@ impl Selection<'_> {
         std::iter::once(0..count).chain(starts.filter(is_long)).collect()
     }
 
-    /// The change with the beginning and the end that explain most, of all stretches about those that were tried.
+    /// Returns the change with the beginning and end that explain most. It tries all beginnings near the one that was
+    /// found, and all ends.
     pub(super) fn refined(&self, mut change: Change) -> Change {
         let count = self.score.len();
         let reach = count.div_ceil(STEPS.min(count));
@@ -69,7 +71,8 @@ impl Selection<'_> {
         }
     }
 
-    /// The moment without which a change would not be half as large: somebody touched the arm then.
+    /// Returns the short moment without which a change would be less than half as large, if there is one: something
+    /// touched the arm then.
     pub(super) fn moment(&self, change: &Change) -> Option<Range<usize>> {
         let mut given = self.given.clone();
         given.push(self.score.projected(change.clone()));

@@ -4,7 +4,8 @@ use super::blocks::States;
 use super::{Argument, BatchInverseDynamics, BatchScalar, LengthMismatch, VectorUnit, for_each_part};
 use crate::{Arm, Constant, InverseDynamics};
 
-/// One state after the other: a robot that is known at run time is loops, in which no vector unit finds work.
+/// Computes one state after the other: a robot that is known at run time is computed by loops, for which vector units
+/// have no use.
 impl<const DOF: usize, S: Constant + Sync> BatchInverseDynamics<DOF> for Arm<DOF, S> {
     fn inverse_dynamics_batch_on<T: BatchScalar>(
         &self,
@@ -19,7 +20,7 @@ impl<const DOF: usize, S: Constant + Sync> BatchInverseDynamics<DOF> for Arm<DOF
     }
 }
 
-/// The torques of each state by itself.
+/// Writes the torques of all states, each of which is computed separately.
 fn one_by_one<R, T: BatchScalar, const DOF: usize>(all: States<'_, R, T, 3, DOF, DOF>)
 where
     R: InverseDynamics<DOF>,

@@ -1,4 +1,4 @@
-//! The loop over states: a register of them at a time.
+//! The loop over states, which computes one register of states at a time.
 
 use core::ops::Range;
 
@@ -8,23 +8,23 @@ use super::{BatchFunction, BatchScalar};
 use crate::Scalar;
 use crate::number::sin_cos::{Float, kernel};
 
-/// Registers in a block. Sines and cosines come first for all of a block, then results: each of the two loops is small
-/// enough for the processor to work on two registers' states at once, and what they share stays in the first-level
-/// cache.
+/// Number of registers in a block. Sines and cosines of a whole block are computed first, then the results. Each of
+/// these two loops is short enough for the processor to work on the states of two registers at once, and the numbers
+/// that the loops share stay in the first-level cache.
 const BLOCK: usize = 8;
 
-/// The most numbers that a register has.
+/// The largest number of lanes of a register.
 const WIDEST: usize = 16;
 
-/// An element that is always zero, in [`BatchFunction::PLACES`].
+/// Marks an element that is always zero, in [`BatchFunction::PLACES`].
 pub const ZERO: u16 = u16::MAX;
 
-/// Registers in memory, none across two lines of the cache.
+/// A register in memory, aligned so that it does not cross a cache line.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 struct Aligned<T>(T);
 
-/// States whose results are to be computed: arrays of one length, of which some may be empty.
+/// The arrays of states whose results are to be computed. They have the same length, but some may be empty.
 pub(super) struct States<'a, R, T, const ARGUMENTS: usize, const INPUTS: usize, const ELEMENTS: usize> {
     pub(super) robot: &'a R,
     pub(super) count: usize,
@@ -34,7 +34,7 @@ pub(super) struct States<'a, R, T, const ARGUMENTS: usize, const INPUTS: usize, 
     pub(super) elements: [&'a mut [T]; ELEMENTS],
 }
 
-/// The results of states, which depend on `ANGLES` angles, as `OUTPUTS` distinct numbers.
+/// Computes the results of states, which depend on `ANGLES` angles, as `OUTPUTS` distinct numbers.
 pub(super) struct OutputsOf<
     'a,
     R,
@@ -45,17 +45,17 @@ pub(super) struct OutputsOf<
     const ELEMENTS: usize,
 >(pub(super) States<'a, R, T, 1, INPUTS, ELEMENTS>);
 
-/// The arrays that are written.
+/// The arrays to which results are written.
 struct Results<'r, 'a, T> {
     elements: &'r mut [&'a mut [T]],
-    /// The output that each of them is.
+    /// For each array, the index of its output.
     places: &'r [u16],
-    /// How many numbers of the register count: 0 for all. It is the last one then.
+    /// How many numbers of the register are states, if it is the last, incomplete one; 0 for a full register.
     last: usize,
 }
 
 impl<T: BatchScalar> Results<'_, '_, T> {
-    /// Writes the outputs of the states in register `at`.
+    /// Writes the outputs of the states in the register with index `at`.
     #[inline(always)]
     fn write<V: Vector<Element = T>>(&mut self, at: usize, outputs: &[Register<V>]) {
         let places = self.elements.iter_mut().zip(self.places);
@@ -77,13 +77,13 @@ impl<R, T: BatchScalar, const INPUTS: usize, const ANGLES: usize, const OUTPUTS:
 where
     R: BatchFunction<INPUTS, ANGLES, OUTPUTS, ELEMENTS>,
 {
-    /// Writes the results, computed in registers `V`.
+    /// Computes the results in registers `V` and writes them.
     #[inline(always)]
     fn run<V: Vector<Element = T>>(self, unit: V::Unit) {
         let States { robot, count, inputs: [inputs], elements } = self.0;
         let lanes = size_of::<V::Numbers>() / size_of::<T>();
         let (full, last) = (count / lanes, count % lanes);
-        // The last register is filled up with zeros, which are states like any other.
+        // An incomplete last register is filled with zeros, which are valid states.
         let mut padded = [[T::ZERO; WIDEST]; INPUTS];
         for (padded, numbers) in padded.iter_mut().zip(&inputs) {
             if let Some(numbers) = numbers.get(count - last..count) {
@@ -92,7 +92,7 @@ where
         }
         let (mut elements, mut places, mut wanted) = (elements, R::PLACES, ELEMENTS);
         if R::IS_WHOLE {
-            // of one length, as the compiler sees then
+            // the compiler then knows that all have the same length
             elements = elements.map(|numbers| &mut numbers[..count]);
         } else {
             wanted = 0;
@@ -107,7 +107,7 @@ where
             }
         }
         let mut results = Results { elements: &mut elements[..wanted], places: &places[..wanted], last: 0 };
-        // One loop for both, so that its code is there once.
+        // One loop for full registers and for the last one, so that its code is compiled once.
         let parts = [(full, inputs, 0), (usize::from(last > 0), padded.each_ref().map(|numbers| &numbers[..]), last)];
         for (registers, inputs, last) in parts {
             let mut arrays: [&[V::Numbers]; INPUTS] = [&[]; INPUTS];
@@ -125,7 +125,7 @@ where
     }
 }
 
-/// The results of full registers, or of one whose first `last` numbers count.
+/// Computes the results of full registers, or of one register of which only the first `last` numbers are states.
 #[inline(always)]
 fn outputs<
     R: BatchFunction<INPUTS, ANGLES, OUTPUTS, ELEMENTS>,
@@ -150,7 +150,8 @@ fn outputs<
         let mut squares = zero;
         for (at, [sines, cosines]) in (start..end).zip(&mut turns) {
             let angles = robot.angles(&loaded::<V, INPUTS>(unit, &inputs, at, R::REQUIRED));
-            // Not a loop: what one indexes is written to memory first, perhaps in parts, and waited for.
+            // Written out and not a loop: an array that a loop indexes is first written to memory, perhaps in parts,
+            // which causes waiting.
             macro_rules! each {
                 ($($index:expr),*) => {
                     $(if $index < ANGLES {
@@ -171,7 +172,7 @@ fn outputs<
             robot.outputs(&sines, &cosines, &loaded(unit, &inputs, at, R::REQUIRED), &mut results);
             written.write(at, &results);
         }
-        // Not so for NaN and infinities either.
+        // Also false for NaN and infinities.
         let squares = squares.store();
         let are_small = V::each(&squares).iter().fold(true, |all, sum| all & sum.is_square_within_limit());
         if cfg!(feature = "std") && !are_small {
@@ -181,8 +182,8 @@ fn outputs<
     }
 }
 
-/// Writes the results of states that have an angle beyond the limit of the kernel of sine and cosine once more: those
-/// of one state by itself.
+/// Computes again the states that have an angle beyond the limit of the kernel of sine and cosine, each state
+/// separately, and overwrites their results.
 #[cold]
 #[inline(never)]
 fn repair<
@@ -219,9 +220,9 @@ fn repair<
     }
 }
 
-// Loops, for what `array::from_fn` writes stays in memory.
+// Loops are used below, because results of `array::from_fn` would stay in memory.
 
-/// Zeros of arrays that are empty, as those from `required` on may be.
+/// Loads the registers of all inputs. Arrays from `required` on may be empty; they give zeros.
 #[inline(always)]
 fn loaded<V: Vector, const N: usize>(
     unit: V::Unit,
@@ -230,8 +231,8 @@ fn loaded<V: Vector, const N: usize>(
     required: usize,
 ) -> [Register<V>; N] {
     let mut registers = [Register(V::splat(V::Element::ZERO)); N];
-    // Not a loop, as for angles: a loop over the inputs of a large robot writes registers to memory in parts. Without
-    // optimization each of them would have a place of its own on the stack, so it is a loop there.
+    // Written out, as for angles: a loop over the inputs of a large robot writes registers to memory in parts. Without
+    // optimization each of them would need stack of its own, so then it is a loop.
     #[cfg(not(debug_assertions))]
     macro_rules! each {
         ($($index:literal)*) => {

@@ -48,9 +48,9 @@ pub trait BatchInverseDynamics<const DOF: usize>: InverseDynamics<DOF> {
 ///
 /// One slice per joint or element of the matrix, and in it one number per state: `mass[i][j][state]`.
 ///
-/// An element whose slice is empty is not written. To write a large matrix takes as long as to compute it: give slices
-/// for one half of it, which is symmetric, and none for joints on different branches, where it is zero. Zeros that do
-/// not depend on the state are written if they have a slice.
+/// An element whose slice is empty is not written. Writing a large matrix takes as long as computing it. So give slices
+/// for one half only, because it is symmetric, and none for joints on different branches, where it is zero. Zeros that
+/// do not depend on the state are written if they have a slice.
 pub trait BatchMassMatrix<const DOF: usize>: MassMatrix<DOF> {
     /// Writes to `mass` the mass matrices for positions `q`, row i in `mass[i]`: kg m² between revolute joints, kg
     /// between prismatic ones, kg m between the two. On the widest vector unit that the processor has.
@@ -122,9 +122,9 @@ pub trait BatchForwardDynamics<const DOF: usize>: ForwardDynamics<DOF> {
 /// An element whose slice is empty is not written, as in [`BatchMassMatrix`]: a torque does not depend on joints of
 /// other branches. Zeros that do not depend on the state are written if they have a slice.
 pub trait BatchInverseDynamicsDerivatives<const DOF: usize>: InverseDynamicsDerivatives<DOF> {
-    /// Writes to `dq` and `dqd` the derivatives of the torques by positions and by velocities, for positions `q`,
-    /// velocities `qd` and accelerations `qdd` with a free tip: torque i in row i, N m or N per rad or m, and per rad/s
-    /// or m/s. On the widest vector unit that the processor has.
+    /// Writes to `dq` and `dqd` the derivatives of the torques with respect to positions and to velocities, for
+    /// positions `q`, velocities `qd` and accelerations `qdd` with a free tip: torque i in row i, N m or N per rad or
+    /// m, and per rad/s or m/s. On the widest vector unit that the processor has.
     ///
     /// # Errors
     ///

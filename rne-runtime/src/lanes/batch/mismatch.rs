@@ -1,9 +1,9 @@
-//! Arrays that should be of one length and are not.
+//! The error that arrays do not have the same length.
 
 use core::error::Error;
 use core::fmt;
 
-/// An array has another length than the first joint's positions, which say how many states there are.
+/// An array has another length than the positions of the first joint, which determine the number of states.
 ///
 /// Nothing has been computed then, and no result written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,7 +43,7 @@ impl Error for LengthMismatch {}
 pub struct Argument {
     pub name: &'static str,
     pub rows: usize,
-    /// 0 for a vector.
+    /// The number of columns; 0 for a vector.
     pub columns: usize,
     pub may_be_empty: bool,
 }
@@ -68,7 +68,7 @@ impl Argument {
     }
 }
 
-/// The length of all arrays of some arguments, the first of which says it.
+/// Returns the common length of all arrays of some arguments, which is that of the first array.
 pub(super) fn common_length(
     arguments: [&[Argument]; 2],
     mut lengths: impl Iterator<Item = usize>,

@@ -1,4 +1,4 @@
-//! Many states at once: structure of arrays, as wide as the processor is.
+//! Computes many states at once: a structure of arrays, in the widest vector registers of the processor.
 //!
 //! | | |
 //! |---|---|
@@ -44,7 +44,7 @@
 //! hundred instructions works on several registers at once. Angles that are too large for the branch-free kernel
 //! (beyond 10⁵ rad) or are no numbers show in the sum of their squares; the states that have one are computed again by
 //! themselves.
-#![allow(clippy::inline_always)] // what a vector unit computes must be compiled with its instructions
+#![allow(clippy::inline_always)] // code for a vector unit must be compiled with its instructions
 
 #[cfg(feature = "arm")]
 mod arm;
@@ -75,27 +75,28 @@ pub use unit::VectorUnit;
 use crate::Scalar;
 use blocks::{OutputsOf, States};
 
-/// Code of a derive: a function once more, in two parts and `#[inline(always)]` for [`run`].
+/// Code of a derive for [`run`]: the function once more, in two parts that are `#[inline(always)]`.
 ///
 /// The inputs are the elements of all arguments, one after the other.
 #[doc(hidden)]
 pub trait BatchFunction<const INPUTS: usize, const ANGLES: usize, const OUTPUTS: usize, const ELEMENTS: usize>:
     Sync
 {
-    /// The arguments that have the inputs.
+    /// The arguments to which the inputs belong.
     const ARGUMENTS: &[Argument];
-    /// The arguments that have the elements of the results.
+    /// The arguments to which the elements of the results belong.
     const RESULTS: &[Argument];
-    /// How many inputs have a number for each state; those behind may be empty, and are zero then.
+    /// How many of the inputs must have a number for each state. The arrays of later inputs may be empty, which means
+    /// zero.
     const REQUIRED: usize;
-    /// The output that each element of the results is, or [`ZERO`].
+    /// For each element of the results, the index of its output, or [`ZERO`].
     const PLACES: [u16; ELEMENTS];
-    /// Whether all elements of the results are wanted, and each is an output of its own.
+    /// Whether all elements of the results must be written, and each is an output of its own.
     const IS_WHOLE: bool;
 
-    /// The angles whose sines and cosines the outputs depend on.
+    /// Returns the angles on whose sines and cosines the outputs depend.
     fn angles<T: Scalar>(&self, inputs: &[T; INPUTS]) -> [T; ANGLES];
-    /// Writes the outputs.
+    /// Computes the outputs from the sines and cosines of the angles and from the inputs.
     fn outputs<T: Scalar>(
         &self,
         sin: &[T; ANGLES],
@@ -105,7 +106,7 @@ pub trait BatchFunction<const INPUTS: usize, const ANGLES: usize, const OUTPUTS:
     );
 }
 
-/// Runs a batch; the derived method calls it.
+/// Runs a batch. The derived method calls it.
 #[doc(hidden)]
 pub fn run<R, T: BatchScalar, const INPUTS: usize, const ANGLES: usize, const OUTPUTS: usize, const ELEMENTS: usize>(
     robot: &R,
@@ -121,7 +122,7 @@ where
     })
 }
 
-/// Runs the states, all at once or divided among threads.
+/// Computes the states, all at once or divided among threads.
 fn for_each_part<R: Sync, T: BatchScalar, const ARGUMENTS: usize, const INPUTS: usize, const ELEMENTS: usize>(
     robot: &R,
     arguments: [&[Argument]; 2],

@@ -1,16 +1,17 @@
-//! The states divided among threads.
+//! Divides the states among threads.
 
 use core::array::from_fn;
 
 use super::blocks::States;
 use crate::lanes::threads::join;
 
-/// States that are worth a task of their own: tens of microseconds of work, against about one to hand it to a thread.
-/// A multiple of every block, so that threads divide states where blocks end.
+/// The number of states for which a task of their own is worthwhile: tens of microseconds of work, compared with about
+/// one to pass it to a thread. A multiple of the size of every block, so that threads divide states at the end of
+/// blocks.
 const TASK: usize = 4096;
 
-/// Runs tasks of some thousand states each, on rayon's threads where the build is optimized. Few states run on the
-/// thread that called.
+/// Runs tasks of some thousand states each, on rayon's threads if the build is optimized. A few states are computed on
+/// the calling thread.
 pub(super) fn for_each_part<R: Sync, T: Send + Sync, const A: usize, const N: usize, const E: usize>(
     all: States<'_, R, T, A, N, E>,
     run: &(impl Fn(States<'_, R, T, A, N, E>) + Sync),
@@ -30,7 +31,7 @@ pub(super) fn for_each_part<R: Sync, T: Send + Sync, const A: usize, const N: us
     }
 }
 
-/// The two halves of states. Each half of an empty array is empty.
+/// Splits states into two halves. Each half of an empty array is empty.
 fn halves<R, T, const A: usize, const N: usize, const E: usize>(
     all: States<'_, R, T, A, N, E>,
 ) -> [States<'_, R, T, A, N, E>; 2] {

@@ -1,4 +1,4 @@
-//! The numbers of a batch, and what a vector of them is computed as.
+//! The types of numbers of a batch, and the registers in which they are computed.
 
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -8,13 +8,13 @@ use super::vector::Vector;
 use crate::Scalar;
 use crate::number::sin_cos::{Float, kernel};
 
-/// A number of which vector units hold many: `f32` and `f64`, and no other type.
+/// A type of numbers that vector units compute: `f32` and `f64`, and no other type.
 pub trait BatchScalar: Scalar + Send + Sync + sealed::Machine {}
 
 impl BatchScalar for f32 {}
 impl BatchScalar for f64 {}
 
-/// A register as the scalar that generated code is compiled for.
+/// A register as a scalar, for which generated code is compiled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Register<V>(pub(super) V);
 
@@ -24,7 +24,7 @@ impl<V: Vector> Scalar for Register<V> {
         Self(V::splat(V::Element::rounded(value)))
     }
 
-    /// Without a test of the range: [`blocks`](super::blocks) makes it.
+    /// Does not test the range of the angle, which [`blocks`](super::blocks) does.
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         let (sine, cosine) = kernel(self.0);
@@ -96,7 +96,7 @@ mod sealed {
     use crate::lanes::registers;
     use crate::number::sin_cos::Float;
 
-    /// The registers of a number.
+    /// The registers of a type of numbers.
     pub trait Machine: Float {
         /// Registers of the compiled target.
         type Compiled: Vector<Element = Self, Unit = ()>;
@@ -105,12 +105,12 @@ mod sealed {
         type Avx2: Vector<Element = Self, Unit = registers::Avx2>;
         #[cfg(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")))]
         type Avx512: Vector<Element = Self, Unit = registers::Avx512>;
-        /// Lends memory for a number of values, aligned to a line of the cache, which the thread keeps.
+        /// Lends memory for this many values, aligned to a cache line. The thread keeps it for later calls.
         #[cfg(feature = "machine")]
         fn with_memory<R>(length: usize, work: impl FnOnce(&mut [Self]) -> R) -> R;
     }
 
-    /// Bytes of a line of the cache, and of the widest register.
+    /// Number of bytes of a cache line, and of the widest register.
     #[cfg(feature = "machine")]
     const LINE: usize = 64;
 
@@ -128,7 +128,7 @@ mod sealed {
                     std::thread_local! {
                         static MEMORY: core::cell::Cell<Vec<$type>> = const { core::cell::Cell::new(Vec::new()) };
                     }
-                    // Taken, not borrowed: work within the work gets memory of its own.
+                    // Taken and not borrowed, so that a nested call gets memory of its own.
                     let mut memory = MEMORY.take();
                     let space = length + LINE / size_of::<Self>();
                     if memory.len() < space {
@@ -153,7 +153,7 @@ mod tests {
     use crate::lanes::batch::{Argument, BatchFunction, VectorUnit, run};
     use crate::number::sin_cos::{Float, Lanes};
 
-    /// q² + q̇
+    /// An example of a computation: q² + q̇.
     struct SquareAndSum;
 
     impl BatchFunction<2, 0, 1, 1> for SquareAndSum {

@@ -1,4 +1,4 @@
-//! The vector unit: what the processor has, found at run time.
+//! The vector units of the processor, which are detected at run time.
 
 use core::fmt;
 
@@ -7,7 +7,8 @@ use super::detected::Detected;
 use super::vector::Work;
 use crate::lanes::registers::compiled;
 
-/// A vector unit of the processor this runs on. To have one is to have looked: every value can be computed with.
+/// A vector unit of the processor on which the program runs. A value only exists if the processor has this unit, so it
+/// can always be used.
 ///
 /// ```
 /// use rne_runtime::VectorUnit;
@@ -29,19 +30,19 @@ enum Unit {
 }
 
 impl VectorUnit {
-    /// The widest one. The processor is asked once; afterwards this costs a nanosecond.
+    /// Returns the widest unit. The processor is tested once; afterwards this costs a nanosecond.
     #[must_use]
     pub fn widest() -> Self {
         Self(Detected::widest().map_or(Unit::Target, Unit::Detected))
     }
 
-    /// All of them, the widest last. The first is that of the compiled target, without the feature `batch` the only
-    /// one.
+    /// Returns all units, the widest last. The first is that of the compiled target; without the feature `batch` it is
+    /// the only one.
     pub fn all() -> impl Iterator<Item = Self> {
         core::iter::once(Unit::Target).chain(Detected::all().map(Unit::Detected)).map(Self)
     }
 
-    /// Its name: `AVX-512`, say.
+    /// Returns the name of the unit, such as `AVX-512`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self.0 {
@@ -50,7 +51,7 @@ impl VectorUnit {
         }
     }
 
-    /// Does work with this unit.
+    /// Runs a computation with this unit.
     pub(crate) fn run<T: BatchScalar, W: Work<T>>(self, work: W) {
         match self.0 {
             Unit::Target => work.run::<T::Compiled>(()),

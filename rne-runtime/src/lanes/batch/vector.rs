@@ -1,4 +1,4 @@
-//! A vector register: one number for each of several states.
+//! A vector register with one number for each of several states.
 
 use core::fmt::Debug;
 
@@ -10,16 +10,16 @@ use crate::number::sin_cos::Lanes;
 /// Everything is `#[inline(always)]`, here and in what uses it: a function that is not part of the code for a vector
 /// unit is compiled without its instructions.
 pub trait Vector: Lanes + Debug + PartialEq + 'static {
-    /// Shows that the processor has the unit.
+    /// A value of this type proves that the processor has the unit.
     type Unit: Copy;
 
-    /// As many numbers as a register has.
+    /// An array with as many numbers as a register has.
     type Numbers: Copy;
 
-    /// A slice as full registers and what is left.
+    /// Splits a slice into full registers and the remaining numbers.
     fn split(numbers: &[Self::Element]) -> (&[Self::Numbers], &[Self::Element]);
 
-    /// A slice as full registers and what is left.
+    /// Splits a slice into full registers and the remaining numbers.
     fn split_mut(numbers: &mut [Self::Element]) -> (&mut [Self::Numbers], &mut [Self::Element]);
 
     fn each(numbers: &Self::Numbers) -> &[Self::Element];
@@ -33,11 +33,11 @@ pub trait Vector: Lanes + Debug + PartialEq + 'static {
 
 /// A computation in registers, on a unit that is chosen when the program runs.
 pub(crate) trait Work<T: BatchScalar> {
-    /// Does it in registers `V`, `#[inline(always)]`.
+    /// Runs the computation in registers `V`. Implementations are `#[inline(always)]`.
     fn run<V: Vector<Element = T>>(self, unit: V::Unit);
 }
 
-/// Registers that are arrays of their numbers in memory.
+/// Implements the trait for registers whose memory is an array of their numbers.
 macro_rules! vector {
     ($Vector:ty, $Unit:ty, [$element:ident; $LANES:literal], $of_numbers:expr, $numbers:expr) => {
         impl crate::lanes::batch::vector::Vector for $Vector {

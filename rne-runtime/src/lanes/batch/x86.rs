@@ -6,7 +6,7 @@ use super::BatchScalar;
 use super::vector::Work;
 use crate::lanes::registers::{self, Computation};
 
-/// A unit and the proof that the processor has it.
+/// A vector unit that was detected; the value proves that the processor has it.
 #[derive(Clone, Copy)]
 pub(super) enum Detected {
     /// AVX2 and fused multiply-add (x86-64-v3): registers of 4 `f64` or 8 `f32`.
@@ -41,7 +41,7 @@ impl Detected {
     }
 }
 
-/// Work and its unit.
+/// A computation in registers, and the unit on which it runs.
 struct Call<W, Unit, T> {
     work: W,
     unit: Unit,

@@ -1,14 +1,15 @@
-//! Numbers of many states in a caller's arrays.
+//! Arrays of a caller, with numbers of many states.
 
 use core::fmt;
 use core::ops::Range;
 
-/// Where an input of every state stands.
+/// The numbers of an input for all states.
 #[derive(Clone, Copy, Debug)]
 pub enum Source<'a, T> {
-    /// One number per state, one after the other.
+    /// A slice with one number per state.
     Column(&'a [T]),
-    /// One number per state, so far apart; the first is the first state's. A distance of 0: the same for all states.
+    /// A slice with one number per state, at this distance; the first number belongs to the first state. With a
+    /// distance of 0, all states have the same number.
     Strided(&'a [T], usize),
 }
 
@@ -24,7 +25,7 @@ impl<T: Copy> Source<'_, T> {
         }
     }
 
-    /// The number of a state.
+    /// Returns the number of a state.
     #[inline(always)]
     pub(super) fn at(&self, state: usize) -> T {
         match *self {
@@ -34,17 +35,17 @@ impl<T: Copy> Source<'_, T> {
     }
 }
 
-/// Where the outputs of every state go.
+/// The array for the outputs of all states.
 #[derive(Debug)]
 pub enum Destination<'a, T> {
-    /// All of a state one after the other, then the next state's.
+    /// One slice: all outputs of a state, then those of the next state.
     Rows(&'a mut [T]),
-    /// One slice per output, and in it one number per state.
+    /// One slice per output, with one number per state.
     Columns(Vec<&'a mut [T]>),
 }
 
 impl<T> Destination<'_, T> {
-    /// Whether there is room for exactly these outputs of these states.
+    /// Whether the arrays have exactly the size of these outputs for these states.
     pub(super) fn fits(&self, outputs: usize, states: usize) -> bool {
         match self {
             Self::Rows(numbers) => outputs.checked_mul(states) == Some(numbers.len()),
@@ -52,7 +53,7 @@ impl<T> Destination<'_, T> {
         }
     }
 
-    /// The room of the first states, and that of the others.
+    /// Splits the arrays into those of the first states and those of the others.
     #[cfg(feature = "rayon")]
     pub(super) fn split_at(self, states: usize, outputs: usize) -> (Self, Self) {
         match self {
@@ -68,20 +69,20 @@ impl<T> Destination<'_, T> {
     }
 }
 
-/// Arrays that do not hold the numbers of all states. Nothing has been computed then.
+/// The error that arrays do not have the right size. Nothing has been computed then.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum WrongArrays {
-    /// There is another number of inputs than the code has.
+    /// The number of inputs differs from that of the code.
     Inputs {
-        /// How many it has.
+        /// The number of inputs of the code.
         expected: usize,
-        /// How many were given.
+        /// The number of inputs that were given.
         found: usize,
     },
-    /// An input has no number for some states.
+    /// The input with this index lacks numbers of some states.
     Input(usize),
-    /// The room is not that of the outputs.
+    /// The destination does not have the size of the outputs.
     Outputs,
 }
 
@@ -97,5 +98,5 @@ impl fmt::Display for WrongArrays {
 
 impl core::error::Error for WrongArrays {}
 
-/// Some of the states.
+/// A range of states.
 pub(super) type States = Range<usize>;

@@ -2,23 +2,23 @@
 
 use core::fmt;
 
-/// A place of the machine's memory: one value for each state of a block.
+/// An index of the machine's memory, which has one value for each state of a block.
 pub type Slot = u32;
 
-/// No slot.
+/// Not a slot: the value is not stored.
 pub const NOWHERE: Slot = Slot::MAX;
 
-/// One instruction: what the accumulator becomes, and where it is kept.
+/// One instruction: an operation that sets the accumulator, and the slot in which its result is stored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instruction {
     /// The operation to perform.
     pub operation: Operation,
-    /// Where the accumulator is stored afterwards; [`NOWHERE`] when the next instruction alone needs it.
+    /// The slot in which the accumulator is stored afterwards; [`NOWHERE`] if only the next instruction needs it.
     pub store: Slot,
 }
 
-/// Hands a macro the operations on numbers: what each is, its slots and its constant, its text, and its value, where
-/// `acc` is the accumulator.
+/// Calls a macro with all arithmetic operations. Each has its formula, its name with slots and constant, its text, and
+/// the expression of its value, where `acc` is the accumulator.
 macro_rules! arithmetic {
     ($of:ident) => {
         $of! {
@@ -115,14 +115,15 @@ macro_rules! operations {
         $acc:ident;
         $($(#[$about:meta])* $Operation:ident($($slot:ident),*; $($number:ident)?) $text:literal => $value:expr,)*
     ) => {
-        /// New value of the accumulator. The names list the operands from left to right: `A` is the
-        /// accumulator, `S` a slot, `K` a constant. A factor and an addend are one operation, rounded once where the
-        /// vector unit rounds it once.
+        /// New value of the accumulator. The names list the operands from left to right: `A` is the accumulator, `S` a
+        /// slot, `K` a constant. A product and a sum are one operation, which is rounded once if the vector unit can do
+        /// that.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum Operation {
-            /// An input.
+            /// An input, by its index.
             Input(u32),
-            /// Positive, negative or zero by the sign of a slot: slots of the sign, of the value above and below 0.
+            /// One of two values, or zero, by the sign of a number. The slots are those of the number, of the value for
+            /// a positive number and of the value for a negative one.
             BySign(Slot, Slot, Slot),
             /// The accumulator is written as an output and kept.
             Output(u32),
@@ -130,7 +131,7 @@ macro_rules! operations {
         }
 
         impl Operation {
-            /// The slots that are read.
+            /// Returns the slots that the operation reads.
             fn slots(&self) -> [Slot; 3] {
                 let mut read = [NOWHERE; 3];
                 match *self {
@@ -162,14 +163,14 @@ macro_rules! operations {
 }
 arithmetic!(operations);
 
-/// The sine and the cosine of a slot.
+/// The computation of the sine and the cosine of a slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Turn {
     /// The angle, rad.
     pub angle: Slot,
-    /// Where its sine goes; [`NOWHERE`] when nothing uses it.
+    /// The slot for its sine; [`NOWHERE`] if nothing uses it.
     pub sine: Slot,
-    /// Where its cosine goes.
+    /// The slot for its cosine; [`NOWHERE`] if nothing uses it.
     pub cosine: Slot,
 }
 
@@ -186,7 +187,7 @@ pub struct Code {
 
 impl Code {
     /// Creates code for a number of slots, inputs and outputs; `None` if an instruction names one that does not exist,
-    /// or an output is not written just once.
+    /// or if an output is not written exactly once.
     #[must_use]
     pub fn new(
         angles: Vec<Instruction>,
@@ -213,13 +214,13 @@ impl Code {
         (are_slots && is_each_once).then_some(Self { angles, turns, rest, slots, inputs, outputs })
     }
 
-    /// How many instructions a block of states takes, without sines and cosines.
+    /// Returns the number of instructions for a block of states, without sines and cosines.
     #[must_use]
     pub fn instructions(&self) -> usize {
         self.angles.len() + self.rest.len()
     }
 
-    /// How many values are in memory at once.
+    /// Returns the number of slots, that is, of values in memory at the same time.
     #[must_use]
     pub fn slots(&self) -> usize {
         self.slots
@@ -242,7 +243,7 @@ impl fmt::Display for Turn {
     }
 }
 
-/// One instruction a line.
+/// Prints one instruction per line.
 impl fmt::Display for Code {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.angles.iter().try_for_each(|instruction| writeln!(f, "{instruction}"))?;

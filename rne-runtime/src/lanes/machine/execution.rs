@@ -1,4 +1,5 @@
-//! One block of states through the code: the accumulator is some registers, a slot as many in memory.
+//! Executes code for one block of states. The accumulator is some registers, and a slot is the same number of registers
+//! in memory.
 
 use super::code::{Code, Instruction, NOWHERE, Operation, Slot, arithmetic};
 use crate::Scalar;
@@ -6,13 +7,13 @@ use crate::lanes::batch::BatchScalar;
 use crate::lanes::batch::vector::Vector;
 use crate::number::sin_cos::Float;
 
-/// Where the inputs of a block come from and its outputs go.
+/// Reads the inputs of a block and writes its outputs.
 pub(super) trait Port<V: Vector, const N: usize> {
     fn input(&mut self, index: usize) -> [V; N];
     fn output(&mut self, index: usize, values: &[V; N]);
 }
 
-/// Runs instructions on a block.
+/// Executes instructions for a block.
 #[inline(always)]
 pub(super) fn execute<V, P, const N: usize>(
     unit: V::Unit,
@@ -63,7 +64,7 @@ pub(super) fn execute<V, P, const N: usize>(
     }
 }
 
-/// Lane by lane: only friction needs it.
+/// Computed lane by lane, because only friction needs it.
 #[inline(always)]
 fn by_sign<V: Vector<Element: BatchScalar>>(unit: V::Unit, x: &V::Numbers, a: &V::Numbers, b: &V::Numbers) -> V {
     let mut chosen = *x;
@@ -74,13 +75,13 @@ fn by_sign<V: Vector<Element: BatchScalar>>(unit: V::Unit, x: &V::Numbers, a: &V
     V::load(unit, &chosen)
 }
 
-/// The slots of a block, in a caller's memory.
+/// Returns the slots of a block, in memory of the caller.
 #[inline(always)]
 pub(super) fn slots<V: Vector, const N: usize>(memory: &mut [V::Element]) -> &mut [[V::Numbers; N]] {
     V::split_mut(memory).0.as_chunks_mut().0
 }
 
-/// Memory of the slots of some code, in numbers, for registers with `lanes` lanes.
+/// Returns how many numbers the slots of some code take in memory, for registers with `lanes` lanes.
 pub(super) const fn memory(code: &Code, lanes: usize, registers: usize) -> usize {
     code.slots * lanes * registers
 }

@@ -9,8 +9,8 @@ use crate::lanes::batch::BatchScalar;
 use crate::lanes::batch::vector::{Vector, Work};
 use crate::number::sin_cos::{Lanes, SQUARE_LIMIT, kernel};
 
-/// Steps by which the machine computes sine and cosine of an angle on a vector unit, for one number as for many.
-/// A program that performs the same operations gets the same bits.
+/// The operations by which the machine computes sine and cosine of an angle on a vector unit, both for one number and
+/// for many. A program that performs the same operations gets the same bits.
 ///
 /// ```
 /// use rne_runtime::VectorUnit;
@@ -27,15 +27,15 @@ pub struct Kernel {
     pub sine: usize,
     /// Index of the step whose result is the cosine.
     pub cosine: usize,
-    /// Whether the unit rounds [`Step::Plus`] and [`Step::Minus`] once, here and in the machine's instructions; else
-    /// the product is rounded by itself.
+    /// Whether the unit rounds [`Step::Plus`] and [`Step::Minus`] once, here and in the machine's instructions.
+    /// Otherwise their product is rounded first.
     pub is_fused: bool,
-    /// The kernel is right for angles whose squares, in rad², have no greater sum; others the machine computes
-    /// otherwise.
+    /// The kernel is correct for angles whose squares have at most this sum, rad². For other angles the machine uses
+    /// `std`.
     pub limit_of_squares: f64,
 }
 
-/// An operation of the kernel; operands are results of steps, by their indices.
+/// An operation of the kernel. Its operands are the results of earlier steps, given by their indices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
     /// The angle.
@@ -56,10 +56,10 @@ pub enum Step {
     Plus(usize, usize, usize),
     /// z - x y
     Minus(usize, usize, usize),
-    /// The sine of x, from a number in whose two lowest bits n modulo 4 stands, and the sine and the cosine of x - n
-    /// π/2. The lowest bit of n exchanges the two; the second lowest is the sign that is exchanged.
+    /// The sine of x, from three operands: a number whose two lowest bits contain n modulo 4, and the sine and the
+    /// cosine of x - n π/2. The lowest bit of n exchanges the two; the second lowest bit negates the result.
     SineInQuadrant([usize; 3]),
-    /// The cosine, the same way; the sign is that of n + 1.
+    /// The cosine of x, from the same operands; the bit that negates the result is that of n + 1.
     CosineInQuadrant([usize; 3]),
 }
 
@@ -74,7 +74,7 @@ impl Kernel {
     }
 }
 
-/// The kernel, run on numbers that remember how they were computed.
+/// Records the steps of the kernel: runs it on numbers that remember how they were computed.
 struct Tracing<'a, T> {
     kernel: &'a mut Kernel,
     number: PhantomData<T>,
@@ -92,11 +92,11 @@ impl<T: BatchScalar + Into<f64>> Work<T> for Tracing<'_, T> {
 }
 
 std::thread_local! {
-    /// Steps recorded so far: a constant is made from nothing, so it cannot bring the list along.
+    /// The steps recorded so far, in a static, because a constant is created without access to any list.
     static STEPS: RefCell<Vec<Step>> = const { RefCell::new(Vec::new()) };
 }
 
-/// The result of a step, where registers `V` would have it.
+/// The index of a step, in place of the register `V` that would have its result.
 #[derive(Clone, Copy)]
 struct Traced<V> {
     step: usize,

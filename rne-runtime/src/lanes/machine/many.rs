@@ -1,4 +1,4 @@
-//! Many states: a block of registers at a time.
+//! Computes many states, in blocks of several registers.
 
 use super::arrays::{Destination, Source, States};
 use super::code::{Code, NOWHERE, Turn};
@@ -7,19 +7,19 @@ use crate::lanes::batch::BatchScalar;
 use crate::lanes::batch::vector::{Vector, Work};
 use crate::number::sin_cos::{Float, kernel};
 
-/// Registers of a block. An instruction is read once for all of them; their slots stay in the first-level cache for
-/// arms of seven joints.
+/// Number of registers in a block. Each instruction is decoded once for all of them. For arms of seven joints, their
+/// slots fit in the first-level cache.
 pub(super) const BLOCK: usize = 8;
 
-/// The most numbers that a register has.
+/// The largest number of lanes of a register.
 pub(super) const WIDEST: usize = 16;
 
-/// The numbers of memory that some code takes on the widest unit.
+/// Returns how many numbers of memory some code needs on the widest unit.
 pub(super) const fn memory(code: &Code) -> usize {
     super::execution::memory(code, WIDEST, BLOCK)
 }
 
-/// States to be computed.
+/// The states of one task, and their arrays.
 pub(super) struct Many<'a, T> {
     pub(super) code: &'a Code,
     pub(super) memory: &'a mut [T],
@@ -47,7 +47,7 @@ impl<T: BatchScalar> Work<T> for Many<'_, T> {
     }
 }
 
-/// The sines and cosines of a block.
+/// Computes the sines and cosines of a block.
 #[inline(always)]
 pub(super) fn turns<V: Vector<Element: BatchScalar>, const N: usize>(
     unit: V::Unit,
@@ -68,14 +68,14 @@ pub(super) fn turns<V: Vector<Element: BatchScalar>, const N: usize>(
             }
         }
     }
-    // Not so for NaN and infinities either.
+    // Also false for NaN and infinities.
     let squares = squares.store();
     if !V::each(&squares).iter().fold(true, |all, sum| all & sum.is_square_within_limit()) {
         beyond_limit::<V, N>(turns, slots);
     }
 }
 
-/// The sines and cosines of angles that are too large for the kernel, and of what is no number, one by one.
+/// Computes, one by one, the sines and cosines of angles that are too large for the kernel, infinite or NaN.
 #[cold]
 #[inline(never)]
 fn beyond_limit<V: Vector<Element: BatchScalar>, const N: usize>(turns: &[Turn], slots: &mut [[V::Numbers; N]]) {
@@ -107,7 +107,7 @@ struct Arrays<'a, V: Vector> {
     start: usize,
     /// The state at which the destination begins.
     first: usize,
-    /// How many of the block's states there are.
+    /// How many states of the block exist; the last block may be incomplete.
     count: usize,
 }
 
@@ -125,7 +125,7 @@ impl<V: Vector<Element: BatchScalar>, const N: usize> Port<V, N> for Arrays<'_, 
                 return values;
             }
         }
-        // States beyond the last are zeros, which are states like any other.
+        // An incomplete block is filled with zeros, which are valid states.
         let mut registers = [zero.store(); N];
         gather::<V, N>(&self.sources[index], self.start, self.count, &mut registers);
         let mut values = [zero; N];
@@ -157,7 +157,7 @@ impl<V: Vector<Element: BatchScalar>, const N: usize> Port<V, N> for Arrays<'_, 
     }
 }
 
-/// Registers in memory, one by one: an accumulator whose address is taken would live there.
+/// Stores registers to memory one by one. If the address of the accumulator were taken, it would be kept in memory.
 #[inline(always)]
 fn stored<V: Vector, const N: usize>(values: &[V; N]) -> [V::Numbers; N] {
     let mut numbers = [values[0].store(); N];

@@ -1,13 +1,13 @@
 //! The block machine: code that is known when the program runs, on the widest vector unit that the processor has.
 //!
 //! A robot that is known when a program is compiled becomes instructions of the processor. One that is read later
-//! becomes [`Code`]: instructions of a machine, each of which is done for a block of states at once, eight registers of
-//! them, so that reading it costs little beside doing it. The machine knows no robot and parses nothing: the crate
-//! `rne-machine` makes code of a compiled function.
+//! becomes [`Code`]: instructions of an abstract machine. Each instruction is executed for a block of states at once,
+//! for eight registers of them, so that decoding it costs little compared with its execution. The machine knows no
+//! robot and parses nothing: the crate `rne-machine` makes code of a compiled function.
 //!
-//! Sines and cosines are those of the batches, in the same registers. What a state gives depends on the state and the
-//! vector unit alone: not on the states beside it, where in a block it stands, or the number of threads. Angles beyond
-//! the range of the kernel (10⁵ rad), infinities and NaN are computed by `std`, lane by lane.
+//! Sines and cosines are those of the batches, in the same registers. The results of a state depend only on the state
+//! and the vector unit, not on other states, on its place in a block, or on the number of threads. Angles beyond the
+//! range of the kernel (10⁵ rad), infinities and NaN are computed by `std`, lane by lane.
 //!
 //! ```
 //! use rne_runtime::machine::{Code, Destination, Instruction, NOWHERE, Operation, Source, Turn};
@@ -26,7 +26,7 @@
 //! assert!((doubled[2] - 2.0 * 1.0_f64.sin()).abs() < 1e-15);
 //! # Ok::<(), rne_runtime::machine::WrongArrays>(())
 //! ```
-#![allow(clippy::inline_always)] // what a vector unit computes must be compiled with its instructions
+#![allow(clippy::inline_always)] // code for a vector unit must be compiled with its instructions
 #![allow(clippy::needless_range_loop)] // loops over registers, which are unrolled
 
 mod arrays;
@@ -49,12 +49,12 @@ use one::One;
 use crate::VectorUnit;
 use crate::lanes::batch::BatchScalar;
 
-/// States that are worth a task of their own; a multiple of every block.
+/// The number of states for which a task of their own is worthwhile; a multiple of the size of every block.
 #[cfg(feature = "rayon")]
 const TASK: usize = 4096;
 
 impl Code {
-    /// Computes a number of states: one source per input, room for every output.
+    /// Computes a number of states, from one source per input. The destination must have space for every output.
     ///
     /// With the feature `rayon`, on all cores for more than some thousand states.
     ///
@@ -103,7 +103,7 @@ impl Code {
         });
     }
 
-    /// Computes one state: the numbers of the inputs and room for the outputs.
+    /// Computes one state from the numbers of the inputs, and writes the outputs.
     ///
     /// It has the bits that [`run`](Self::run) gives that state on the same unit.
     ///

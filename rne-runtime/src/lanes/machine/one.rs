@@ -1,4 +1,5 @@
-//! One state: every register has it in all lanes, so that it gets the bits it has among many.
+//! Computes one state: all lanes of a register have its numbers, so that the results have the same bits as among many
+//! states.
 
 use super::code::{Code, NOWHERE};
 use super::execution::{Port, execute, slots};
@@ -7,12 +8,12 @@ use crate::lanes::batch::BatchScalar;
 use crate::lanes::batch::vector::{Vector, Work};
 use crate::number::sin_cos::{Float, kernel};
 
-/// The numbers of memory that some code takes on the widest unit.
+/// Returns how many numbers of memory some code needs on the widest unit.
 pub(super) const fn memory(code: &Code) -> usize {
     super::execution::memory(code, WIDEST, 1)
 }
 
-/// A state to be computed.
+/// The state of one call, and its arrays.
 pub(super) struct One<'a, T> {
     pub(super) code: &'a Code,
     pub(super) memory: &'a mut [T],
@@ -31,7 +32,7 @@ impl<T: BatchScalar> Work<T> for One<'_, T> {
     }
 }
 
-/// The sines and cosines, as many at once as a register has lanes.
+/// Computes the sines and cosines, as many at a time as a register has lanes.
 #[inline(always)]
 fn turns<V: Vector<Element: BatchScalar>>(unit: V::Unit, code: &Code, slots: &mut [[V::Numbers; 1]]) {
     let lanes = size_of::<V::Numbers>() / size_of::<V::Element>();

@@ -1,4 +1,4 @@
-//! Rollouts: samples of states that move on under torques, step by step.
+//! Rollouts: samples of states that move step by step under torques.
 //!
 //! A block of samples goes through all steps before the next block begins, so its states stay in the first-level cache,
 //! one row of numbers per joint. Nothing is allocated between steps.
@@ -13,11 +13,11 @@ use crate::lanes::batch::BatchScalar;
 use crate::lanes::batch::vector::{Vector, Work};
 use crate::number::sin_cos::Float;
 
-/// Bytes of the widest register.
+/// Number of bytes of the widest register.
 #[cfg(feature = "rayon")]
 const REGISTER: usize = 64;
 
-/// A rollout of an arm: where samples start, what drives them, and what bounds them.
+/// A rollout of an arm: the initial states of the samples, their torques, and their limits.
 ///
 /// A step of duration h takes a state q, q̇ and torques τ to the next state by semi-implicit Euler, in this order:
 ///
@@ -30,7 +30,7 @@ const REGISTER: usize = 64;
 /// where q' is beyond an end of the positions: q' = that end, q̇' = 0
 /// ```
 ///
-/// A number that is NaN stays NaN in every line, and no other sample notices.
+/// A number that is NaN remains NaN in every line, and does not affect other samples.
 #[derive(Clone, Copy, Debug)]
 pub struct Rollout<'a, T> {
     /// The number of steps of each sample.
@@ -39,8 +39,8 @@ pub struct Rollout<'a, T> {
     pub step: T,
     /// Limits and friction of each joint.
     pub joints: &'a [RolloutJoint<T>],
-    /// The place of each input of the code in the list of arguments: the position of every joint, the velocity of every
-    /// joint, the torque of every joint, and then `constants`.
+    /// For each input of the code, its index in the list of all arguments: the position of every joint, the velocity of
+    /// every joint, the torque of every joint, and then `constants`.
     pub inputs: &'a [usize],
     /// Initial positions: a source per joint.
     pub q: &'a [Source<'a, T>],
@@ -48,7 +48,7 @@ pub struct Rollout<'a, T> {
     pub qd: &'a [Source<'a, T>],
     /// Torques: for each step, a source per joint.
     pub tau: &'a [Source<'a, T>],
-    /// Other arguments, which no step changes.
+    /// Other arguments, which are the same in all steps.
     pub constants: &'a [Source<'a, T>],
 }
 
@@ -87,7 +87,7 @@ impl<T: BatchScalar> SmoothFriction<T> {
     }
 }
 
-/// A number that is not beyond an end; NaN stays NaN.
+/// Returns the nearest number between two ends; NaN remains NaN.
 #[inline(always)]
 fn bounded<T: BatchScalar>(value: T, [lower, upper]: [T; 2]) -> T {
     if value > upper {
@@ -100,8 +100,8 @@ fn bounded<T: BatchScalar>(value: T, [lower, upper]: [T; 2]) -> T {
 }
 
 impl Code {
-    /// Rolls out samples: this code computes the accelerations of the joints. `states` get the positions and the
-    /// velocities after each step: sample by sample, step by step, joint by joint.
+    /// Rolls out samples, where this code computes the accelerations of the joints. Writes the positions and the
+    /// velocities after each step to `states`, ordered by sample, then by step, then by joint.
     ///
     /// With the feature `rayon`, on all cores for more than some thousand states.
     ///
@@ -149,7 +149,7 @@ impl Code {
     ) {
         #[cfg(feature = "rayon")]
         {
-            // the samples of a block on the widest unit
+            // number of samples in a block of the widest unit
             let block = REGISTER / size_of::<T>() * BLOCK;
             let half = (samples.len() / 2).next_multiple_of(block);
             if half < samples.len() && samples.len() * rollout.steps >= 2 * super::TASK {
@@ -169,7 +169,7 @@ impl Code {
     }
 }
 
-/// Samples to be rolled out.
+/// Samples to be rolled out in one task.
 struct Task<'a, T> {
     code: &'a Code,
     memory: &'a mut [T],
@@ -191,7 +191,7 @@ impl<T: BatchScalar> Work<T> for Task<'_, T> {
         let rows = &mut rows[..(accelerations + dof) * width];
         let of_sample = steps * dof;
         for start in samples.clone().step_by(width) {
-            // lanes beyond the last sample do what it does
+            // lanes after the last sample repeat this sample
             let block = Block { start, count: width.min(samples.end - start), width };
             block.read(q, &mut rows[..dof * width]);
             block.read(qd, &mut rows[dof * width..][..dof * width]);
@@ -200,7 +200,7 @@ impl<T: BatchScalar> Work<T> for Task<'_, T> {
                 block.read(&tau[index * dof..][..dof], &mut rows[2 * dof * width..][..dof * width]);
                 drive(joints, width, &mut rows[dof * width..3 * dof * width]);
                 let mut port = StatePort::<V, BLOCK> { unit, rows: slots::<V, BLOCK>(rows), inputs, accelerations };
-                // one loop for both parts, so that its code is there once
+                // one loop for both parts, so that the code of `execute` is compiled once here
                 for (part, instructions) in [&code.angles, &code.rest].into_iter().enumerate() {
                     if part == 1 {
                         turns::<V, BLOCK>(unit, &code.turns, slots_of_code);
@@ -220,16 +220,16 @@ impl<T: BatchScalar> Work<T> for Task<'_, T> {
 
 /// The samples of a block.
 struct Block {
-    /// The first of them.
+    /// The number of the first sample.
     start: usize,
-    /// How many there are.
+    /// The number of samples.
     count: usize,
-    /// The numbers of a row: samples that a block has room for.
+    /// The number of samples for which a row has space.
     width: usize,
 }
 
 impl Block {
-    /// Reads a row from each source. It takes sample by sample, for the numbers of a sample lie side by side.
+    /// Reads a row from each source, sample by sample, because the numbers of a sample are next to each other.
     #[inline(always)]
     fn read<T: BatchScalar>(&self, sources: &[Source<'_, T>], rows: &mut [T]) {
         for lane in 0..self.width {
@@ -240,7 +240,7 @@ impl Block {
         }
     }
 
-    /// Writes a number of each row for each sample; samples are `apart` in `room`.
+    /// Writes one number of each row for each sample. The samples are `apart` numbers apart in `room`.
     #[inline(always)]
     fn write<T: BatchScalar>(&self, rows: &[T], room: &mut [T], apart: usize) {
         for (lane, room) in room.chunks_mut(apart).take(self.count).enumerate() {
@@ -251,7 +251,7 @@ impl Block {
     }
 }
 
-/// Bounds torques and subtracts friction; rows of velocities, then of torques.
+/// Limits the torques and subtracts friction. `rows` has the rows of velocities, then those of torques.
 #[inline(always)]
 fn drive<T: BatchScalar>(joints: &[RolloutJoint<T>], width: usize, rows: &mut [T]) {
     let (velocities, torques) = rows.split_at_mut(joints.len() * width);
@@ -270,7 +270,7 @@ fn drive<T: BatchScalar>(joints: &[RolloutJoint<T>], width: usize, rows: &mut [T
     }
 }
 
-/// Moves states on by a step; rows of positions, then of velocities.
+/// Moves states by one step. `states` has the rows of positions, then those of velocities.
 #[inline(always)]
 fn move_on<T: BatchScalar>(joints: &[RolloutJoint<T>], step: T, width: usize, states: &mut [T], accelerations: &[T]) {
     let (positions, velocities) = states.split_at_mut(joints.len() * width);
@@ -291,7 +291,7 @@ fn move_on<T: BatchScalar>(joints: &[RolloutJoint<T>], step: T, width: usize, st
         if let Some(ends) = joint.position {
             for (position, velocity) in positions.iter_mut().zip(&mut *velocities) {
                 let inside = bounded(*position, ends);
-                // the joint stops there; NaN is no end
+                // a joint stops at the end of its positions; comparisons with NaN are false
                 *velocity = if *position > ends[1] || *position < ends[0] { T::ZERO } else { *velocity };
                 *position = inside;
             }
@@ -299,12 +299,12 @@ fn move_on<T: BatchScalar>(joints: &[RolloutJoint<T>], step: T, width: usize, st
     }
 }
 
-/// The rows of a block as inputs and outputs of the code.
+/// Reads inputs of the code from the rows of a block and writes its outputs to them.
 struct StatePort<'a, V: Vector, const N: usize> {
     unit: V::Unit,
     rows: &'a mut [[V::Numbers; N]],
     inputs: &'a [usize],
-    /// The first row of the outputs.
+    /// The index of the first row of the outputs.
     accelerations: usize,
 }
 

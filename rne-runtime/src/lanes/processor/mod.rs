@@ -1,13 +1,13 @@
-//! Single calls by the instructions that the processor has, whatever the program is compiled for.
+//! Single calls that use the instructions of the processor, even those for which the program is not compiled.
 //!
-//! A plain build for x86-64 knows no fused multiply-add and registers of two `f64`. Derived code of the reduced form
-//! stands in a [`Call`], and [`run`] compiles it twice: for the compiled target, and for AVX2 with fused multiply-add,
-//! where numbers are `f64` or `f32`. The processor is asked once, as for [batches](crate::lanes::batch); afterwards a
-//! call reads one byte and jumps. What it computes then has the bits of a program that is compiled for x86-64-v3.
+//! A plain build for x86-64 knows no fused multiply-add, and only registers of two `f64`. Derived code of the reduced
+//! form is the body of a [`Call`], and [`run`] compiles it twice for `f64` and `f32`: for the compiled target, and for
+//! AVX2 with fused multiply-add. The processor is tested once, as for [batches](crate::lanes::batch); afterwards a call
+//! reads one byte and jumps. The results then have the bits of a program that is compiled for x86-64-v3.
 //!
-//! There is one copy and no question where the target has these instructions, on other processors, without the feature
-//! `batch`, and for all other scalars.
-#![allow(clippy::inline_always)] // what the processor's instructions compute must be compiled with them
+//! There is only one copy, and no test, if the compiled target has these instructions, on other processors, without the
+//! feature `batch`, and for all other scalars.
+#![allow(clippy::inline_always)] // code for the processor's instructions must be compiled with them
 
 #[cfg_attr(
     all(
@@ -31,19 +31,19 @@ use core::any::Any;
 
 use crate::Scalar;
 
-/// Operations of derived code beyond the four operations of its scalar.
+/// Operations that derived code needs in addition to the operators of its scalar.
 pub trait Arithmetic<T> {
-    /// `a * b + c`, as [`Scalar::mul_add`] has it.
+    /// Returns `a * b + c`, as [`Scalar::mul_add`] does.
     fn mul_add(a: T, b: T, c: T) -> T;
 
     /// Sine and cosine of an angle in rad.
     fn sin_cos(angle: T) -> (T, T);
 
-    /// Sines and cosines of several.
+    /// Returns sines and cosines of several angles in rad.
     fn sin_cos_array<const N: usize>(angles: [T; N]) -> ([T; N], [T; N]);
 }
 
-/// The scalar's own: what the target has that the program is compiled for.
+/// The operations of the scalar itself, with the instructions for which the program is compiled.
 #[derive(Debug)]
 pub enum Compiled {}
 
@@ -66,13 +66,13 @@ impl<T: Scalar> Arithmetic<T> for Compiled {
 
 /// The body of a derived method.
 pub trait Call {
-    /// A tuple of references.
+    /// The arguments: a tuple of references.
     type Arguments<'a, T: Scalar>: Copy + OfType<Self::Arguments<'a, f64>> + OfType<Self::Arguments<'a, f32>>;
 
     /// Result of the method.
     type Result<T: Scalar>: Copy + 'static;
 
-    /// Computes it, `#[inline(always)]`.
+    /// Runs the body. Implementations are `#[inline(always)]`.
     fn run<T: Scalar, A: Arithmetic<T>>(arguments: Self::Arguments<'_, T>) -> Self::Result<T>;
 }
 
@@ -82,10 +82,10 @@ pub fn run<C: Call, T: Scalar>(arguments: C::Arguments<'_, T>) -> C::Result<T> {
     detected::run::<C, T>(arguments)
 }
 
-/// A value that may be of type `B`, without any cost: there is no specialisation in stable Rust, and the test is of two
+/// A value that may have the type `B`; the test costs nothing. Stable Rust has no specialisation, so this compares two
 /// constants.
 pub trait OfType<B> {
-    /// The value itself, if it is.
+    /// Returns the value itself if it has this type.
     fn of_type(self) -> Option<B>;
 }
 

@@ -1,4 +1,4 @@
-//! AVX2 and fused multiply-add of an x86 processor, in a program that is compiled for less.
+//! AVX2 and fused multiply-add of an x86 processor, in a program that is compiled for a processor without them.
 
 use core::any::{Any, TypeId};
 use core::marker::PhantomData;
@@ -8,12 +8,13 @@ use crate::Scalar;
 use crate::lanes::registers::{self, Computation, avx2};
 use crate::number::sin_cos::array::in_registers;
 
-/// The body by AVX2 where numbers are `f64` or `f32` and the processor has it.
+/// Runs the body with AVX2 if the processor has it and numbers are `f64` or `f32`; otherwise as it is compiled.
 #[inline(always)]
 pub(super) fn run<C: Call, T: Scalar>(arguments: C::Arguments<'_, T>) -> C::Result<T> {
     macro_rules! detected {
         ($($float:ident)*) => {$(
-            // The size is a constant before the type is: for other scalars nothing is compiled twice.
+            // The comparison of sizes is a constant, while that of types is not: so for other scalars nothing is
+            // compiled twice.
             if const { size_of::<T>() == size_of::<$float>() }
                 && TypeId::of::<T>() == TypeId::of::<$float>()
                 && let Some(arguments) = OfType::<C::Arguments<'_, $float>>::of_type(arguments)
@@ -27,7 +28,7 @@ pub(super) fn run<C: Call, T: Scalar>(arguments: C::Arguments<'_, T>) -> C::Resu
     C::run::<T, Compiled>(arguments)
 }
 
-/// A body and its arguments as a computation that returns numbers of the type `T`: the same, by another name.
+/// A body and its arguments as a computation. Its result type is written with `T`, which is the same type as `F`.
 struct Body<'a, C: Call, F: Scalar, T> {
     arguments: C::Arguments<'a, F>,
     returns: PhantomData<T>,
@@ -41,14 +42,14 @@ where
 
     #[inline(always)]
     fn compute(self) -> Self::Result {
-        // in here the result is not yet in memory, from where it would be copied
+        // converted in here, before the result is in memory, from which it would have to be copied
         let result = C::run::<F, Avx2>(self.arguments);
         let result = (&result as &dyn Any).downcast_ref().copied();
         result.unwrap_or_else(|| unreachable!("`run` has compared the types"))
     }
 }
 
-/// Instructions detected on the processor; only a [`Body`] computes with them.
+/// The instructions that were detected on the processor. Only a [`Body`] computes with them.
 enum Avx2 {}
 
 macro_rules! detected {
@@ -89,7 +90,7 @@ mod tests {
     use crate::lanes::registers;
     use crate::number::sin_cos::{Float, Lanes, kernel};
 
-    /// a b + c, and the sines and cosines of three angles.
+    /// An example: a b + c, and the sines and cosines of three angles.
     enum Example {}
 
     impl Call for Example {
@@ -104,7 +105,7 @@ mod tests {
         }
     }
 
-    /// A number whose products are added without rounding: the arithmetic of the processor, one by one.
+    /// A number whose products are added with one rounding, as the processor does it.
     #[derive(Clone, Copy, Debug, PartialEq)]
     struct Fused<T>(T);
 

@@ -42,15 +42,16 @@ pub(crate) use unit::{Avx2, Avx512, Computation};
 #[cfg(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")))]
 pub(crate) use x86::{avx2, avx512};
 
-/// The registers of the compiled target: the widest ones up to 256 bits. A single call has too few angles for more, and
-/// while an instruction of 512 bits is on its way, Intel's processors close one of their three units for all others.
+/// The registers of the compiled target: the widest ones up to 256 bits. A single call has too few angles for wider
+/// ones, and during an instruction of 512 bits, Intel's processors do not use one of their three arithmetic units for
+/// other instructions.
 pub(crate) mod compiled {
     #[cfg(all(feature = "std", target_arch = "aarch64", target_feature = "neon"))]
     pub(crate) use super::aarch64::{Doubles, Singles};
     #[cfg(all(feature = "std", any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
     pub(crate) use super::x86::compiled::{Doubles, Singles};
 
-    /// Numbers come one by one: without `std`, and where the registers are not known here.
+    /// Registers of one number: without `std`, and on processors whose registers are not known here.
     #[cfg(not(all(
         feature = "std",
         any(

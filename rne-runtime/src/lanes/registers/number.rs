@@ -1,5 +1,5 @@
-//! A number as a register of one lane, where there is no other: without `std`, and on processors that are not known
-//! here.
+//! A number as a register of one lane, if there is no other register: without `std`, and on processors that are not
+//! known here.
 #![allow(clippy::inline_always)] // as in the kernel, which must be compiled with the target features of its caller
 
 use crate::lanes::batch::vector::vector;

@@ -1,8 +1,8 @@
-//! A register, written once for all units: what it does, from a table of their instructions.
+//! Registers, written once for all units: their operations, from a table of the units' instructions.
 
-/// Defines a register. The functions and expressions are of `core::arch`. `odd` is a where the integer n is odd, else
-/// b; `one` has 1 in each lane. `within` is a mask of the lanes whose angle, without its sign, is no larger than the
-/// limit, and `all` whether it has all lanes; single calls ask that. `sign` has -0 in each lane.
+/// Defines a register from functions and expressions of `core::arch`. `odd` is a in lanes in which the integer n is
+/// odd, and b in others. `one` has 1 in each lane. `within` is a mask of the lanes whose angle, without its sign, is at
+/// most the limit, and `all` tells whether the mask has all lanes; single calls use it. `sign` has -0 in each lane.
 macro_rules! register {
     (
         $Register:ident: [$element:ident; $LANES:literal], $lanes:ident, $bits:ident;
@@ -25,25 +25,25 @@ macro_rules! register {
         impl $Register {
             #[inline(always)]
             fn of_numbers(numbers: [$element; $LANES]) -> Self {
-                // SAFETY: as many bytes, of which each pattern is a number.
+                // SAFETY: both have the same number of bytes, and every pattern of bits is a number.
                 Self(unsafe { transmute::<[$element; $LANES], $lanes>(numbers) })
             }
 
             #[inline(always)]
             fn numbers(self) -> [$element; $LANES] {
-                // SAFETY: as many bytes, of which each pattern is a number.
+                // SAFETY: both have the same number of bytes, and every pattern of bits is a number.
                 unsafe { transmute::<$lanes, [$element; $LANES]>(self.0) }
             }
 
             #[inline(always)]
             fn of_bits(bits: $bits) -> Self {
-                // SAFETY: registers of one size, of which each pattern is a value.
+                // SAFETY: both registers have the same size, and every pattern of bits is a value.
                 Self(unsafe { transmute::<$bits, $lanes>(bits) })
             }
 
             #[inline(always)]
             fn bits(self) -> $bits {
-                // SAFETY: registers of one size, of which each pattern is a value.
+                // SAFETY: both registers have the same size, and every pattern of bits is a value.
                 unsafe { transmute::<$lanes, $bits>(self.0) }
             }
         }
@@ -56,7 +56,7 @@ macro_rules! register {
             #[inline(always)]
             fn neg(self) -> Self {
                 let sign = Self::splat(-0.0);
-                // SAFETY: who has a register has its unit; see the head of `registers`.
+                // SAFETY: a register only exists if the processor has its unit; see the head of `registers`.
                 Self::of_bits(unsafe { $xor(self.bits(), sign.bits()) })
             }
         }
@@ -82,7 +82,7 @@ macro_rules! register {
 
             #[inline(always)]
             fn splat(element: $element) -> Self {
-                // SAFETY: who makes a register has its unit; see the head of `registers`.
+                // SAFETY: a register is only created if the processor has its unit; see the head of `registers`.
                 Self(unsafe { $splat(element) })
             }
 
@@ -92,7 +92,7 @@ macro_rules! register {
                     return self + a * b;
                 }
                 let ($plus_c, $plus_a, $plus_b) = (self.0, a.0, b.0);
-                // SAFETY: who has a register has its unit; see the head of `registers`.
+                // SAFETY: a register only exists if the processor has its unit; see the head of `registers`.
                 Self(unsafe { $plus })
             }
 
@@ -102,17 +102,17 @@ macro_rules! register {
                     return self - a * b;
                 }
                 let ($minus_c, $minus_a, $minus_b) = (self.0, a.0, b.0);
-                // SAFETY: who has a register has its unit; see the head of `registers`.
+                // SAFETY: a register only exists if the processor has its unit; see the head of `registers`.
                 Self(unsafe { $minus })
             }
 
             #[inline(always)]
             fn in_quadrant(rounded: Self, sine: Self, cosine: Self) -> (Self, Self) {
                 let ($n, sign) = (rounded.bits(), Self::splat(-0.0).bits());
-                // SAFETY: who has a register has its unit; see the head of `registers`.
+                // SAFETY: a register only exists if the processor has its unit; see the head of `registers`.
                 unsafe {
                     let $one = $splat_bits(1);
-                    // no closure: it would be compiled without the unit
+                    // not a closure, which would be compiled without the unit's instructions
                     let (sine, cosine) = (
                         {
                             let ($a, $b) = (cosine.0, sine.0);
@@ -123,7 +123,7 @@ macro_rules! register {
                             Self($odd)
                         },
                     );
-                    // the second lowest bit as the sign
+                    // the second lowest bit becomes the sign
                     let sign_of_sine = $and($shift::<$PLACES>($n), sign);
                     let sign_of_cosine = $and($shift::<$PLACES>($add_bits($n, $one)), sign);
                     (
@@ -160,7 +160,7 @@ macro_rules! register {
                 fn are_within_limit(angles: &[Self]) -> bool {
                     let (Self($sign), Self($limit)) = (Self::splat(-0.0), Self::splat(LIMIT.into()));
                     let Some((&Self($angle), others)) = angles.split_first() else { return true };
-                    // SAFETY: who has a register has its unit; see the head of `registers`.
+                    // SAFETY: a register only exists if the processor has its unit; see the head of `registers`.
                     unsafe {
                         let mut $mask = $within;
                         for &Self($angle) in others {
@@ -178,7 +178,7 @@ macro_rules! register {
 
             #[inline(always)]
             fn $operator(self, other: Self) -> Self {
-                // SAFETY: who has a register has its unit; see the head of `registers`.
+                // SAFETY: a register only exists if the processor has its unit; see the head of `registers`.
                 Self(unsafe { $function(self.0, other.0) })
             }
         }

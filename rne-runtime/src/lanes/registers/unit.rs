@@ -3,18 +3,18 @@
 use core::mem::{ManuallyDrop, MaybeUninit};
 use core::sync::atomic::{AtomicU8, Ordering};
 
-/// A computation on a unit. It is not a closure, so it can always be inlined.
+/// A computation that runs on a vector unit. It is not a closure, so it can always be inlined.
 pub(crate) trait Computation {
     type Result;
 
-    /// Computes it, `#[inline(always)]`.
+    /// Runs the computation. Implementations are `#[inline(always)]`.
     fn compute(self) -> Self::Result;
 }
 
-/// A computation of no more words is handed on in registers: as many as take arguments.
+/// A computation of at most this many words is passed in registers: that many registers are for arguments.
 const WORDS: usize = 6;
 
-/// State before the processor was asked for a unit.
+/// The state before the processor was tested for a unit.
 const UNKNOWN: u8 = 2;
 
 macro_rules! unit {
@@ -24,7 +24,7 @@ macro_rules! unit {
         pub struct $Unit(());
 
         impl $Unit {
-            /// The unit, if the processor has it. It is asked once; afterwards this reads one byte.
+            /// Returns the unit if the processor has it. The processor is tested once; afterwards this reads one byte.
             #[inline]
             pub(crate) fn try_new() -> Option<Self> {
                 static IS_THERE: AtomicU8 = AtomicU8::new(UNKNOWN);
@@ -44,7 +44,7 @@ macro_rules! unit {
                 (is_there != 0).then_some(Self(()))
             }
 
-            /// Computes with the instructions of the unit.
+            /// Runs a computation that is compiled with the instructions of the unit.
             #[inline(always)]
             pub(crate) fn vectorize<C: Computation>(self, computation: C) -> C::Result {
                 $(#[target_feature(enable = $feature)])*
@@ -53,8 +53,8 @@ macro_rules! unit {
                     computation.compute()
                 }
 
-                // A value of more than two words is handed on in memory; this one saves a short computation the way
-                // there and back.
+                // A value of more than two words would be passed in memory. Passing it as words spares a short
+                // computation the stores and loads.
                 $(#[target_feature(enable = $feature)])*
                 #[inline]
                 fn in_words<C: Computation>(
@@ -66,17 +66,18 @@ macro_rules! unit {
                     f: MaybeUninit<usize>,
                 ) -> C::Result {
                     let words = Words::<C> { words: [a, b, c, d, e, f] };
-                    // SAFETY: these are the words of a computation that the one caller has given away.
+                    // SAFETY: these are the words of a computation that the only caller has moved into them.
                     ManuallyDrop::into_inner(unsafe { words.computation }).compute()
                 }
 
                 if const { size_of::<C>() > size_of::<[usize; WORDS]>() } {
-                    // SAFETY: the processor has the unit, for `self` is the proof.
+                    // SAFETY: the processor has the unit, because `self` can only be created after the test.
                     return unsafe { in_memory(computation) };
                 }
                 let mut words = Words::<C> { words: [MaybeUninit::uninit(); WORDS] };
                 words.computation = ManuallyDrop::new(computation);
-                // SAFETY: any bytes are such words, and the processor has the unit, for `self` is the proof.
+                // SAFETY: words may have any bytes, and the processor has the unit, because `self` can only be created
+                // after the test.
                 unsafe {
                     let [a, b, c, d, e, f] = words.words;
                     in_words::<C>(a, b, c, d, e, f)
@@ -86,7 +87,7 @@ macro_rules! unit {
     };
 }
 
-/// A computation as the words that it is made of.
+/// The memory of a computation, as a value or as words.
 #[repr(C)]
 union Words<C> {
     computation: ManuallyDrop<C>,

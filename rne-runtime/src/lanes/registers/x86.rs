@@ -5,7 +5,7 @@ use core::arch::x86 as intrinsics;
 #[cfg(target_arch = "x86_64")]
 use core::arch::x86_64 as intrinsics;
 
-/// Names used by the table of a unit.
+/// The names that the table of a unit uses.
 mod prelude {
     pub(super) use core::fmt;
     pub(super) use core::mem::transmute;
@@ -18,7 +18,7 @@ mod prelude {
     pub(super) use crate::number::sin_cos::{LIMIT, Lanes};
 }
 
-/// 256 bits, of the compiled target or found.
+/// Registers of 256 bits, for AVX2 of the compiled target or detected at run time.
 #[cfg(any(feature = "batch", all(target_feature = "avx2", target_feature = "fma")))]
 macro_rules! avx2 {
     ($Unit:ty, many $MANY:literal) => {
@@ -56,7 +56,7 @@ macro_rules! avx2 {
     };
 }
 
-/// AVX2 and fused multiply-add, found: for many states.
+/// AVX2 and fused multiply-add, detected at run time: for many states.
 #[cfg(feature = "batch")]
 pub(crate) mod avx2 {
     use super::prelude::*;
@@ -65,7 +65,7 @@ pub(crate) mod avx2 {
     avx2!(Avx2, many true);
 }
 
-/// AVX-512 F, BW, CD, DQ and VL, found.
+/// AVX-512 F, BW, CD, DQ and VL, detected at run time.
 #[cfg(feature = "batch")]
 pub(crate) mod avx512 {
     use super::prelude::*;
@@ -94,7 +94,7 @@ pub(crate) mod avx512 {
     }
 }
 
-/// AVX2 and fused multiply-add, which the program is compiled for.
+/// AVX2 and fused multiply-add, for which the program is compiled.
 #[cfg(all(target_feature = "avx2", target_feature = "fma"))]
 pub(crate) mod compiled {
     use super::prelude::*;
@@ -102,7 +102,7 @@ pub(crate) mod compiled {
     avx2!((), many false);
 }
 
-/// SSE2; a processor that has fused multiply-add besides may be what the program is compiled for.
+/// SSE2. The compiled target may have fused multiply-add in addition.
 #[cfg(all(target_feature = "sse2", not(all(target_feature = "avx2", target_feature = "fma"))))]
 pub(crate) mod compiled {
     use super::prelude::*;

@@ -2,8 +2,8 @@
 //!
 //! After W. J. Cody and W. Waite, "Software Manual for the Elementary Functions" (1980): π/2 is a sum of parts so short
 //! that their products with n have no rounding error, and the parts are subtracted from x one after the other, the
-//! largest first. What a subtraction of a later part rounds away is computed exactly as `(s - a) + b` for `s = a - b`
-//! (Dekker's fast sum) and collected in e.
+//! largest first. The rounding error of the subtraction of a later part is computed exactly as `(s - a) + b` for `s =
+//! a - b` (Dekker's fast sum) and collected in e.
 
 use core::f32::consts::FRAC_2_PI as FRAC_2_PI_F32;
 use core::f64::consts::FRAC_2_PI as FRAC_2_PI_F64;
