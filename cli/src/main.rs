@@ -1,6 +1,7 @@
-//! The command line of rne: a thin shell over functions that take arguments and return text.
+//! The command line of rne: a thin layer over functions that take arguments and return text.
 //!
-//! `commands` parse and answer, by means of `files`, `render` and `values`; none of these knows a command.
+//! The modules in `commands` parse arguments and run commands with the help of `files`, `render` and `values`, none of
+//! which depends on a command.
 #![forbid(unsafe_code)]
 
 #[macro_use]
@@ -41,7 +42,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// A panic of a library that reads a corrupt log becomes an error with the file's name: nothing is printed of it.
+/// Prevents a panic message on the terminal: a panic of a library that reads a corrupt log becomes an error that names
+/// the file.
 fn hush() {
     let usual = panic::take_hook();
     panic::set_hook(Box::new(move |info| {

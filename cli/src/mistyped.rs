@@ -1,6 +1,6 @@
-//! Slips on the command line whose usual message would mislead, or help with nothing: blanks in a list of numbers, an
-//! option without its value, a value that looks like an option, an option of another command, a function that commands
-//! do not have, and arguments that are missing or too many.
+//! Finds mistakes on the command line for which the parser's message would mislead or not help: blanks in a list of
+//! numbers, an option without its value, a value that looks like an option, an option of another command, a function
+//! that a command does not have, missing arguments, and surplus arguments.
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgAction, Command, CommandFactory as _};
@@ -13,8 +13,8 @@ use crate::palette::TYPED;
 use crate::values::choice;
 use crate::values::numbers::List;
 
-/// The command, as its help is asked for, and what is wrong with its words; `None` where the message of the parser says
-/// it well. `words` are those behind the name of the program.
+/// Returns the command, named for a message about its help, and what is wrong with its words; `None` if the message of
+/// the parser is good. `words` are those after the name of the program.
 pub(crate) fn explained(error: &clap::Error, words: &[String]) -> Option<(String, Failure)> {
     if !error.use_stderr() {
         return None;
@@ -37,7 +37,7 @@ pub(crate) fn explained(error: &clap::Error, words: &[String]) -> Option<(String
     Some((format!("rne {name}"), Failure::usage(text)))
 }
 
-/// The texts that the parser gives for a kind: one, several, or no text.
+/// Returns the texts that the parser gives for one kind of context; it may give none.
 fn texts(error: &clap::Error, kind: ContextKind) -> &[String] {
     match error.get(kind) {
         Some(ContextValue::String(text)) => std::slice::from_ref(text),
@@ -46,7 +46,7 @@ fn texts(error: &clap::Error, kind: ContextKind) -> &[String] {
     }
 }
 
-/// The option of a word, `--q` or `--q=1`, and its value if it stands in the same word.
+/// Returns the option that a word means, `--q` or `--q=1`, and its value if the same word contains it.
 fn option<'c, 'w>(command: &'c Command, word: &'w str) -> Option<(&'c Arg, Option<&'w str>)> {
     let word = word.strip_prefix("--")?;
     let (name, value) = word.split_once('=').map_or((word, None), |(name, value)| (name, Some(value)));
@@ -63,13 +63,13 @@ fn takes_list(arg: &Arg) -> bool {
     arg.get_value_names().is_some_and(|names| names.iter().any(is_list))
 }
 
-/// An option with what it takes and is for, as its help has it.
+/// Describes an option as its help does: its value and its purpose.
 fn described(arg: &Arg) -> String {
     let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
     format!("{TYPED}{arg}{TYPED:#}: {help}")
 }
 
-/// Lists of numbers with blanks between them: `--q 0.5 0.3`, `--q 0.5, 0.3`.
+/// Finds lists of numbers with blanks between them: `--q 0.5 0.3`, `--q 0.5, 0.3`.
 fn with_blanks(command: &Command, words: &[String]) -> Option<String> {
     let numbers = |word: &str| {
         let word = word.trim_matches(',');
@@ -104,7 +104,7 @@ fn without_value(command: &Command, words: &[String]) -> Option<String> {
     ))
 }
 
-/// A value that begins with a dash behind an option that takes none such: `--joint -1`.
+/// Finds a value that begins with a dash after an option that does not accept such values: `--joint -1`.
 fn refused(command: &Command, words: &[String]) -> Option<String> {
     words.windows(2).find_map(|pair| {
         let [before, word] = pair else { return None };
@@ -116,16 +116,16 @@ fn refused(command: &Command, words: &[String]) -> Option<String> {
     })
 }
 
-/// Functions of matrices, which Rust and Python have.
+/// Functions that return matrices, which only the libraries for Rust and Python have.
 const OF_LIBRARIES: [&str; 2] = ["operational_space_inertia", "dynamically_consistent_inverse"];
 
 /// The function whose C code contains the observer.
 const OBSERVER: &str = "momentum_and_rate";
 
-/// A value of `--function` that is no function of the command. The list of all names is long, so the message has the
-/// names that are similar, and says which command prints the others.
+/// Finds a value of `--function` that is no function of the command. The list of all names is long, so the message has
+/// only similar names, and the command that prints all of them.
 fn unknown_function(error: &clap::Error) -> Option<String> {
-    /// The most names that a message proposes.
+    /// Largest number of names that a message proposes.
     const MOST: usize = 6;
     let [value] = texts(error, ContextKind::InvalidValue) else { return None };
     let valid = texts(error, ContextKind::ValidValue);
@@ -173,7 +173,7 @@ fn unknown_function(error: &clap::Error) -> Option<String> {
     })
 }
 
-/// Words for an option that the parser does not know, for it compares letters.
+/// Options, each with other words of the field for it; the parser only compares letters, so it does not know them.
 const SYNONYMS: [(&str, &[&str]); 6] = [
     ("q", &["pos", "position", "positions", "angles"]),
     ("qd", &["dq", "vel", "velocity", "velocities"]),
@@ -183,7 +183,7 @@ const SYNONYMS: [(&str, &[&str]); 6] = [
     ("lang", &["language"]),
 ];
 
-/// An option under another word of the field: `--velocity 1,1`.
+/// Finds an option with another word of the field: `--velocity 1,1`.
 fn of_synonym(command: &Command, error: &clap::Error) -> Option<String> {
     let [typed] = texts(error, ContextKind::InvalidArg) else { return None };
     let (meant, _) = SYNONYMS.into_iter().find(|(_, words)| words.contains(&typed.trim_start_matches('-')))?;
@@ -215,7 +215,7 @@ fn of_others(grammar: &Command, command: &Command, error: &clap::Error) -> Optio
     ))
 }
 
-/// The first example of a command's help, without the words beside it.
+/// Returns the first example in the help of a command, without its description.
 fn example(command: &Command) -> Option<String> {
     let help = command.get_after_help()?.to_string();
     let mut example = String::new();
@@ -230,13 +230,14 @@ fn example(command: &Command) -> Option<String> {
     Some(example.split("  ").next().unwrap_or_default().to_owned())
 }
 
-/// Names as they are typed.
+/// Joins names in the style of text to type.
 fn joined(names: &[String]) -> String {
     let names: Vec<String> = names.iter().map(|name| format!("{TYPED}{name}{TYPED:#}")).collect();
     names.join(" and ")
 }
 
-/// An option that needs another one which is missing: without the first, the parser does not miss the second.
+/// Finds an option that needs another option which is missing. The parser reports the missing option without the one
+/// that needs it.
 fn needed_by_another(command: &Command, error: &clap::Error, words: &[String]) -> Option<String> {
     let missing = |error: &clap::Error| match error.kind() {
         ErrorKind::MissingRequiredArgument => texts(error, ContextKind::InvalidArg).to_vec(),
@@ -258,7 +259,7 @@ fn needed_by_another(command: &Command, error: &clap::Error, words: &[String]) -
         let is_needing = names.iter().any(|name| missing.contains(name) && !always.contains(name));
         is_needing.then(|| format!("--{}", arg.get_long().unwrap_or_default()))
     })?;
-    // what else the command cannot do without
+    // if the command itself requires the first option, leaving both out is no solution
     let is_required = command.get_arguments().any(|arg| arg.is_required_set() && Some(&needing[2..]) == arg.get_long());
     let advice = match names.len() {
         1 if is_required => "give it, too",
@@ -268,7 +269,7 @@ fn needed_by_another(command: &Command, error: &clap::Error, words: &[String]) -
     Some(format!("{TYPED}{needing}{TYPED:#} needs {}; {advice}", joined(&names)))
 }
 
-/// Numbers of one state beside an option that has states of its own: `--states TABLE --payload LIST`.
+/// Finds an option with numbers of one state beside an option that has its own states: `--states TABLE --payload LIST`.
 fn beside_states(command: &Command, error: &clap::Error, words: &[String]) -> Option<String> {
     let conflicts = error.kind() == ErrorKind::ArgumentConflict && command.get_name() == "eval";
     let given = || words.iter().filter(|_| conflicts).filter_map(|word| Some(option(command, word)?.0));
@@ -287,7 +288,8 @@ fn beside_states(command: &Command, error: &clap::Error, words: &[String]) -> Op
     Some(format!("{TYPED}--{list}{TYPED:#} is for one state; with {TYPED}--{own}{TYPED:#}, {states}{payload}"))
 }
 
-/// Arguments that are missing, and words that no argument takes, where the parser proposes nothing: with an example.
+/// Finds missing arguments, and words that no argument accepts, if the parser has no proposal: the message has an
+/// example.
 fn missing_or_too_many(command: &Command, error: &clap::Error) -> Option<String> {
     let name = command.get_name();
     let example = format!("for example {TYPED}{}{TYPED:#}", example(command)?);
@@ -312,7 +314,7 @@ mod tests {
 
     use super::*;
 
-    /// Message for a command line that is refused.
+    /// Returns the message for a command line that is refused.
     fn said(line: &str) -> Option<String> {
         let words: Vec<String> = line.split(' ').map(str::to_owned).collect();
         let all = std::iter::once("rne".to_owned()).chain(words.iter().cloned());
@@ -363,7 +365,7 @@ mod tests {
         );
         let latex = said("eval planar2 --latex").expect("refused");
         assert_eq!(latex, "error: rne eval has no option --latex, which is an option of rne show");
-        // an option of no command
+        // no command has this option
         assert_eq!(said("eval planar2 --payloads 1,0,0,0"), None);
     }
 
@@ -419,7 +421,8 @@ mod tests {
         }
     }
 
-    /// The parser does not ask for an option that another one excludes; so what needs that option is excluded, too.
+    /// The parser does not require an option that conflicts with another given one; so options that need it must
+    /// conflict, too.
     #[test]
     fn nothing_is_given_without_what_it_needs() {
         for line in [

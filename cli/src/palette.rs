@@ -1,7 +1,7 @@
-//! The palette: a few styles, by which the text of a command has its colours.
+//! The palette: the styles that give the text of commands its colours.
 //!
-//! Commands return text with colours in it; the streams of `terminal` take them out where there is no terminal, or
-//! where `NO_COLOR` asks for it.
+//! Commands return text with colours; the streams of `terminal` remove them if the output is no terminal, or if
+//! `NO_COLOR` is set.
 
 use std::collections::hash_map::RandomState;
 use std::fmt::{self, Display};
@@ -11,24 +11,24 @@ use std::sync::LazyLock;
 use anstyle::AnsiColor;
 use clap::builder::Styles;
 
-/// Titles.
+/// Style of titles.
 pub(crate) const TITLE: Style = Style(anstyle::Style::new().bold());
 /// Style of secondary text: units, counts, hints.
 pub(crate) const QUIET: Style = Style(anstyle::Style::new().dimmed());
-/// Formulas of the lecture.
+/// Style of formulas from the lecture.
 pub(crate) const FORMULA: Style = Style(AnsiColor::Cyan.on_default());
 /// Style of facts that the compiler found.
 pub(crate) const FOUND: Style = Style(AnsiColor::Green.on_default());
 /// Style of text to type.
 pub(crate) const TYPED: Style = Style(AnsiColor::Yellow.on_default());
-/// All is well.
+/// Style of messages of success.
 pub(crate) const GOOD: Style = Style(AnsiColor::Green.on_default().bold());
-/// Something is probably not what was meant.
+/// Style of warnings.
 pub(crate) const WARNING: Style = Style(AnsiColor::Yellow.on_default().bold());
-/// Something is wrong.
+/// Style of errors.
 pub(crate) const ERROR: Style = Style(AnsiColor::Red.on_default().bold());
 
-/// The same palette for `--help`.
+/// The palette for the texts of `--help`.
 pub(crate) const HELP_STYLES: Styles = Styles::plain()
     .header(TITLE.0)
     .usage(TITLE.0)
@@ -38,8 +38,8 @@ pub(crate) const HELP_STYLES: Styles = Styles::plain()
     .invalid(TYPED.0)
     .valid(FOUND.0);
 
-/// A style of the palette: `{STYLE}` begins it and `{STYLE:#}` ends it. Its sequences carry the mark of this process,
-/// which no file and no name can know, so the terminal gets these and no others.
+/// A style of the palette: `{STYLE}` begins it and `{STYLE:#}` ends it. Its escape sequences contain a secret mark of
+/// this process, which no file or name can contain by chance, so that the terminal gets only these sequences.
 #[derive(Clone, Copy)]
 pub(crate) struct Style(pub(crate) anstyle::Style);
 
@@ -50,18 +50,18 @@ impl Display for Style {
     }
 }
 
-/// How a sequence begins that colours.
+/// How an escape sequence for a colour begins.
 pub(crate) const BEGIN: &str = "\u{1B}[";
 
-/// The first parameter of every sequence of ours: a random number, of the same length in every process.
+/// The first parameter of every escape sequence of this program: a random number, of the same length in every process.
 pub(crate) static MARK: LazyLock<String> = LazyLock::new(|| format!("{:020};", RandomState::new().hash_one(())));
 
 pub(crate) fn marked(sequences: &str) -> String {
     sequences.replace(BEGIN, &format!("{BEGIN}{}", *MARK))
 }
 
-/// A text in the colours of a library. Where the text without them has a sequence too, that is of a file or of a name,
-/// and nobody knows which is which: it stays without colours.
+/// Marks the colours of a text from a library, so that the terminal gets them. If the plain text already contains an
+/// escape sequence, from a file or a name, both cannot be told apart, so the plain text is returned.
 pub(crate) fn coloured(plain: &str, coloured: &str) -> String {
     if plain.contains('\u{1B}') { plain.to_owned() } else { marked(coloured) }
 }

@@ -1,4 +1,4 @@
-//! Remedies against errors, in the words of the command line.
+//! Remedies for errors, in the words of the command line.
 
 pub(crate) mod log;
 
@@ -8,12 +8,12 @@ use rne_codegen::{CompileError, Remedy};
 use rne_identify::ExcitationError;
 use rne_model::{Report, robot_of};
 
-/// The errors of a robot file or a URDF with the options that help.
+/// Adds to the errors of a robot file or a URDF the options that help.
 pub(crate) fn worded(report: &Report) -> Report {
     report.clone().worded(in_options)
 }
 
-/// A remedy as options.
+/// Returns a remedy as an option of the command line.
 #[allow(clippy::unnecessary_wraps)] // what a report asks for
 pub(crate) fn in_options(remedy: &rne_model::Remedy) -> Option<String> {
     use rne_model::Remedy;
@@ -39,7 +39,7 @@ pub(crate) fn in_options(remedy: &rne_model::Remedy) -> Option<String> {
     })
 }
 
-/// A reason why there is no motion that excites an arm, with the options that help.
+/// Returns the reason why no motion excites an arm, with the options that help.
 pub(crate) fn of_excitation(error: &ExcitationError) -> String {
     match error {
         ExcitationError::Length { .. } | ExcitationError::NotPositive(_) => format!("--{error}"),
@@ -49,7 +49,7 @@ pub(crate) fn of_excitation(error: &ExcitationError) -> String {
     }
 }
 
-/// A mistake of a plan file with what helps.
+/// Adds a remedy to a mistake in a plan file.
 pub(crate) fn of_plan(report: Report, remedy: Remedy) -> Report {
     let robot = robot_of(Path::new(&report.name)).map(|path| path.display().to_string());
     let robot = robot.as_deref().unwrap_or("ROBOT.yaml");
@@ -63,7 +63,7 @@ pub(crate) fn of_plan(report: Report, remedy: Remedy) -> Report {
     report.with_help(&words)
 }
 
-/// An error of the compiler with what helps.
+/// Returns an error of the compiler with a remedy.
 pub(crate) fn of_compiler(error: &CompileError) -> String {
     match error.remedy() {
         Some(Remedy::RewriteAfresh) => {

@@ -1,4 +1,4 @@
-//! The terminal: its width, and writing to a reader that may have gone away.
+//! The terminal: its width, and writing to a reader that may have closed the stream.
 
 use std::env;
 use std::fmt::{self, Write as _};
@@ -13,21 +13,22 @@ use rne_model::{is_control, one_line};
 use crate::outcome::{Failure, INPUT, Outcome, USAGE};
 use crate::palette::{BEGIN, ERROR, MARK, TYPED, marked};
 
-/// Columns of prose: those of the terminal, and no more than `most`, which a pipe or a file has.
+/// Returns the number of columns for prose: that of the terminal, but at most `most`, which is also used for a pipe or
+/// a file.
 pub(crate) fn width(most: usize) -> usize {
     const FEWEST: usize = 40;
     let terminal = terminal_size::terminal_size_of(io::stdout()).map(|(columns, _)| usize::from(columns.0));
     terminal.map_or(most, |columns| columns.clamp(FEWEST, most))
 }
 
-/// Columns of a table: those of the terminal, and 100 of a pipe or a file.
+/// Returns the number of columns for a table: that of the terminal, or 100 for a pipe or a file.
 pub(crate) fn room() -> usize {
     const OF_A_FILE: usize = 100;
     let terminal = terminal_size::terminal_size_of(io::stdout()).map(|(columns, _)| usize::from(columns.0));
     terminal.unwrap_or(OF_A_FILE)
 }
 
-/// Prints what a command returned.
+/// Prints the result of a command.
 pub(crate) fn show(outcome: &Outcome) -> ExitCode {
     let remark = notes_of_files() + &outcome.remark;
     let (before, after) = if outcome.remark_last { ("", &*remark) } else { (&*remark, "") };
@@ -35,7 +36,7 @@ pub(crate) fn show(outcome: &Outcome) -> ExitCode {
     let written = write(AutoStream::auto(io::stdout().lock()), &outcome.text);
     let _ = write(AutoStream::auto(io::stderr().lock()), after);
     match written {
-        // `rne show … | head` has read enough.
+        // In `rne show … | head` the reader has read enough, which is no error.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {}
         Err(error) => {
             let text = format!("{ERROR}error{ERROR:#}: the output cannot be written: {error}\n");
@@ -49,14 +50,14 @@ pub(crate) fn show(outcome: &Outcome) -> ExitCode {
 
 /// Prints a note at once, before the command has a result.
 pub(crate) fn remark(what: fmt::Arguments<'_>) {
-    // where a note finds no reader, the result still may
+    // if the note cannot be written, the result may still be
     let _ = write(AutoStream::auto(io::stderr().lock()), &what.to_string());
 }
 
-/// Notes on the files that were read, until the command has a result or an error.
+/// Notes on files that were read; they are printed with the result or the error of the command.
 static OF_FILES: Mutex<String> = Mutex::new(String::new());
 
-/// Prints a note with the result of the command, whatever that is: no command can drop it.
+/// Stores a note that is printed with the result of the command or with its error, so that no command can lose it.
 pub(crate) fn note_of_file(note: &str) {
     OF_FILES.lock().unwrap_or_else(PoisonError::into_inner).push_str(note);
 }
@@ -65,25 +66,25 @@ fn notes_of_files() -> String {
     mem::take(&mut OF_FILES.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// Prints why a command could not do its work.
+/// Prints the error of a command that could not do its work.
 pub(crate) fn complain(command: &str, failure: &Failure) -> ExitCode {
     let mut text = format!("{}{}\n", notes_of_files(), failure.text.trim_end());
     if failure.status == USAGE {
         let _ = writeln!(text, "\nFor more information, try '{TYPED}{command} --help{TYPED:#}'.");
     }
-    // Where even the complaint finds no reader, the status must do.
+    // If even the error cannot be written, only the exit status reports it.
     let _ = write(AutoStream::auto(io::stderr().lock()), &text);
     failure.status.into()
 }
 
-/// Prints what clap says: help, or what is wrong with the command line, which may be quoted.
+/// Prints a text of clap: help, or what is wrong with the command line, which it may quote.
 pub(crate) fn usage(error: &clap::Error) -> ExitCode {
     let text = error.render();
-    // A word that is quoted may have colours of its own, and nobody knows which is which.
+    // A quoted word may contain escape sequences of its own, which could not be told from those of clap.
     let has_colours = env::args_os().any(|word| word.to_string_lossy().contains('\u{1B}'));
     let text = if has_colours { text.to_string() } else { marked(&text.ansi().to_string()) };
     if error.use_stderr() {
-        // Where even this finds no reader, the status must do.
+        // If even this cannot be written, only the exit status reports it.
         let _ = write(AutoStream::auto(io::stderr().lock()), &text);
         return USAGE.into();
     }
@@ -95,9 +96,9 @@ fn write(mut stream: impl Write, text: &str) -> io::Result<()> {
     stream.flush()
 }
 
-/// Text for a terminal: of all control characters it keeps the ends of lines, and the sequences of our own
-/// [`Style`](crate::palette::Style)s.
-/// Whatever a file or its name holds, a terminal shows it and does nothing else.
+/// Makes a text harmless for a terminal: the only control characters that stay are line ends and the escape sequences
+/// of this program's [`Style`](crate::palette::Style)s. So the terminal shows whatever a file or its name contains, and
+/// does nothing else.
 fn inert(text: &str) -> String {
     let mut inert = String::with_capacity(text.len());
     let mut rest = text;
@@ -116,7 +117,8 @@ fn inert(text: &str) -> String {
     inert + rest
 }
 
-/// The parameters of the sequence of ours with which a text starts, without the mark, and the text after it.
+/// If a text begins with an escape sequence of this program, returns its parameters without the mark, and the text
+/// after it.
 fn own_sequence(text: &str) -> Option<(&str, &str)> {
     text.strip_prefix(BEGIN)?.strip_prefix(MARK.as_str())?.split_once('m')
 }
@@ -135,14 +137,15 @@ mod tests {
         assert_eq!(inert(&text), format!("{}error{:#}: {shown}", ERROR.0, ERROR.0));
     }
 
-    /// Control characters that would hide text or forge a result are removed; the palette's colours are no exception.
+    /// Control characters in data could hide text or forge a result, so they are replaced, even those that look like
+    /// colours of the palette.
     #[test]
     fn colours_of_data_are_shown_and_do_nothing() {
         for data in ["\u{1B}[8m", "\u{1B}[0m", "\u{1B}[1m\u{1B}[32m", "\u{1B}[m", "\u{1B}[00000000000000000000;8m"] {
             let text = format!("{QUIET}{data}hidden{QUIET:#}");
             let shown = data.replace('\u{1B}', "\u{FFFD}");
             assert_eq!(inert(&text), format!("{}{shown}hidden{:#}", QUIET.0, QUIET.0));
-            // a library's message that quotes it
+            // a message of a library that quotes the data
             let message = format!("no `{data}`");
             let styled = format!("\u{1B}[31m{message}\u{1B}[0m");
             assert_eq!(inert(&coloured(&message, &styled)), format!("no `{shown}`"));

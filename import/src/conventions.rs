@@ -27,8 +27,8 @@ pub struct Converted {
     pub remarks: Vec<String>,
 }
 
-/// Converts an arm to the rows of `convention`. Name, title, source, limits and motors stay; expressions of the file
-/// are written as their values, and notes say that it was converted.
+/// Converts an arm to rows of `convention`. Name, title, source, limits and motors do not change. Expressions of the
+/// file become values, and the notes of the new file say that it was converted.
 ///
 /// # Errors
 ///

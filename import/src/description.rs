@@ -98,9 +98,9 @@ impl Error for OpenError {}
 impl Description {
     /// Opens the description at a path. It is, in this order:
     ///
-    /// 1. refused, when the path is that of a plan file;
+    /// 1. an error, when the path is that of a plan file;
     /// 2. a shipped robot, when the path is its name and there is no such file;
-    /// 3. a URDF, when its text begins as XML does, whatever its name is;
+    /// 3. a URDF, when its text begins as XML does, whatever the file name is;
     /// 4. a robot file.
     ///
     /// # Errors

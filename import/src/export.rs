@@ -35,16 +35,16 @@ pub struct Exported {
 pub enum NoUrdf {
     /// A link has a first moment and no mass.
     NoMass {
-        /// The link, counted from 1.
+        /// The number of the link, counted from 1.
         link: usize,
-        /// The joint that moves it.
+        /// The name of the joint that moves the link.
         joint: String,
     },
     /// A joint follows several others.
     SeveralLeaders {
-        /// The joint that follows.
+        /// The name of the joint that follows others.
         joint: String,
-        /// The joints that it follows.
+        /// The names of the joints that it follows.
         leaders: Vec<String>,
     },
     /// A number is larger than an import accepts.

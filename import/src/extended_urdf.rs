@@ -35,7 +35,7 @@ pub(crate) fn beside(urdf: &str) -> Option<(String, String)> {
     has_loops.then(|| (path.display().to_string(), text))
 }
 
-/// A word of the file, and its place in it.
+/// A word of the file, and its place in the text.
 struct Word {
     text: String,
     span: Range<usize>,

@@ -38,7 +38,7 @@ pub struct Options {
     /// The acceleration of gravity in the axes of the root link, m/s². If the file is an MJCF file, its own gravity is
     /// used instead.
     pub gravity: [f64; 3],
-    /// Whether the links of the chain, and the links that are fixed to them, become named frames.
+    /// Whether links of the chain, and links that are fixed to these, become named frames of the robot file.
     pub frames: bool,
     /// The name of the robot, `[a-z][a-z0-9_]*` [default: made from the name in the URDF].
     pub name: Option<String>,
@@ -92,7 +92,7 @@ pub struct Account {
     pub lumped: Vec<(String, Vec<String>)>,
     /// Angles and axes that were replaced by the exact values that they probably round.
     pub snapped: Vec<Snapped>,
-    /// The differences that this snapping causes; `None` where nothing was snapped.
+    /// The differences that replacing rounded angles causes; `None` where none was replaced.
     pub change: Option<Difference>,
     /// The differences between the chain and the table, as rne computes it: the rounding of the conversion.
     pub rounding: Difference,

@@ -24,7 +24,7 @@ const MOST_BYTES: usize = 32 << 20;
 /// enough. An import that reads further files is not kept.
 #[derive(Debug, PartialEq, Eq)]
 struct Content {
-    /// The name of the file, which is written into the robot file and into reports.
+    /// The name of the file, which the robot file and reports contain.
     file: String,
     text: String,
     /// The file beside the URDF that has its closed loops, and its text.

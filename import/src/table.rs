@@ -227,7 +227,7 @@ impl Axes {
 
 /// Returns the normal `x` or its opposite, so that the angle from `before` to it about `z` is at most a right angle. At
 /// exactly a right angle, `x` stays if it `leads` to the next axis, because then a > 0; else it is chosen so that theta
-/// > 0.
+/// is positive.
 fn facing(before: Vector, z: Vector, x: Vector, leads: bool) -> Vector {
     const RIGHT: f64 = 1e-20;
     let (sin, cos) = (z.dot(before.cross(x)).to_f64(), before.dot(x).to_f64());

@@ -16,7 +16,7 @@ use crate::source::Source;
 use crate::transmission;
 use crate::urdf::xml::{root_name, scan};
 
-/// A robot as its URDF or its MJCF file describes it. [`Urdf::read`] has checked that its links are one tree.
+/// A robot as a URDF or an MJCF file describes it. [`Urdf::read`] has checked that its links form one tree.
 #[derive(Clone, Debug)]
 pub struct Urdf {
     pub(crate) source: Source,
@@ -155,9 +155,9 @@ pub(crate) struct Joint {
     pub(crate) negative: Vec<(&'static str, f64)>,
     pub(crate) kind: Kind,
     pub(crate) mimic: Option<Mimic>,
-    /// The parent link.
+    /// The link that carries the joint.
     pub(crate) parent: usize,
-    /// The link that it moves.
+    /// The link that the joint moves.
     pub(crate) child: usize,
     pub(crate) xyz: [f64; 3],
     pub(crate) rpy: [f64; 3],

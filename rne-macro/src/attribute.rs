@@ -9,7 +9,7 @@ use syn::{DeriveInput, Ident, LitInt, LitStr, Meta, Path, Token};
 
 use crate::error::Errors;
 
-/// Everything the attribute says, with defaults for what it leaves out.
+/// All entries of the attribute, with defaults for those that it leaves out.
 pub(crate) struct Attribute {
     /// The source of the robot file; `None` if it is missing or wrong, which has been reported.
     pub(crate) source: Option<Source>,

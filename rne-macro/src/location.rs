@@ -25,7 +25,7 @@ pub(crate) struct RobotFile {
 pub(crate) enum Missing {
     /// The file exists in none of these places. `meant` is a path that the user may have meant.
     NotFound { written: String, tried: Vec<Place>, meant: Option<String> },
-    /// It is there and cannot be read.
+    /// The file exists but cannot be read.
     Unreadable { shown: String, error: io::Error },
 }
 

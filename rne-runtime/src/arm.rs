@@ -158,7 +158,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
 
     /// Every vector of the seven steps, in the axes of form P. Arguments as in
     /// [`inverse_dynamics_on_moving_base_with_wrench`](Self::inverse_dynamics_on_moving_base_with_wrench);
-    /// [`fixed_base`](Self::fixed_base) for an arm that stands still.
+    /// [`fixed_base`](Self::fixed_base) is the `base` of an arm that does not move.
     #[must_use]
     pub fn trace<T: Scalar>(
         &self,

@@ -18,7 +18,7 @@ pub(crate) struct Mutant {
     pub(crate) what: String,
     /// The path of the source file, from the root of the repository.
     pub(crate) file: String,
-    /// The tests that must notice it.
+    /// The group of tests that must notice the mutant.
     pub(crate) check: Check,
     /// The text to replace, which occurs once in the source.
     pub(crate) old: String,

@@ -1,7 +1,7 @@
 //! `rne firmware`: writes a folder with a firmware that computes a robot's torques.
 //!
-//! The folder `firmware/` beside this file contains the files that are written. They are the files of
-//! `firmware/example`, a firmware that runs for the PUMA 560; for another robot, [`files`] replaces a few lines.
+//! The written files are those of the folder `firmware/` beside this source file. They are the same as
+//! `firmware/example`, a firmware for the PUMA 560; for another robot, [`files`] replaces a few lines.
 
 use std::fmt::Write as _;
 use std::fs;

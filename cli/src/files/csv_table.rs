@@ -10,7 +10,7 @@ use rne_model::{Diagnostic, Report};
 use crate::files::input_file;
 use crate::outcome::Failure;
 
-/// A cell without the blanks and quotes around it.
+/// A cell without the blanks and quotes around its text.
 #[derive(Clone, Debug)]
 pub(crate) struct Cell<'a> {
     pub(crate) text: Cow<'a, str>,

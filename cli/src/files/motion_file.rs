@@ -1,4 +1,4 @@
-//! Motions in a file, filtered or as they were recorded: CSV, Parquet or an array of numpy.
+//! Writes motions to a file, filtered or as they were recorded: CSV, Parquet or a numpy array.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -13,7 +13,7 @@ use crate::outcome::Failure;
 use crate::palette::TYPED;
 use crate::render::layout::cell;
 
-/// The format of a file of motions, by its name.
+/// Returns the format of a file of motions, from its name.
 pub(crate) fn format(path: &Path, is_raw: bool) -> Result<Format, Failure> {
     if !is_raw && file_name::format(path, &[Format::Npy]).is_ok() {
         return Err(usage_error!(
@@ -34,7 +34,7 @@ pub(crate) fn format(path: &Path, is_raw: bool) -> Result<Format, Failure> {
     Ok(format)
 }
 
-/// A log whose motions are written, with the text that they have in the column of [`write`].
+/// A log whose motions are written, and its text in the label column.
 pub(crate) struct Written<'a> {
     pub(crate) log: &'a Log,
     pub(crate) survey: &'a Survey,
@@ -45,21 +45,21 @@ pub(crate) struct Written<'a> {
 #[derive(Clone, Copy)]
 pub(crate) struct Manner<'a> {
     pub(crate) format: Format,
-    /// States as they were recorded, not filtered ones.
+    /// Whether states are written as they were recorded and not filtered.
     pub(crate) is_raw: bool,
-    /// Columns have the order of the joints of a robot: they are `q1`, `q2`, … as in other commands.
+    /// Whether columns are named by the order of the robot's joints, `q1`, `q2`, …, as in other commands.
     pub(crate) is_by_order: bool,
-    /// The name of a column that says of which log a state is.
+    /// The name of a column that says which log a state is from.
     pub(crate) label: Option<&'a str>,
 }
 
 impl Manner<'_> {
-    /// The names of the columns of joints.
+    /// Returns the names of the columns of joints.
     pub(crate) fn heading<'l>(&self, layout: &'l Layout) -> Heading<'l> {
         if self.is_by_order { Heading::numbered(&layout.joints) } else { Heading::of(&layout.joints) }
     }
 
-    /// The quantities that are written.
+    /// Returns the quantities that are written.
     pub(crate) fn quantities(&self, layout: &Layout) -> Vec<Quantity> {
         let all = [
             (Quantity::Position, true),
@@ -70,13 +70,13 @@ impl Manner<'_> {
         all.into_iter().filter(|(_, is_there)| *is_there).map(|(quantity, _)| quantity).collect()
     }
 
-    /// Whether rows of CSV begin with an absolute time stamp: where the times of a log are absolute, states as they
-    /// were recorded keep their stamps, as in Parquet.
+    /// Returns whether rows of CSV begin with an absolute time stamp: recorded states keep their stamps if the times of
+    /// the log are absolute, as in Parquet.
     fn is_stamped(&self, layout: &Layout) -> bool {
         self.is_raw && layout.origin != 0
     }
 
-    /// The first line of a table of text.
+    /// Returns the first line of a CSV table.
     fn header(&self, layout: &Layout) -> String {
         let heading = self.heading(layout);
         let mut header = if self.is_stamped(layout) { "timestamp_ns,t" } else { "t" }.to_owned();
@@ -91,13 +91,13 @@ impl Manner<'_> {
     }
 }
 
-/// Reason for which writing stopped.
+/// The reason why writing stopped.
 pub(crate) enum Stopped {
     Unreadable(LogError),
     Unwritable(io::Error),
 }
 
-/// Writes the motions of logs; the result is the number of their states.
+/// Writes the motions of logs; returns the number of their states.
 pub(crate) fn write(
     logs: &[Written<'_>],
     manner: Manner<'_>,
@@ -132,25 +132,25 @@ pub(crate) fn write(
     Ok(states)
 }
 
-/// A table that is written.
+/// A table to which states are appended.
 trait Table {
     /// Appends filtered states.
     fn push(&mut self, layout: &Layout, run: u64, motion: &Motion, label: &str) -> io::Result<()>;
 
-    /// Appends a state as it was recorded.
+    /// Appends a state in the form in which it was recorded.
     fn push_recorded(&mut self, layout: &Layout, state: &RecordedState<'_>, label: &str) -> io::Result<()>;
 
-    /// Ends the table. `is_whole` says whether it has the states that were counted before.
+    /// Ends the table. `is_whole` says whether it has all the states that were counted before.
     fn finish(self: Box<Self>, is_whole: bool) -> io::Result<()>;
 }
 
-/// An array whose header, with the number of states, is written.
+/// A numpy array whose header, with the number of states, has been written.
 struct Array<W>(W);
 
-/// A table of text.
+/// A CSV table.
 struct Csv<W> {
     out: W,
-    /// The first line, until it is written: a file without states has none.
+    /// The first line, until it is written: a file without states has no header.
     header: String,
     /// Whether there is a column of labels.
     has_label: bool,
@@ -189,7 +189,7 @@ impl<W: Write> Csv<W> {
     }
 }
 
-/// Begins a table.
+/// Begins a table of a format.
 fn begin<'w, W: Write + Send + 'w>(
     manner: Manner<'_>,
     mut out: W,
@@ -250,7 +250,7 @@ impl<W: Write> Table for Array<W> {
     }
 }
 
-/// The quantities of a recorded state, one after the other.
+/// Returns the quantities of a recorded state, one after the other.
 fn numbers<'s>(state: &'s RecordedState<'_>) -> impl Iterator<Item = f64> + use<'s> {
     [state.q, state.qd, state.tau].into_iter().flatten().copied()
 }

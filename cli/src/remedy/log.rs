@@ -1,11 +1,11 @@
-//! Remedies against errors of logs, in the options of the command line.
+//! Remedies for errors of logs, as options of the command line.
 
 use rne_logs::{LogError, Mapping, Remedy, Setting, suggested};
 use rne_model::one_line;
 
-/// An error of a log with the options that help; `joints` are those of the arm, as far as it is known.
+/// Returns an error of a log with the options that help; `joints` are those of the arm, if they are known.
 pub(crate) fn sentence(error: &LogError, joints: &[String]) -> String {
-    // names of a log may have any letters
+    // names in a log may contain any characters, so they are quoted for a shell
     let remedies = error.remedies().iter().map(|remedy| match remedy {
         Remedy::Give(Setting::Map(columns)) if joints.is_empty() => {
             format!("name the columns: {}", map(&suggested(columns, &["JOINT".to_owned()])))
@@ -24,7 +24,7 @@ pub(crate) fn sentence(error: &LogError, joints: &[String]) -> String {
     one_line(&[error.to_string()].into_iter().chain(remedies).collect::<Vec<_>>().join("; "))
 }
 
-/// The options that map columns, to be typed into a shell.
+/// Returns the options that map columns, in the form in which they are typed into a shell.
 pub(crate) fn map(mappings: &[Mapping]) -> String {
     let options = mappings
         .iter()
@@ -32,13 +32,13 @@ pub(crate) fn map(mappings: &[Mapping]) -> String {
     options.collect::<Vec<_>>().join(" ")
 }
 
-/// A text as a word of a shell.
+/// Quotes a text as one word for a shell.
 pub(crate) fn quoted(text: String) -> String {
     let is_word = !text.is_empty() && text.chars().all(|c| c.is_alphanumeric() || "._-/=".contains(c));
     if is_word { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
 }
 
-/// The option of a setting with what it says.
+/// Returns the option of a setting with its value.
 fn given(setting: &Setting) -> String {
     let about = match setting {
         Setting::Joints(names) if names.is_empty() => "A,B,… lists the joints to read, from base to tip".to_owned(),

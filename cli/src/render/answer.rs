@@ -1,4 +1,5 @@
-//! Results of functions as text: a line per joint, matrices with the names of their joints, poses, wrenches.
+//! Writes results of functions as text: a line for each joint, matrices with the names of their joints, poses,
+//! wrenches.
 
 use std::fmt::Write as _;
 
@@ -13,16 +14,16 @@ use crate::values::definite::{NOT_DEFINITE, is_indefinite};
 use crate::values::numbers::{at_the_point, rounded};
 use crate::values::state::State;
 
-/// Digits after the decimal point in a matrix.
+/// Decimals of the numbers in a matrix.
 const DIGITS: usize = 6;
 
-/// Digits after the decimal point in a row of ten parameters.
+/// Decimals of the numbers in a row of ten parameters.
 const FEW_DIGITS: usize = 4;
 
-/// Velocities of a floating base.
+/// The names of the six velocities of a floating base.
 const OF_BASE: [&str; 6] = ["x", "y", "z", "about x", "about y", "about z"];
 
-/// The numbers of a function as text.
+/// Writes the numbers that a function returns.
 pub(crate) fn text(robot: &Robot, state: &State, numbers: &[f64]) -> String {
     let frame = state.function.frame(robot).map(|frame| robot.frame_name(frame));
     let at = frame.map(|frame| format!(" at the frame {frame}")).unwrap_or_default();
@@ -82,7 +83,7 @@ pub(crate) fn text(robot: &Robot, state: &State, numbers: &[f64]) -> String {
     text
 }
 
-/// State and result, a line per joint, with all digits.
+/// Writes the state and the result, a line for each joint, with all digits.
 fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
     let forward = state.function.returns_accelerations();
     let takes = |argument| state.function.takes(argument);
@@ -142,12 +143,12 @@ fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
     }
 }
 
-/// A force and a moment with their units.
+/// Writes a force and a moment with their units.
 fn exerted(force: &[f64; 3], moment: &[f64; 3]) -> String {
     format!("({}) N, ({}) N m", list(force), list(moment))
 }
 
-/// Numbers with commas between them.
+/// Writes three numbers with commas between them.
 pub(crate) fn list(values: &[f64; 3]) -> String {
     values.map(exact_digits).join(", ")
 }
@@ -164,7 +165,7 @@ fn axes() -> [String; 3] {
     ["x", "y", "z"].map(str::to_owned)
 }
 
-/// Columns of the rotation are the axes of the frame; beside them its origin.
+/// Writes poses: the columns of each rotation are the axes of the frame, and beside them is its origin.
 fn poses(text: &mut String, frames: &[String], numbers: &[f64]) {
     let about = "axes of the frame and its origin (m), in the world";
     let widest = frames.iter().map(|frame| width(frame)).max().unwrap_or(0);
@@ -182,7 +183,8 @@ fn poses(text: &mut String, frames: &[String], numbers: &[f64]) {
     Table { about, rows: &rows, columns: &columns, numbers: &elements, digits: DIGITS }.write(text);
 }
 
-/// A table per torque, a line per link that enters it; force and moment on a floating base come first.
+/// Writes a regressor as a table for each torque, with a line for each link that contributes to it; tables of the force
+/// and moment on a floating base come first.
 fn regressor(text: &mut String, function: Function, joints: &[String], numbers: &[f64]) {
     let columns = INERTIAL_PARAMETERS.map(|name| name.replacen("mc", "m c", 1));
     let floats = function.is_of_floating_base();
@@ -219,13 +221,13 @@ fn regressor(text: &mut String, function: Function, joints: &[String], numbers: 
     );
 }
 
-/// Numbers in rows and columns that have names.
+/// Numbers in rows and columns with names.
 struct Table<'a> {
     /// Description and units of the numbers.
     about: &'a str,
     rows: &'a [String],
     columns: &'a [String],
-    /// Row by row.
+    /// The numbers, row by row.
     numbers: &'a [f64],
     digits: usize,
 }
@@ -245,7 +247,7 @@ impl Table<'_> {
     }
 }
 
-/// Lines of cells; the first has the titles.
+/// Writes lines of cells; the first line has the titles.
 fn write_lines(text: &mut String, cells: &[Vec<String>]) {
     let most = cells.iter().map(Vec::len).max().unwrap_or(0);
     for (index, line) in columns(&vec![Align::Left; most], cells).iter().enumerate() {
@@ -256,7 +258,7 @@ fn write_lines(text: &mut String, cells: &[Vec<String>]) {
     }
 }
 
-/// Kinds of joints that a robot has, which decide the units of its matrices.
+/// The kinds of joints that a robot has, which determine the units of its matrices.
 enum Kinds {
     Revolute,
     Prismatic,

@@ -1,4 +1,4 @@
-//! `rne show --base-parameters`: what the torques can see of the links.
+//! `rne show --base-parameters`: lists the combinations of link parameters on which the torques depend.
 
 use std::fmt::Write as _;
 
@@ -10,13 +10,13 @@ use crate::render::layout::{left, width, wrap};
 use crate::terminal;
 use crate::values::numbers::{at_the_point, rounded};
 
-/// Columns of a line, at most.
+/// Largest number of columns of a line.
 const WIDTH: usize = 100;
 
-/// Significant digits of a coefficient.
+/// Number of significant digits of a coefficient.
 const DIGITS: usize = 8;
 
-/// How to read what is listed.
+/// The explanation of how to read the list.
 const ABOUT: &str = "mcx2 is the mass of link 2 times x of its centre of mass; J is about the link frame's origin, in \
     its axes. A parameter that the torques cannot distinguish from earlier ones (J, m c, m; base to tip) is \
     combined with them (Gautier and Khalil, 1990). The computation is numerical, at fixed random states.";
@@ -68,7 +68,7 @@ pub(crate) fn text(robot: &Robot) -> String {
     text
 }
 
-/// Columns of the longest unit.
+/// Number of columns of the longest unit.
 const UNIT: usize = 5;
 
 const fn unit(parameter: LinkParameter) -> &'static str {
@@ -79,9 +79,9 @@ const fn unit(parameter: LinkParameter) -> &'static str {
     }
 }
 
-/// `Jzz2 + Jyy3 + 0.1864 (m3 + m4)`.
+/// Writes a combination, such as `Jzz2 + Jyy3 + 0.1864 (m3 + m4)`.
 fn combination(base: &BaseParameter) -> String {
-    // those with one coefficient stand together
+    // parameters with the same coefficient are put in one group
     let mut groups: Vec<(bool, String, Vec<String>)> = Vec::new();
     for (coefficient, parameter) in &base.regrouped {
         let (is_negative, magnitude) = (*coefficient < 0.0, short(coefficient.abs()));
@@ -104,10 +104,10 @@ fn combination(base: &BaseParameter) -> String {
     text
 }
 
-/// A blank at which no line breaks.
+/// A blank at which no line is broken.
 const TIED: &str = "\u{A0}";
 
-/// A positive number in few digits.
+/// Writes a positive number with few digits.
 fn short(value: f64) -> String {
     let rounded: f64 = format!("{value:.0$e}", DIGITS - 1).parse().unwrap_or(value);
     format!("{rounded}")

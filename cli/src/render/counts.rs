@@ -1,8 +1,8 @@
-//! Counts and lists in words: `5 of 6 joints`, `18 inertias of links 2 to 6`.
+//! Writes counts and lists in words: `5 of 6 joints`, `18 inertias of links 2 to 6`.
 
 use rne_identify::Parameter;
 
-/// How many of all.
+/// How many of a number of things are meant.
 #[derive(Clone, Copy)]
 pub(super) enum Counted {
     No,
@@ -19,7 +19,7 @@ pub(super) fn counted(count: usize, all: usize) -> Counted {
 }
 
 impl Counted {
-    /// The count with its noun: `no joint`, `5 of 6 joints`, `all 6 joints`.
+    /// Returns the count with its noun: `no joint`, `5 of 6 joints`, `all 6 joints`.
     pub(super) fn of(self, noun: &str) -> String {
         match self {
             Self::No => format!("no {noun}"),
@@ -30,10 +30,10 @@ impl Counted {
     }
 }
 
-/// Kinds of parameters: those of a link by their places, then the rotors'.
+/// The kinds of link parameters, each with the places of its parameters; rotors come after these.
 const KINDS: [(&str, std::ops::Range<usize>); 3] = [("mass", 0..1), ("moment of mass", 1..4), ("inertia", 4..10)];
 
-/// Parameters by kind: `18 inertias of links 2 to 6`.
+/// Lists parameters by kind: `18 inertias of links 2 to 6`.
 pub(super) fn groups(parameters: &[Parameter]) -> Vec<String> {
     let mut said = Vec::new();
     for (kind, range) in KINDS {
@@ -59,7 +59,7 @@ fn group(kind: &str, place: &str, of: &[usize]) -> Option<String> {
     Some(format!("{} {plural} of {}", of.len(), listed(place, of)))
 }
 
-/// Links or joints by their numbers from 1: `link 2`, `links 2 and 4`, `links 2 to 6 and 8`.
+/// Lists links or joints by their numbers, counted from 1: `link 2`, `links 2 and 4`, `links 2 to 6 and 8`.
 pub(super) fn listed(noun: &str, places: &[usize]) -> String {
     let mut numbers: Vec<usize> = places.iter().map(|place| place + 1).collect();
     numbers.sort_unstable();
@@ -75,7 +75,7 @@ pub(super) fn listed(noun: &str, places: &[usize]) -> String {
     format!("{noun}{plural} {}", enumerated(&words))
 }
 
-/// `a, b and c`
+/// Joins words in the form `a, b and c`.
 pub(super) fn enumerated(words: &[String]) -> String {
     match words {
         [] => String::new(),

@@ -1,4 +1,4 @@
-//! The inspection as text: four lines for each component of each step.
+//! Writes the inspection as text: four lines for each component of each step.
 
 use std::fmt::Write as _;
 
@@ -9,10 +9,10 @@ use crate::render::layout::{PAGE, wrap};
 use crate::render::letters::Letters;
 use crate::terminal;
 
-/// In front of each of the lines of a component.
+/// The beginnings of the four lines of a component.
 const LABELS: [&str; 4] = ["general   ", "here      ", "gone      ", "code      "];
 
-/// An inspection, and the letters in which it is read.
+/// An inspection, and the letters in which it is written.
 #[derive(Clone, Copy)]
 pub(crate) struct View<'a> {
     pub(crate) inspection: &'a Inspection,
@@ -20,13 +20,13 @@ pub(crate) struct View<'a> {
 }
 
 impl View<'_> {
-    /// Text behind `first`, its further lines behind `others`.
+    /// Wraps a text; its first line begins with `first`, further lines begin with `others`.
     fn fill(self, text: &str, first: &str, others: &str) -> String {
         wrap(&self.letters.of(&format!("{first}{text}")), terminal::width(PAGE), others)
     }
 }
 
-/// The steps that are asked for, all components of each.
+/// Writes the steps that the command line asks for, with all components of each.
 pub(crate) fn text(view: View<'_>, joint: Option<usize>, step: Option<usize>) -> String {
     let is_wanted =
         |cell: &&Cell| joint.is_none_or(|joint| joint == cell.joint) && step.is_none_or(|step| step == cell.step);
@@ -40,7 +40,7 @@ pub(crate) fn text(view: View<'_>, joint: Option<usize>, step: Option<usize>) ->
     cells.join("\n")
 }
 
-/// Explains a name: a component by its four lines, anything else by its meaning and by the terms that use it.
+/// Explains a name: a component by its four lines, any other name by its meaning and the terms that use it.
 pub(crate) fn of_name(view: View<'_>, name: &str) -> Option<String> {
     let (known, quantity) = view.inspection.meaning(name)?;
     let place = match quantity.step {
@@ -60,7 +60,7 @@ pub(crate) fn of_name(view: View<'_>, name: &str) -> Option<String> {
     Some(place + &text)
 }
 
-/// A shared term, a number, an argument, or a name of a form that has no equations.
+/// Explains a shared term, a number, an argument, or a name of a form that has no equations.
 fn of_other(view: View<'_>, name: &str) -> String {
     let stated =
         view.inspection.angles.iter().chain(&view.inspection.statements).find(|statement| statement.name == name);
@@ -121,14 +121,14 @@ fn of_component(view: View<'_>, component: &Component) -> String {
     text
 }
 
-/// A name and what it is.
+/// Writes a name and its meaning.
 fn opening(view: View<'_>, name: &str) -> String {
     let all = view.fill(&format!("{name}   {}", about(view, name)), "  ", "      ");
     let words = all.trim_start().strip_prefix(name).unwrap_or_default();
     format!("  {TITLE}{name}{TITLE:#}{}\n", styled(QUIET, words))
 }
 
-/// The meaning of a name in words, with its unit and its axes.
+/// Describes the meaning of a name, with its unit and its axes.
 fn about(view: View<'_>, name: &str) -> String {
     let meaning = view.inspection.meaning(name).map_or("", |(_, quantity)| quantity.meaning);
     let unit = view.inspection.unit(name);
@@ -137,7 +137,7 @@ fn about(view: View<'_>, name: &str) -> String {
     format!("{meaning}{unit}{frame}")
 }
 
-/// The statements that are left, or what became of the component instead.
+/// Returns the statements that compute a component, or a line on what has replaced it.
 fn code(view: View<'_>, component: &Component) -> Vec<String> {
     let rust = |name: &String| {
         let statement = view.inspection.statements.iter().find(|statement| statement.name == *name);
@@ -158,7 +158,7 @@ fn code(view: View<'_>, component: &Component) -> Vec<String> {
     lines
 }
 
-/// A style for each of several lines.
+/// Applies a style to each line of a text.
 fn styled(style: Style, text: &str) -> String {
     text.lines().map(|line| format!("{style}{line}{style:#}")).collect::<Vec<_>>().join("\n")
 }

@@ -1,4 +1,5 @@
-//! A robot in a few words: the opening of a listing, its table, what was counted, what a conversion loses.
+//! Describes a robot in a few words: the beginning of a listing, its table, its counts of operations, the rounding
+//! error of a conversion.
 
 use std::fmt::Write as _;
 
@@ -8,7 +9,7 @@ use rne_model::{JointKind, Robot};
 
 use crate::palette::{QUIET, TITLE};
 
-/// Title, convention, gravity, and the Denavit-Hartenberg table.
+/// Writes the title, convention, gravity, and the Denavit-Hartenberg table of a robot.
 pub(crate) fn robot(robot: &Robot) -> String {
     let rne_emit::Heading { title, frames, ends, table, .. } = rne_emit::Heading::of(robot);
     let mut text = format!("{TITLE}{title}{TITLE:#}\n{frames}\n");
@@ -25,7 +26,7 @@ pub(crate) fn robot(robot: &Robot) -> String {
     text
 }
 
-/// The operations of a program, before and after, in one line.
+/// Writes in one line the operations of a program, before and after folding.
 pub(crate) fn counts(program: &Program) -> String {
     let (products, sums) = program.before();
     let after = program.operations();
@@ -42,7 +43,7 @@ pub(crate) fn counts(program: &Program) -> String {
     )
 }
 
-/// The robot in a few words: `puma560, RRRRRR, standard`, and whether its base floats.
+/// Describes the robot in a few words: `puma560, RRRRRR, standard`, and whether its base floats.
 pub(crate) fn about(robot: &Robot) -> String {
     let joints: String = robot
         .rows()
@@ -55,7 +56,7 @@ pub(crate) fn about(robot: &Robot) -> String {
     format!("{}, {joints}, {}{base}", robot.name, robot.convention.name())
 }
 
-/// Rounding error of a conversion.
+/// Describes the rounding error of a conversion.
 pub(crate) fn rounding(difference: &Difference) -> String {
     format!(
         "the table gives the same arm over 1,000 states: tip to {:.1e} m and {:.1e} rad, torques to {:.1e}",

@@ -1,4 +1,4 @@
-//! Colours for annotated code: headings, formulas, what was found, what was folded.
+//! Colours annotated code: headings, formulas, what the compiler found, what it folded.
 
 use std::fmt::Write as _;
 
@@ -8,10 +8,10 @@ use crate::palette::{FORMULA, FOUND, QUIET, TITLE};
 use crate::render::layout::wrap;
 use crate::render::letters::Letters;
 
-/// Columns of a comment, as in emitted code.
+/// Largest number of columns of a comment, as in emitted code.
 const WIDTH: usize = 100;
 
-/// A listing of the compiler, coloured line by line.
+/// Colours a listing of the compiler, line by line.
 pub(crate) fn listing(listing: &Listing, letters: Letters) -> String {
     let mut text = String::new();
     for (index, section) in listing.sections.iter().enumerate() {
@@ -37,7 +37,7 @@ pub(crate) fn listing(listing: &Listing, letters: Letters) -> String {
     text
 }
 
-/// A comment inside a function.
+/// Writes a comment inside a function.
 fn comment(line: &Line, letters: Letters) -> String {
     if !letters.ascii {
         return line.to_string();

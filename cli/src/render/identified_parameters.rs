@@ -1,4 +1,4 @@
-//! Parameters and friction that were identified, in tables.
+//! Writes identified parameters and friction as tables.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use crate::palette::QUIET;
 use crate::render::layout::{Align, push_table, shortened};
 use crate::values::numbers::rounded;
 
-/// Parameters and friction as tables.
+/// Writes parameters and friction as tables.
 pub(crate) fn tables(found: &Identification) -> String {
     let of_links = found.structure.parameters().bases.iter().filter(|base| matches!(base.kept, Parameter::Link(..)));
     let of_links = of_links.count();
@@ -97,7 +97,7 @@ fn friction(text: &mut String, found: &Identification) {
     push_table(text, &title, &align, &cells);
 }
 
-/// The speed or the displacement in which friction changes its sign.
+/// Describes the speed or the displacement over which friction changes its sign.
 fn turns(transition: FrictionTransition, kind: JointKind) -> String {
     let unit = kind.position_unit();
     match transition {
@@ -106,7 +106,7 @@ fn turns(transition: FrictionTransition, kind: JointKind) -> String {
     }
 }
 
-/// The rotors, where they were asked for.
+/// Writes the inertia of rotors, if the command line asked for it.
 fn inertia_of_rotors(text: &mut String, found: &Identification) {
     let mut cells = vec![["  joint", "rotor", "", ""].map(str::to_owned)];
     let bases = || found.structure.parameters().bases.iter().zip(&found.bases);

@@ -1,4 +1,4 @@
-//! Text in columns.
+//! Arranges text in columns.
 
 use std::fmt::Write as _;
 
@@ -7,17 +7,17 @@ use unicode_width::UnicodeWidthStr;
 
 use crate::palette::{QUIET, Style, TITLE, WARNING};
 
-/// Columns of a page of text.
+/// Number of columns of a page of text.
 pub(crate) const PAGE: usize = 80;
 
-/// On which side of its column a cell stands.
+/// The side of its column at which a cell is placed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Align {
     Left,
     Right,
 }
 
-/// Lines of cells, each column as wide as its widest cell, two blanks between them.
+/// Arranges cells in lines: each column is as wide as its widest cell, with two blanks between columns.
 pub(crate) fn columns(alignment: &[Align], lines: &[impl AsRef<[String]>]) -> Vec<String> {
     let mut widths = vec![0; alignment.len()];
     for line in lines {
@@ -49,22 +49,23 @@ pub(crate) fn push_table<const N: usize>(text: &mut String, title: &str, align: 
     }
 }
 
-/// A text, then blanks up to a width.
+/// Appends blanks to a text up to a width.
 pub(crate) fn left(text: &str, to: usize) -> String {
     format!("{text}{}", " ".repeat(to.saturating_sub(width(text))))
 }
 
-/// Blanks, then a text.
+/// Puts blanks before a text up to a width.
 pub(crate) fn right(text: &str, to: usize) -> String {
     format!("{}{text}", " ".repeat(to.saturating_sub(width(text))))
 }
 
-/// Columns that a text takes: the dots of ω̇ and c̈ stand above their letters.
+/// Returns the number of columns that a text takes; the dots of ω̇ and c̈ take none, because they are above their
+/// letters.
 pub(crate) fn width(text: &str) -> usize {
     UnicodeWidthStr::width(text)
 }
 
-/// The beginning of a text that fits into `to` columns, with a mark that more follows.
+/// Shortens a text to `to` columns, with a mark that more follows.
 pub(crate) fn shortened(text: &str, to: usize) -> String {
     if width(text) <= to {
         return text.to_owned();
@@ -74,12 +75,12 @@ pub(crate) fn shortened(text: &str, to: usize) -> String {
     format!("{}…", text[..end].trim_end())
 }
 
-/// A note for standard error.
+/// Returns a note for standard error.
 pub(crate) fn note(what: &str) -> String {
     remark("note", TITLE, what)
 }
 
-/// A warning for standard error.
+/// Returns a warning for standard error.
 pub(crate) fn warning(what: &str) -> String {
     remark("warning", WARNING, what)
 }
@@ -89,14 +90,14 @@ fn remark(word: &str, style: Style, what: &str) -> String {
     format!("{style}{word}{style:#}: {}\n", wrap(what, PAGE - indent.len(), &indent))
 }
 
-/// Words put into lines of a width; lines after the first start with `indent`.
+/// Wraps words into lines of a width; lines after the first begin with `indent`.
 pub(crate) fn wrap(text: &str, to: usize, indent: &str) -> String {
     let options = Options::new(to).subsequent_indent(indent).break_words(false);
     let options = options.word_separator(WordSeparator::AsciiSpace).word_splitter(WordSplitter::NoHyphenation);
     textwrap::fill(text, options.wrap_algorithm(WrapAlgorithm::FirstFit))
 }
 
-/// A text as a cell of CSV.
+/// Quotes a text as a cell of CSV, if needed.
 pub(crate) fn cell(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }

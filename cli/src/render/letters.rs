@@ -1,4 +1,4 @@
-//! In which letters a view is written: those of the lecture, or ASCII alone.
+//! Chooses the letters in which text is written: those of the lecture, or only ASCII.
 
 use std::fmt::Write as _;
 
@@ -14,11 +14,11 @@ pub(crate) struct Letters {
     pub(crate) ascii: bool,
 }
 
-/// A blank at which no line breaks.
+/// A blank at which no line is broken.
 const TIED: char = '\u{A0}';
 
 impl Letters {
-    /// A text that is laid out afterwards; what is tied stays tied.
+    /// Converts a text that is wrapped afterwards; blanks at which no line may break are kept.
     pub(crate) fn of(self, text: &str) -> String {
         if !self.ascii {
             return text.to_owned();
@@ -26,8 +26,8 @@ impl Letters {
         text.split(TIED).map(rne_emit::ascii).collect::<Vec<_>>().join(TIED.encode_utf8(&mut [0; 2]))
     }
 
-    /// A text that is laid out already: blanks between columns make room for longer letters, and a line that becomes
-    /// wider than `most` columns goes on below.
+    /// Converts a text that is already arranged: where letters become longer, blanks between columns are removed, and a
+    /// line that becomes wider than `most` columns is continued on the next one.
     pub(crate) fn page(self, text: &str, most: usize) -> String {
         if !self.ascii {
             return text.to_owned();
@@ -47,7 +47,7 @@ impl Letters {
         page
     }
 
-    /// JSON with letters as escapes: the same value.
+    /// Escapes letters in JSON, which does not change its value.
     pub(crate) fn json(self, json: &str) -> String {
         if !self.ascii {
             return json.to_owned();
@@ -66,7 +66,7 @@ impl Letters {
     }
 }
 
-/// A line in ASCII, its columns where they were as far as there are blanks to spare.
+/// Converts a line to ASCII. Its columns stay at their places as far as there are blanks to remove.
 fn in_columns(line: &str) -> String {
     let mut written = String::new();
     let mut owed = 0;
@@ -78,7 +78,7 @@ fn in_columns(line: &str) -> String {
         owed += plain_width(&spelt).saturating_sub(plain_width(cell));
         written.push_str(&spelt);
         let gap = after.len() - after.trim_start_matches(' ').len();
-        // two columns keep a blank between them
+        // at least one blank stays between two columns
         let given = if written.trim().is_empty() { 0 } else { owed.min(gap.saturating_sub(1)) };
         written.push_str(&" ".repeat(gap - given));
         owed -= given;
@@ -87,7 +87,7 @@ fn in_columns(line: &str) -> String {
     written
 }
 
-/// Columns of a line without what colours it.
+/// Returns the number of columns of a line, without its colours.
 fn plain_width(line: &str) -> usize {
     width(&anstream::adapter::strip_str(line).to_string())
 }

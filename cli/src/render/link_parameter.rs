@@ -1,11 +1,11 @@
-//! Meaning of the name of a parameter of a link or of a rotor, such as `Jzz3`.
+//! Explains the name of a parameter of a link or of a rotor, such as `Jzz3`.
 
 use rne_model::INERTIAL_PARAMETERS;
 
 use crate::render::layout::{PAGE, wrap};
 use crate::terminal;
 
-/// The inertia of a rotor.
+/// The name of the inertia of a rotor.
 const ROTOR: &str = "Jm";
 
 /// The name of a parameter with the number of its link or joint, from 1.
@@ -15,7 +15,7 @@ pub(crate) struct LinkParameter {
 }
 
 impl LinkParameter {
-    /// Reads a name; none if it is not that of a parameter.
+    /// Reads a name; `None` if it is not that of a parameter.
     pub(crate) fn parse(name: &str) -> Option<Self> {
         let letters = name.trim_end_matches(|c: char| c.is_ascii_digit());
         let number = name[letters.len()..].parse().ok().filter(|number| *number > 0)?;
@@ -23,7 +23,7 @@ impl LinkParameter {
         Some(Self { letters, number })
     }
 
-    /// The meaning of the name, and why rne prints such names.
+    /// Explains the meaning of the name, and why rne prints such names.
     pub(crate) fn explained(&self) -> String {
         let Self { letters, number } = *self;
         let end: String = letters.chars().skip(1).collect::<String>();

@@ -1,4 +1,4 @@
-//! The rows of each text in a column of a log, as text and as JSON.
+//! Writes the description of a log separately for each text in one of its columns, as text and as JSON.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use crate::palette::{QUIET, TITLE, WARNING};
 use crate::render::layout::{Align, columns};
 use crate::render::log_report::{Described, push_remark, titled};
 
-/// The rows of one text.
+/// The rows of a log that have one text in the column.
 pub(crate) struct Group {
     pub(crate) value: String,
     pub(crate) rows: u64,
@@ -24,19 +24,19 @@ impl Group {
         self.described.as_ref().map_or(true, Described::is_at_fault)
     }
 
-    /// The text as it is shown.
+    /// Returns the text of the group as it is shown.
     fn shown(&self) -> String {
         if self.value.is_empty() { "(empty)".to_owned() } else { one_line(&self.value) }
     }
 
-    /// The failure of this group, with its text.
+    /// Makes the failure of this group, whose message contains its text.
     pub(crate) fn failure(&self, column: &str, error: &Failure) -> Failure {
         let what = format!("{} {}: {}", one_line(column), self.shown(), error.sentence());
         Failure { status: error.status, ..Failure::input(what) }
     }
 }
 
-/// The groups of a column as JSON has them.
+/// The groups of a column, for JSON.
 #[derive(Serialize)]
 pub(crate) struct Reply {
     by: String,
@@ -63,7 +63,7 @@ impl Reply {
     }
 }
 
-/// The groups of a column for people: a line each, and their remarks, each once.
+/// Writes the groups of a column as text: a line for each, followed by their remarks, each once.
 pub(crate) fn text(files: &[PathBuf], column: &str, groups: &[Group]) -> String {
     let files: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
     let mut text = format!("{TITLE}{}{TITLE:#}  by {}\n\n", files.join(" "), one_line(column));
@@ -105,7 +105,7 @@ pub(crate) fn text(files: &[PathBuf], column: &str, groups: &[Group]) -> String 
     if !remarks.is_empty() {
         text.push('\n');
     }
-    // what is wrong comes first
+    // errors come first, then warnings, then notes
     remarks.sort_by_key(|(word, ..)| ["error", "warning", "note"].iter().position(|other| other == word));
     for (word, remark, values) in &remarks {
         let style = if *word == "note" { QUIET } else { WARNING };

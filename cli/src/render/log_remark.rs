@@ -1,4 +1,4 @@
-//! Remarks on logs of an arm, and errors of them, with the options of the command line.
+//! Remarks on logs of an arm, and errors in them, with the options of the command line that help.
 
 use rne_identify::{ArmLogError, ArmLogRemark, Mismatch};
 use rne_logs::{Mapping, Quantity, Remark, Target, suggested};
@@ -7,7 +7,7 @@ use rne_model::one_line;
 use crate::palette::TYPED;
 use crate::remedy;
 
-/// A remark on a log, with the options that help.
+/// Returns a remark on a log, with the options that help.
 pub(crate) fn log_remark(remark: &Remark) -> String {
     let options = match remark {
         Remark::MayBeDegrees { .. } => ": use --degrees if they are degrees, --radians if they are radians or metres",
@@ -23,7 +23,7 @@ pub(crate) fn log_remark(remark: &Remark) -> String {
     format!("{remark}{options}")
 }
 
-/// A remark on logs of an arm.
+/// Returns a remark on logs of an arm.
 pub(crate) fn remark_sentence(remark: &ArmLogRemark) -> String {
     match remark {
         ArmLogRemark::Log(remark) => log_remark(remark),
@@ -34,7 +34,7 @@ pub(crate) fn remark_sentence(remark: &ArmLogRemark) -> String {
     }
 }
 
-/// An error of the logs of an arm, with the options that help.
+/// Returns an error in the logs of an arm, with the options that help.
 pub(crate) fn error_sentence(error: &ArmLogError) -> String {
     match error {
         ArmLogError::Log { error, joints } => remedy::log::sentence(error, joints),

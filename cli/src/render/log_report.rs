@@ -1,4 +1,4 @@
-//! Content of a log, as text and as JSON.
+//! Describes the content of a log, as text and as JSON.
 
 use std::fmt::Write as _;
 
@@ -12,33 +12,33 @@ use crate::render::layout::{Align, columns, wrap};
 use crate::render::log_remark::{log_remark, remark_sentence};
 use crate::terminal;
 
-/// Lines of runs that are shown; the other runs are counted.
+/// Largest number of lines on runs that are shown; other runs are counted.
 const SHOWN: usize = 20;
 
-/// Runs that begin for one reason and are shown one by one; more are one line.
+/// Largest number of runs with the same reason that are shown one by one; more of them become one line.
 const FEW: usize = 3;
 
-/// A log that was surveyed.
+/// A log and its survey.
 pub(crate) struct Described {
     pub(crate) log: Log,
     pub(crate) survey: Survey,
-    /// How its joints were matched with those of a robot, if there is something to say.
+    /// A remark on how the joints of the log were matched with those of a robot, if there is one.
     pub(crate) matched: Option<ArmLogRemark>,
 }
 
 impl Described {
-    /// Whether the log cannot be filtered until an option says more.
+    /// Returns whether the log cannot be filtered without a further option.
     pub(crate) fn is_at_fault(&self) -> bool {
         let Self { log, survey, .. } = self;
         survey.may_be_degrees(log).is_some() || !log.unsaid_currents().is_empty() || survey.cutoff == Cutoff::Unknown
     }
 
-    /// The log as data.
+    /// Returns the log as data for JSON.
     pub(crate) fn reply(&self) -> LogReply {
         LogReply::of(&self.log, &self.survey, self.notes().into_iter().map(|note| note.text).collect())
     }
 
-    /// Remarks on the log.
+    /// Returns the remarks on the log.
     pub(crate) fn notes(&self) -> Vec<Note> {
         let matched = self.matched.iter().map(|remark| Note {
             text: remark_sentence(remark),
@@ -59,7 +59,7 @@ impl Described {
 pub(crate) struct Note {
     pub(crate) text: String,
     pub(crate) is_warning: bool,
-    /// Whether it may be the reason for which runs begin.
+    /// Whether the remark may be the reason why runs begin.
     is_reason: bool,
 }
 
@@ -70,7 +70,7 @@ impl Note {
     }
 }
 
-/// A log for people, with the filter if the motion is filtered.
+/// Describes a log as text; with its filter, if the motion is filtered.
 pub(crate) fn text(described: &Described, is_filtered: bool) -> String {
     let Described { log, survey, .. } = described;
     let layout = log.layout();
@@ -91,7 +91,7 @@ pub(crate) fn text(described: &Described, is_filtered: bool) -> String {
         counts.messages,
         short(1.0 / layout.step)
     );
-    // the reasons for which states are missing and runs begin
+    // remarks that explain missing states and new runs come first
     let mut reasons = String::new();
     for left_out in log.left_out(survey) {
         let _ = writeln!(reasons, "{WARNING}left out{WARNING:#}: {}", one_line(&left_out.to_string()));
@@ -117,7 +117,7 @@ pub(crate) fn text(described: &Described, is_filtered: bool) -> String {
     text
 }
 
-/// Appends a remark behind its word.
+/// Appends a remark after a word such as `note`.
 pub(crate) fn push_remark(text: &mut String, word: &str, style: Style, remark: &str) {
     let wrapped = wrap(&format!("{word}: {remark}"), terminal::width(100), "  ");
     let _ = writeln!(text, "{style}{word}{style:#}{}", wrapped.trim_end().strip_prefix(word).unwrap_or(&wrapped));
@@ -141,7 +141,7 @@ fn joints(log: &Log, survey: &Survey) -> String {
     titled(&columns(&alignment, &lines))
 }
 
-/// The runs; those of one reason are one line, where there are many.
+/// Lists the runs. Many runs with the same reason become one line.
 fn runs(survey: &Survey) -> String {
     let titles = ["run", "start", "duration", "states", "jitter", "longest interval", "begins"];
     let mut lines = vec![titles.map(str::to_owned).to_vec()];
@@ -171,7 +171,7 @@ fn runs(survey: &Survey) -> String {
     text
 }
 
-/// Runs with their numbers, from 0. Runs that begin for one reason are one group, where there are more than a few.
+/// Returns the runs with their numbers, from 0. More than a few runs that begin for the same reason are one group.
 fn by_reason(runs: &[Run]) -> Vec<Vec<(usize, &Run)>> {
     let mut groups: Vec<Vec<(usize, &Run)>> = Vec::new();
     for (number, run) in runs.iter().enumerate() {
@@ -195,7 +195,7 @@ fn is_one_reason(a: Interruption, b: Interruption) -> bool {
     }
 }
 
-/// The reason for which runs begin, one for all of them.
+/// Describes the reason why the runs of a group begin.
 fn reason(begins: &[Interruption]) -> String {
     let by = begins.iter().map(|begins| match begins {
         Interruption::Gap { seconds } | Interruption::Reset { seconds } => *seconds,
@@ -213,14 +213,14 @@ fn reason(begins: &[Interruption]) -> String {
     }
 }
 
-/// The least and the greatest of numbers; one where they look alike.
+/// Writes the smallest and the largest of some numbers; only one if both look the same.
 fn range(numbers: impl Iterator<Item = f64>, shown: impl Fn(f64) -> String) -> String {
     let (least, most) = numbers.fold((f64::INFINITY, 0.0_f64), |(least, most), x| (least.min(x), most.max(x)));
     let (least, most) = (shown(least), shown(most));
     if least == most { most } else { format!("{least} … {most}") }
 }
 
-/// The first line as a title.
+/// Joins lines, of which the first is a title.
 pub(crate) fn titled(lines: &[String]) -> String {
     let mut text = String::new();
     for (place, line) in lines.iter().enumerate() {

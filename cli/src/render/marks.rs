@@ -1,4 +1,4 @@
-//! The marks of a class: as a table, as CSV and as JSON.
+//! Writes the marks of a class as a table, as CSV and as JSON.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -12,14 +12,14 @@ use crate::palette::{ERROR, GOOD, QUIET};
 use crate::render::layout::{left, right, shortened, width, wrap};
 use crate::terminal;
 
-/// A file of a student with its mark, or the reason why it has none.
+/// The file of a student with its mark, or the reason why it has none.
 pub(crate) struct Marked {
     pub(crate) student: String,
     pub(crate) file: String,
     pub(crate) mark: Result<Mark, Failure>,
 }
 
-/// The cause that a state has which is not the one asked about.
+/// The cause of a first error in q, q̇ or q̈: the worksheet is for another state than the one of the command line.
 const OTHER_STATE: &str = "the worksheet is for another state";
 
 /// The mark of a worksheet.
@@ -29,13 +29,13 @@ pub(crate) struct Mark {
     of: usize,
     /// Points for values that are right only with the student's own earlier values.
     carried: usize,
-    /// Values that are asked for and not filled in.
+    /// Values that are asked for and were not filled in.
     missing: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     first_error: Option<FirstError>,
 }
 
-/// The first wrong value in the order of computation.
+/// The first wrong value, in the order of computation.
 #[derive(Clone, Serialize)]
 struct FirstError {
     step: u8,
@@ -55,8 +55,9 @@ struct FirstError {
 }
 
 impl Mark {
-    /// Points are the right values of the cells that are asked for, by joint and step, without those that are
-    /// `always_zero`; with `carry`, also the values that are right with the student's own earlier values.
+    /// Marks a worksheet. There is a point for each right value in the cells that are asked for, by joint and step,
+    /// except values that are `always_zero`; with `carry`, also for values that are right with the student's own
+    /// earlier values.
     pub(crate) fn new(
         sheet: &Worksheet,
         comparison: Comparison,
@@ -101,13 +102,13 @@ impl Mark {
 }
 
 impl Marked {
-    /// Whether the worksheet was made for another state.
+    /// Returns whether the worksheet was made for another state.
     pub(crate) fn is_for_another_state(&self) -> bool {
         let first = self.mark.as_ref().ok().and_then(|mark| mark.first_error.as_ref());
         first.and_then(|first| first.cause.as_deref()).is_some_and(|cause| cause.starts_with(OTHER_STATE))
     }
 
-    /// Says whose state a worksheet for another state has.
+    /// Adds to the cause whose state the worksheet for another state has.
     pub(crate) fn name_owner(&mut self, owner: &str) {
         let first = self.mark.as_mut().ok().and_then(|mark| mark.first_error.as_mut());
         if let Some(cause) = first.and_then(|first| first.cause.as_mut()) {
@@ -116,7 +117,7 @@ impl Marked {
     }
 }
 
-/// A text of a stranger on a line of its own: shortened, without control characters.
+/// Makes a text from a file harmless for one line of the terminal: shortened, without control characters.
 pub(crate) fn shown(text: &str) -> String {
     let visible: String = text
         .chars()
@@ -125,7 +126,7 @@ pub(crate) fn shown(text: &str) -> String {
     shortened(&visible, 60)
 }
 
-/// Why a file is not marked, in one sentence: the line of the first mistake, if it has one, and what is wrong there.
+/// Returns in one sentence why a file is not marked: the line of the first mistake, if it has one, and the mistake.
 fn refusal(failure: &Failure) -> String {
     let sentence = failure.sentence();
     let mut lines = sentence.lines();
@@ -135,7 +136,7 @@ fn refusal(failure: &Failure) -> String {
     line.map_or_else(|| what.to_owned(), |line| format!("line {line}: {what}"))
 }
 
-/// The cells of a row of the table: name, points, first error, cause.
+/// Returns the cells of a row of the table: name, points, first error, cause.
 fn cells(one: &Marked, hint: bool) -> [String; 4] {
     let student = shown(&one.student);
     let mark = match &one.mark {
@@ -174,10 +175,10 @@ fn cells(one: &Marked, hint: bool) -> [String; 4] {
     [student, points, error, cause]
 }
 
-/// The narrowest column of causes.
+/// Smallest width of the column of causes.
 const NARROWEST: usize = 24;
 
-/// The marks for reading, and the causes that several students share.
+/// Writes the marks as a table, and the causes that several students share.
 pub(crate) fn table(all: &[Marked], hint: bool) -> String {
     let mut rows = vec![["student", "points", "first error", "likely cause"].map(str::to_owned)];
     rows.extend(all.iter().map(|one| cells(one, hint)));
@@ -213,7 +214,7 @@ pub(crate) fn table(all: &[Marked], hint: bool) -> String {
     text
 }
 
-/// The marks as CSV, a row for each file.
+/// Writes the marks as CSV, with a row for each file.
 pub(crate) fn csv(all: &[Marked], hint: bool) -> Result<String, Failure> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let mut header = vec![
@@ -263,12 +264,12 @@ fn text_of(value: Option<impl ToString>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
 
-/// A text of a stranger that a spreadsheet does not take for a formula.
+/// Makes a text from a file harmless for a spreadsheet, which must not take it for a formula.
 fn harmless(text: &str) -> String {
     if text.starts_with(['=', '+', '-', '@', '\t', '\r']) { format!("'{text}") } else { text.to_owned() }
 }
 
-/// The marks as JSON has them.
+/// The marks, for JSON.
 #[derive(Serialize)]
 pub(crate) struct Reply {
     of: usize,

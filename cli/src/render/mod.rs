@@ -1,4 +1,4 @@
-//! Text for people: columns, equations, worksheets, reports.
+//! Writes results for human readers: columns, equations, worksheets, reports.
 
 pub(crate) mod answer;
 pub(crate) mod base_parameters;

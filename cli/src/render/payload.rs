@@ -1,4 +1,4 @@
-//! An identified payload in words and as JSON: docs/control/identify.md lists the keys.
+//! Describes an identified payload in words and as JSON; docs/control/identify.md lists the keys.
 
 use std::fmt::Write as _;
 
@@ -10,28 +10,28 @@ use crate::palette::{GOOD, WARNING};
 use crate::render::layout::{Align, PAGE, push_table, shortened, wrap};
 use crate::values::numbers::with_deviation;
 
-/// Columns of a joint's name.
+/// Largest number of columns of a joint's name.
 const NAME: usize = 24;
 
-/// A payload with what its words name.
+/// A payload, with the data that its description needs.
 pub(crate) struct WordedPayload<'a> {
     /// The robot without the payload.
     pub(crate) robot: &'a Robot,
     pub(crate) payload: &'a Payload,
-    /// Errors of the robot on the log.
+    /// The errors of the robot without the payload on the log.
     pub(crate) errors: &'a [JointError],
-    /// Errors of the robot with the payload, if there is one.
+    /// The errors of the robot with the payload; `None` if there is no payload.
     pub(crate) with: Option<&'a [JointError]>,
 }
 
 impl WordedPayload<'_> {
-    /// The verdict below a heading, the numbers, and the errors by joint.
+    /// Writes the verdict below a heading, the numbers, and the errors by joint.
     pub(crate) fn below(&self, heading: &str) -> String {
         let mut text = format!("{heading}{}\n", wrap(&self.verdict(), PAGE, ""));
         let Payload { mass, com, inertia, .. } = self.payload;
         if self.payload.is_there() {
             let centre = ["cx", "cy", "cz"].into_iter().zip(com).map(|(name, number)| (name, number, "m"));
-            // one row says that nothing is known of the inertia
+            // if no element of the inertia is known, one row says so
             let is_known = inertia.iter().any(|number| number.is_excited);
             let names = if is_known { &Payload::INERTIA[..] } else { &["J"] };
             let moments = names.iter().zip(inertia).map(|(name, number)| (*name, number, "kg m²"));
@@ -107,13 +107,13 @@ impl WordedPayload<'_> {
         text
     }
 
-    /// The reply as data.
+    /// Returns the answer as data for JSON.
     pub(crate) fn reply(&self, logs: Vec<String>, cutoff: f64, part: JudgedPart) -> PayloadReply {
         PayloadReply::of(self.robot, self.payload, [Some(self.errors), self.with], logs, cutoff, part)
     }
 }
 
-/// The link that carries the tip, in words.
+/// Returns words for the link that carries the tip.
 pub(crate) fn link_with_tip(robot: &Robot) -> String {
     match robot.tip().on.and_then(|on| robot.joints.get(on)) {
         Some(joint) if !robot.is_serial() => format!("the link of {}", one_line(&joint.name)),
@@ -121,7 +121,7 @@ pub(crate) fn link_with_tip(robot: &Robot) -> String {
     }
 }
 
-/// A number with two digits of a deviation.
+/// Writes a number with as many decimals as two digits of its deviation need.
 fn of_deviation(value: f64, deviation: f64) -> String {
     let text = with_deviation(value, deviation);
     text.split(' ').next().unwrap_or_default().to_owned()

@@ -1,4 +1,4 @@
-//! `rne check --physics`: laws that the numbers of any arm obey, computed by the runtime.
+//! `rne check --physics`: checks laws of mechanics that the numbers of any arm must obey, computed by the runtime.
 
 use std::fmt::Write as _;
 
@@ -8,26 +8,26 @@ use rne_model::Robot;
 use crate::palette::{ERROR, GOOD, QUIET};
 use crate::render::layout::{Align, columns};
 
-/// States that are looked at, the same in every run.
+/// Number of states at which the laws are checked, the same in every run.
 const STATES: u32 = 5;
 /// Rounding error of a sum that is zero in exact arithmetic, relative to its terms.
 const ROUNDING: f64 = 1e-11;
-/// Error of a difference quotient.
+/// Largest error of a difference quotient.
 const DIFFERENCE: f64 = 1e-7;
-/// Error of a numerical integration.
+/// Largest error of a numerical integration.
 const INTEGRATION: f64 = 1e-6;
-/// Half the span of difference quotients, s.
+/// Half the time span of difference quotients, s.
 const STEP: f64 = 1e-3;
-/// Step and number of steps of the integration: 0.1 s.
+/// Time step and number of steps of the integration, 0.1 s in total.
 const TICK: f64 = 1e-3;
 const TICKS: u32 = 100;
 
 /// Result for one law of mechanics.
 struct Law {
     name: &'static str,
-    /// The worst of all states, relative to what cancels; `NaN` where it could not be computed.
+    /// The worst error over all states, relative to the terms that cancel; `NaN` where it could not be computed.
     worst: f64,
-    /// Bound for the result.
+    /// The bound that the error must satisfy.
     bound: Bound,
 }
 
@@ -38,7 +38,7 @@ enum Bound {
 }
 
 impl Law {
-    /// Not a number is no success.
+    /// Returns whether the law holds; with a `NaN` it does not.
     fn holds(&self) -> bool {
         match self.bound {
             Bound::AtMost(bound) => self.worst <= bound,
@@ -47,7 +47,7 @@ impl Law {
     }
 }
 
-/// The laws with their numbers, a line each, and whether all hold.
+/// Returns the laws with their numbers, a line for each, and whether all hold.
 pub(crate) fn check(robot: &Robot) -> Result<(String, bool), WrongLength> {
     let laws = laws(&DynArm::from_robot(robot))?;
     let mut cells = Vec::new();
@@ -88,12 +88,12 @@ fn laws(arm: &DynArm) -> Result<Vec<Law>, WrongLength> {
     ])
 }
 
-/// The larger of two numbers; not-a-number if one of them is.
+/// Returns the larger of two numbers, or not-a-number if one of them is that.
 fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
 }
 
-/// Numbers in ±`size` that look random: multiples of irrational numbers, without their whole part.
+/// Returns pseudorandom numbers in ±`size`: multiples of irrational numbers, without their whole part.
 fn numbers(count: usize, state: u32, kind: u32, size: f64) -> Vec<f64> {
     let number = |index: u32| {
         let phase = f64::from(state) * 0.754_877_666_246_693 + f64::from(kind) * 0.569_840_290_998_053;
@@ -106,7 +106,7 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |largest, value| worse(largest, value.abs()))
 }
 
-/// The columns M e = τ(q, 0, e) - τ(q, 0, 0) against their own transpose and against `mass_matrix`.
+/// Compares the columns M e = τ(q, 0, e) - τ(q, 0, 0) with the transposed matrix and with `mass_matrix`.
 fn asymmetry(arm: &DynArm, q: &[f64]) -> Result<f64, WrongLength> {
     let rest = vec![0.0; q.len()];
     let still = arm.inverse_dynamics(q, &rest, &rest)?;
@@ -128,19 +128,19 @@ fn asymmetry(arm: &DynArm, q: &[f64]) -> Result<f64, WrongLength> {
     Ok(relative(off, size))
 }
 
-/// A difference relative to what cancels in it; nothing at all cancels to zero.
+/// Divides a difference by the size of its terms; returns zero if both are zero.
 fn relative(off: f64, size: f64) -> f64 {
     if off == 0.0 { 0.0 } else { off / size }
 }
 
-/// The smallest pivot of M = Lᵀ L from tip to base, each relative to the diagonal element: the inertia that resists a
-/// joint while the joints after it move freely. Zero or negative if M is not positive definite.
+/// Returns the smallest pivot of M = Lᵀ L from tip to base, each relative to the diagonal element: the inertia that
+/// resists a joint while the distal joints move freely. It is zero or negative if M is not positive definite.
 pub(crate) fn smallest_pivot(mut matrix: Vec<Vec<f64>>) -> f64 {
     let diagonal: Vec<f64> = matrix.iter().enumerate().map(|(index, row)| row[index]).collect();
     let mut smallest = f64::INFINITY;
     for joint in (0..matrix.len()).rev() {
         let pivot = matrix[joint][joint];
-        // a joint that moves nothing at all, or worse
+        // no inertia resists this joint, or the matrix is not positive definite
         if pivot.is_nan() || pivot <= 0.0 {
             return 0.0;
         }
@@ -158,17 +158,17 @@ fn energy(arm: &DynArm, q: &[f64], qd: &[f64]) -> Result<f64, WrongLength> {
     Ok(arm.kinetic_energy(q, qd)? + arm.potential_energy(q)?)
 }
 
-/// `a + t b`.
+/// Returns `a + t b`.
 fn along(a: &[f64], t: f64, b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a + t * b).collect()
 }
 
-/// The derivative at 0, from values at ±h and ±2h; its error is of order h⁴.
+/// Returns the derivative at 0 from values at ±h and ±2h; its error is of order h⁴.
 fn slope(near: [f64; 2], far: [f64; 2]) -> f64 {
     (8.0 * (near[1] - near[0]) - (far[1] - far[0])) / (12.0 * STEP)
 }
 
-/// τ·q̇ - dE/dt along q(t) = q + q̇ t + q̈ t²/2.
+/// Returns τ·q̇ - dE/dt along q(t) = q + q̇ t + q̈ t²/2.
 fn power_balance(arm: &DynArm, q: &[f64], qd: &[f64], qdd: &[f64]) -> Result<f64, WrongLength> {
     let at = |t: f64| energy(arm, &along(&along(q, t, qd), t * t / 2.0, qdd), &along(qd, t, qdd));
     let rate = slope([at(-STEP)?, at(STEP)?], [at(-2.0 * STEP)?, at(2.0 * STEP)?]);
@@ -178,7 +178,7 @@ fn power_balance(arm: &DynArm, q: &[f64], qd: &[f64], qdd: &[f64]) -> Result<f64
     Ok(relative((power - rate).abs(), size + at(0.0)?.abs()))
 }
 
-/// The symmetric part of Ṁ - 2C.
+/// Returns the symmetric part of Ṁ - 2C.
 fn skewness(arm: &DynArm, q: &[f64], qd: &[f64]) -> Result<f64, WrongLength> {
     let at = |t: f64| arm.mass_matrix(&along(q, t, qd));
     let (near, far) = ([at(-STEP)?, at(STEP)?], [at(-2.0 * STEP)?, at(2.0 * STEP)?]);
@@ -194,8 +194,8 @@ fn skewness(arm: &DynArm, q: &[f64], qd: &[f64]) -> Result<f64, WrongLength> {
     Ok(relative(off, size))
 }
 
-/// How far the energy of the free arm drifts, by Runge and Kutta's method of fourth order, relative to its largest
-/// kinetic energy.
+/// Returns the drift of the energy of an arm without torques, integrated by the fourth-order Runge-Kutta method,
+/// relative to its largest kinetic energy.
 fn energy_drift(arm: &DynArm, q: &[f64], qd: &[f64]) -> Result<f64, WrongLength> {
     let free = vec![0.0; q.len()];
     let (mut q, mut qd) = (q.to_vec(), qd.to_vec());
@@ -239,7 +239,7 @@ mod tests {
         assert_eq!(smallest_pivot(vec![vec![2.0, 1.0], vec![1.0, 2.0]]), 0.75);
         assert_eq!(smallest_pivot(vec![vec![1.0, 1.0], vec![1.0, 1.0]]), 0.0);
         assert_eq!(smallest_pivot(vec![vec![1.0, 0.0], vec![0.0, 0.0]]), 0.0);
-        // a light wrist on a heavy arm is well resisted
+        // the pivot is relative to the diagonal element, so a light wrist on a heavy arm counts as well resisted
         assert!((smallest_pivot(vec![vec![1e6, 0.6], vec![0.6, 1e-6]]) - 0.64).abs() < 1e-12);
     }
 }

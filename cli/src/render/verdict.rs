@@ -1,4 +1,4 @@
-//! The verdict of an identification in words, and its errors by joint.
+//! Writes the verdict of an identification in words, and its errors by joint.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -12,37 +12,38 @@ use crate::render::counts::{counted, enumerated, groups, listed};
 use crate::render::layout::{self, Align, PAGE, columns, shortened};
 use crate::values::numbers::rounded;
 
-/// Lines of the verdict at most, its heading included: joints that do not fit are named without reasons.
+/// Largest number of lines of a verdict with its heading. If it would be longer, some joints that do not fit the model
+/// are named without reasons.
 const LINES: usize = 10;
 
-/// Joints that are named without reasons at most; the others are counted.
+/// Largest number of joints that are named without reasons; the others are counted.
 const SHOWN: usize = 5;
 
-/// A blank at which no line breaks.
+/// A blank at which no line is broken.
 pub(crate) const TIED: &str = "\u{A0}";
 
-/// The option for errors on other data; no line breaks in it.
+/// The option that computes errors on other data; no line is broken in it.
 const HOLD_OUT: &str = "--hold-out\u{A0}0.3";
 
-/// A verdict with what its words name.
+/// A verdict, with the data that its description needs.
 pub(crate) struct Worded<'a> {
     pub(crate) verdict: &'a Verdict,
     pub(crate) robot: &'a Robot,
-    /// Robot file that was given.
+    /// The robot file of the command line.
     pub(crate) file: &'a Path,
-    /// Held-out part of the log in words, such as `from 13.5 s on`.
+    /// The held-out part of the log in words, such as `from 13.5 s on`.
     pub(crate) held_out: &'a str,
-    /// Rows of each joint.
+    /// Number of rows of the log for each joint.
     pub(crate) rows: u64,
 }
 
 impl Worded<'_> {
-    /// The verdict in sentences below a heading.
+    /// Writes the verdict in sentences below a heading.
     pub(crate) fn below(&self, heading: &str) -> String {
         let joints = || self.robot.independent_joints().zip(&self.verdict.joints);
         let mut doubtful: Vec<(&Joint, &JointVerdict)> =
             joints().filter(|(_, verdict)| !verdict.is_predicted).collect();
-        // the largest error first, and joints without a reason last
+        // joints with a reason come first, sorted by error from the largest on
         let error = |verdict: &JointVerdict| verdict.error().map_or(f64::INFINITY, |error| error.error);
         doubtful.sort_by(|(_, one), (_, other)| {
             (one.doubts.is_empty().cmp(&other.doubts.is_empty())).then(error(other).total_cmp(&error(one)))
@@ -50,7 +51,7 @@ impl Worded<'_> {
         let with_reasons = doubtful.iter().filter(|(_, verdict)| !verdict.doubts.is_empty()).count();
         let first = wrap(&self.first(), "");
         let last = self.verdict.excited.as_ref().map(|excited| self.excited(excited)).unwrap_or_default();
-        // as many reasons as there is room for
+        // as many joints get reasons as the lines allow
         let whole = |explained: usize| {
             let sentences = doubtful[..explained].iter().map(|(joint, verdict)| self.explained(joint, verdict));
             let mut lines: Vec<String> = sentences.collect();
@@ -62,7 +63,7 @@ impl Worded<'_> {
         whole(fits.unwrap_or(0))
     }
 
-    /// How many joints the model predicts, and how well.
+    /// Says how many joints the model predicts, and how well.
     fn first(&self) -> String {
         let Verdict { evidence, joints, .. } = self.verdict;
         let [does, data] = match evidence {
@@ -89,14 +90,14 @@ impl Worded<'_> {
         text
     }
 
-    /// The words for a joint that the model does not predict.
+    /// Returns the words for a joint that the model does not predict.
     fn not_predicted(&self) -> &'static str {
         if self.verdict.evidence == Evidence::Fitted { "not reproduced" } else { "not predicted" }
     }
 
-    /// The sentence on a joint that the model does not predict.
+    /// Explains why the model does not predict a joint.
     fn explained(&self, joint: &Joint, verdict: &JointVerdict) -> String {
-        // that the error has grown is no cause
+        // that the held-out error is larger is no cause, unless it is the only doubt
         let is_cause = |doubt: &&Doubt| verdict.doubts.len() == 1 || !matches!(doubt, Doubt::Grown(_));
         let causes = verdict.doubts.iter().filter(is_cause);
         let reasons: Vec<String> = causes.map(|doubt| self.reason(joint, verdict, doubt)).collect();
@@ -104,7 +105,7 @@ impl Worded<'_> {
         wrap(&format!("{named} is {WARNING}{fails}{WARNING:#}: {}.", reasons.join("; ")), "  ")
     }
 
-    /// Joints for whose reasons there is no room.
+    /// Names joints for whose reasons there is no room.
     fn others(&self, joints: &[(&Joint, &JointVerdict)], is_more: bool) -> Option<String> {
         let with_fitted_part = |(joint, verdict): &(&Joint, &JointVerdict)| match (verdict.growth(), verdict.fitted) {
             (Some(_), Some(fitted)) => {
@@ -157,7 +158,7 @@ impl Worded<'_> {
         }
     }
 
-    /// How many parameters are excited, which are not, and what to do about it.
+    /// Says how many parameters are excited, which are not, and what to do about it.
     fn excited(&self, excited: &Excited) -> Vec<String> {
         let parameters = counted(excited.known_parameters(), excited.base_parameters).of("base parameter");
         let mut text = format!("The log determines {parameters}");
@@ -174,13 +175,13 @@ impl Worded<'_> {
         }
         let unknown = enumerated(&unknown);
         let _ = write!(text, ", but not {unknown}: the model holds for similar motions only.");
-        // a command is not broken into lines
+        // no line is broken inside a command
         let command = format!("rne excite {}", one_line(&self.file.display().to_string())).replace(' ', TIED);
         let next = format!("{TYPED}`{command}`{TYPED:#} designs a better motion.");
         vec![wrap(&text, ""), wrap(&next, "")]
     }
 
-    /// Errors by joint: one row each.
+    /// Writes the errors by joint, a row for each.
     pub(crate) fn errors(&self, cutoff: f64) -> String {
         let has = |side: fn(&JointVerdict) -> bool| self.verdict.joints.iter().any(side);
         let (has_fitted, has_other) = (has(|joint| joint.fitted.is_some()), has(|joint| joint.other.is_some()));
@@ -233,7 +234,7 @@ impl Worded<'_> {
         text
     }
 
-    /// The mark of a joint that is not predicted, with the first reason.
+    /// Returns the mark of a joint that is not predicted, with the first reason.
     fn mark(&self, verdict: &JointVerdict) -> String {
         if verdict.is_predicted {
             return String::new();
@@ -252,7 +253,7 @@ impl Worded<'_> {
         format!("{}{reason}", self.not_predicted())
     }
 
-    /// The note on joints whose offset the logs do not determine.
+    /// Returns a note on joints whose offset the logs do not determine.
     pub(crate) fn offsets(&self) -> Option<String> {
         let unknown = &self.verdict.excited.as_ref()?.unknown_offsets;
         let is_equal = |joint: &usize| {
@@ -274,7 +275,7 @@ impl Worded<'_> {
         })
     }
 
-    /// The warning on joints whose held-out error is much larger than the error on the data of the identification.
+    /// Returns a warning on joints whose held-out error is much larger than the error on the fitted data.
     pub(crate) fn grown(&self) -> Option<String> {
         let joints = self.robot.independent_joints().zip(&self.verdict.joints);
         let named = joints.filter(|(_, verdict)| verdict.growth().is_some()).map(|(joint, verdict)| {
@@ -292,18 +293,18 @@ impl Worded<'_> {
     }
 }
 
-/// A joint with the error that decides.
+/// Writes a joint with the error on which its verdict depends.
 fn named(joint: &Joint, verdict: &JointVerdict) -> String {
     let error = verdict.error().map_or(f64::NAN, |error| error.error);
     format!("{} ({})", shortened(&one_line(&joint.name), 30), percent(error))
 }
 
-/// Words in lines of a page.
+/// Wraps words into lines of a page.
 fn wrap(text: &str, indent: &str) -> String {
     layout::wrap(text, PAGE, indent).replace(TIED, " ")
 }
 
-/// Errors from the smallest to the largest.
+/// Writes a range of errors from the smallest to the largest.
 fn range(errors: &[f64]) -> String {
     let least = errors.iter().copied().fold(f64::INFINITY, f64::min);
     let most = errors.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -311,7 +312,7 @@ fn range(errors: &[f64]) -> String {
     if from == to { to } else { format!("{} to {to}", from.trim_end_matches("\u{A0}%")) }
 }
 
-/// A part in two digits of percent; no line breaks in it.
+/// Writes a part with two digits of percent; no line is broken in it.
 fn percent(part: f64) -> String {
     match 100.0 * part {
         percent if percent.is_nan() => "no error".to_owned(),
@@ -321,7 +322,8 @@ fn percent(part: f64) -> String {
     }
 }
 
-/// A part in percent with one decimal, for a table; an effort that does not change has none.
+/// Writes a part in percent with one decimal, for a table; `-` if the effort does not change, so that there is no
+/// relative error.
 pub(crate) fn tenths(part: f64) -> String {
     match 100.0 * part {
         percent if percent.is_nan() => "-".to_owned(),

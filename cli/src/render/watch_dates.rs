@@ -1,4 +1,4 @@
-//! The times of an event in words: seconds of its log, and dates.
+//! Describes the times of an event: seconds in its log, and dates.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use rne_logs::UtcTime;
 use rne_model::one_line;
 use rne_watch::{Cause, Event};
 
-/// Logs in words: `friday`, `the quiet logs`.
+/// The name of some logs in words, such as `friday` or `the quiet logs`.
 #[derive(Clone, Debug)]
 pub(crate) struct LogName {
     words: String,
@@ -14,7 +14,7 @@ pub(crate) struct LogName {
 }
 
 impl LogName {
-    /// The name of one file or folder; of several the words.
+    /// Returns the name of the only file or folder; for several, the words `several`.
     pub(crate) fn of(paths: &[PathBuf], several: &str) -> Self {
         match paths {
             [path] if path.file_name().is_some() => {
@@ -38,14 +38,14 @@ impl LogName {
     }
 }
 
-/// The logs of an event: those that are watched, and those with which they are compared.
+/// The names of the logs of an event: the watched ones, and those with which they are compared.
 #[derive(Debug)]
 pub(crate) struct LogNames<'a> {
     pub(crate) log: LogName,
     pub(crate) quiet: &'a LogName,
 }
 
-/// When an event is there.
+/// Says when an event was observed.
 pub(crate) fn times(event: &Event, has_runs: bool, names: &LogNames<'_>) -> String {
     let run = if has_runs { format!("run {}, ", event.run + 1) } else { String::new() };
     let date = event.since_time.map_or(String::new(), |time| format!(" ({time})"));
@@ -60,7 +60,7 @@ pub(crate) fn times(event: &Event, has_runs: bool, names: &LogNames<'_>) -> Stri
 fn in_the_whole_log(event: &Event, LogNames { log, quiet }: &LogNames<'_>) -> String {
     let when = |what: &str, logs: &str, time: UtcTime| format!("{what} when {logs} ({time})");
     let there = match (event.since_time, event.until_time) {
-        // the error of a model is a mean over the log
+        // the error of the model is a mean over the whole log, so it has no date
         _ if event.cause == Cause::Model => None,
         (_, Some(end)) if event.not_after.is_some() => Some(when("still there", &log.end(), end)),
         (Some(start), _) => Some(when("already there", &log.begin(), start)),

@@ -1,4 +1,4 @@
-//! The result of `rne watch` as text.
+//! Writes the result of `rne watch` as text.
 
 use std::fmt::Write as _;
 
@@ -10,13 +10,13 @@ use crate::render::layout::{Align, PAGE, cell, push_table, shortened, wrap};
 use crate::render::watch_dates::{LogNames, times};
 use crate::values::numbers::{rounded, with_deviation};
 
-/// Events that are shown; the others are counted.
+/// Largest number of events that are shown; the others are counted.
 const SHOWN: usize = 40;
 
-/// Joints in the table of a trend.
+/// Number of joints in the table of a trend.
 const COLUMNS: usize = 4;
 
-/// The name of a parameter: `elbow: Coulomb friction`.
+/// Returns the name of a parameter, such as `elbow: Coulomb friction`.
 fn parameter(robot: &Robot, candidate: Candidate) -> String {
     let name = |joint: usize| one_line(robot.coordinate_name(joint));
     match candidate {
@@ -29,12 +29,12 @@ fn parameter(robot: &Robot, candidate: Candidate) -> String {
     }
 }
 
-/// A number with its unit; a ratio has none.
+/// Appends a unit to a number, or nothing if the number is a ratio.
 fn with_unit(number: &str, unit: &str) -> String {
     if unit == "1" { number.to_owned() } else { format!("{number} {unit}") }
 }
 
-/// Events, and how near the other parameters are to their thresholds.
+/// Writes the events, and how near the other parameters are to their thresholds.
 pub(crate) fn events(
     robot: &Robot,
     baseline: &Baseline,
@@ -61,7 +61,7 @@ pub(crate) fn events(
     if events.iter().any(|event| event.cause == Cause::Friction) {
         let _ = writeln!(text, "  {QUIET}{}{QUIET:#}", wrap(RIVALS, PAGE - 2, "  "));
     }
-    // the others are not known where a position is wrong
+    // if a position channel is wrong, the other parameters are not known
     let is_known = !events.iter().any(|event| event.parameter == "frozen_position");
     if let Some(nearest) = report.changes.nearest(&baseline.scale).filter(|_| is_known) {
         let others = if events.is_empty() { "largest change" } else { "largest change of the others" };
@@ -80,14 +80,14 @@ pub(crate) fn events(
     text
 }
 
-/// The line below the events if one of them has a standard deviation.
+/// The line below the events that explains standard deviations, if an event has one.
 const DEVIATION: &str = "± is one standard deviation.";
 
-/// The lines below the events if one of them is a change of friction.
+/// The lines below the events that name other reasons for a change of friction, if there is such a change.
 const RIVALS: &str = "Temperature and speed change friction, too: compare with a quiet log of the same motion and of a \
     warm arm before you look for wear.";
 
-/// The joints whose Coulomb friction is not known well enough for any event.
+/// Lists joints whose Coulomb friction is too uncertain to report events on it.
 fn unknown(robot: &Robot, baseline: &Baseline, changes: &Changes) -> Vec<String> {
     let is_unknown = |statistic: &&Statistic| {
         matches!(statistic.candidate, Candidate::Coulomb(_)) && !baseline.scale.is_watched(statistic)
@@ -96,7 +96,7 @@ fn unknown(robot: &Robot, baseline: &Baseline, changes: &Changes) -> Vec<String>
     joints.map(|joint| one_line(robot.coordinate_name(joint))).collect()
 }
 
-/// A change with its share of the threshold.
+/// Writes a change and how large a part of its threshold it is.
 fn margin(robot: &Robot, statistic: &Statistic) -> String {
     format!(
         "{}, {}, {} of its threshold",
@@ -111,7 +111,7 @@ fn signed(value: f64) -> String {
     if value < 0.0 { format!("-{digits}") } else { format!("+{digits}") }
 }
 
-/// An event in a sentence.
+/// Describes an event in a sentence.
 fn sentence(robot: &Robot, event: &Event, has_runs: bool, names: &LogNames<'_>) -> String {
     let unit = event.unit;
     let joint = event.joint.map_or(String::new(), |joint| one_line(robot.coordinate_name(joint)));
@@ -156,17 +156,17 @@ fn sentence(robot: &Robot, event: &Event, has_runs: bool, names: &LogNames<'_>) 
     format!("{what}; {}", times(event, has_runs, names))
 }
 
-/// The joints of an event beside its own.
+/// Lists the other joints of an event.
 fn others(robot: &Robot, event: &Event) -> String {
     event.others.iter().map(|joint| one_line(robot.coordinate_name(*joint))).collect::<Vec<_>>().join(", ")
 }
 
-/// The fault of a sensor of a joint, in words.
+/// Describes a fault of a joint's sensor.
 fn sensor(robot: &Robot, event: &Event, joint: &str, value: &str) -> String {
     match event.parameter {
         "delay" => format!(
             "sensors: the efforts are {value} behind the positions, before {:.3}",
-            // no minus before zero
+            // adding 0.0 avoids a minus before zero
             (1e3 * event.baseline_value).round() / 1e3 + 0.0
         ),
         "frozen" => {
@@ -201,13 +201,13 @@ fn friction(parameter: &str) -> &'static str {
     if parameter == "viscous" { "viscous friction" } else { "Coulomb friction" }
 }
 
-/// Other causes that the log cannot tell from the change.
+/// Names other causes that explain the log almost as well as the change.
 fn rivals(event: &Event) -> String {
     let sentence = |rival: &&'static str| format!("; {} would explain it almost as well", friction(rival));
     event.rivals.iter().map(sentence).collect::<Vec<_>>().concat()
 }
 
-/// The reason for which an effort can have another gain.
+/// Names possible reasons for a changed gain of an effort.
 fn gain(event: &Event) -> &'static str {
     if event.value.abs() < event.threshold {
         ": it does not follow the motion, so the channel can be dead"
@@ -218,7 +218,7 @@ fn gain(event: &Event) -> &'static str {
     }
 }
 
-/// All parameters with their thresholds.
+/// Writes all parameters with their thresholds.
 pub(crate) fn parameters(robot: &Robot, baseline: &Baseline, changes: &Changes) -> String {
     let heading = ["  parameter", "change", "", "deviation", "threshold", "unit", "part of it"].map(str::to_owned);
     let mut cells = vec![heading];
@@ -241,11 +241,11 @@ pub(crate) fn parameters(robot: &Robot, baseline: &Baseline, changes: &Changes) 
     text
 }
 
-/// How the table of [`parameters_csv`] begins.
+/// The beginning of the table of [`parameters_csv`].
 pub(crate) const PARAMETERS: &str = "cause,joint,name,parameter,";
 
-/// All parameters with their thresholds as CSV: a header, then a line for each parameter. Columns are the keys of
-/// `--json`; numbers have all digits. A parameter of the whole arm has no joint.
+/// Writes all parameters with their thresholds as CSV: a header, then a line for each parameter. Columns are named like
+/// the keys of `--json`; numbers have all digits. For a parameter of the whole arm the joint is empty.
 pub(crate) fn parameters_csv(robot: &Robot, baseline: &Baseline, changes: &Changes) -> String {
     let mut text = format!("{PARAMETERS}change,deviation,threshold,ratio,unit,watched\n");
     for statistic in &changes.statistics {
@@ -264,7 +264,7 @@ pub(crate) fn parameters_csv(robot: &Robot, baseline: &Baseline, changes: &Chang
     text
 }
 
-/// A trend as a table, with the events of each log.
+/// Writes a trend as a table, with the events of each log.
 pub(crate) fn trend(robot: &Robot, trend: &Trend, events: &[Vec<Event>], names: &[LogNames<'_>]) -> String {
     let joints = changing(trend);
     let mut cells = vec![vec!["  log".to_owned(), "events".to_owned(), "payload, kg".to_owned()]];
@@ -302,7 +302,7 @@ pub(crate) fn trend(robot: &Robot, trend: &Trend, events: &[Vec<Event>], names: 
     text
 }
 
-/// The joints whose friction changes most from log to log, in the order of the arm.
+/// Returns the joints whose friction changes most from log to log, in the order of the arm.
 fn changing(trend: &Trend) -> Vec<usize> {
     let range = |joint: &usize| {
         let values = trend.rows.iter().map(|row| row.friction[*joint].value);

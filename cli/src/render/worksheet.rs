@@ -1,4 +1,4 @@
-//! The seven steps of one state, as one would fill them in by hand: link by link out, and back.
+//! Writes the seven steps of one state, as a student fills them in by hand: outwards from link to link, and back.
 
 use std::fmt::Write as _;
 
@@ -36,12 +36,12 @@ impl From<Axes> for worksheet::Axes {
     }
 }
 
-/// Selection of lines.
+/// The lines of a worksheet that the command line selects.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Narrowed {
-    /// Lines of this joint, counted from 1.
+    /// Only lines of this joint, counted from 1.
     pub(crate) joint: Option<usize>,
-    /// Lines of this step.
+    /// Only lines of this step.
     pub(crate) step: Option<Step>,
 }
 
@@ -56,25 +56,25 @@ impl Narrowed {
     }
 }
 
-/// The state of the arm, in the terms of a worksheet.
+/// Converts the state of the arm to the situation of a worksheet.
 pub(crate) fn situation(state: &State, dof: usize) -> Situation {
-    // what the function does not take is at rest
+    // lists that the function does not take are zero
     let [qd, qdd] =
         [&state.qd, &state.qdd].map(|values| if values.is_empty() { vec![0.0; dof] } else { values.clone() });
     let base = state.function.takes(Argument::Base).then_some(state.base);
     Situation { q: state.q.clone(), qd, qdd, base, wrench: state.wrench, payload: state.payload }
 }
 
-/// Columns before the numbers.
+/// Number of columns before the numbers.
 const MARGIN: usize = 12;
 
-/// Columns of a unit, with the gap before the formula.
+/// Number of columns for a unit, with the gap before the formula.
 const UNIT: usize = 8;
 
-/// A blank at which no line breaks.
+/// A blank at which no line is broken.
 const TIED: &str = "\u{A0}";
 
-/// The worksheet for reading.
+/// Writes the worksheet as text.
 pub(crate) fn text(robot: &Robot, sheet: &Worksheet, narrowed: Narrowed, state: &State, letters: Letters) -> String {
     let mut text = format!("{TITLE}the seven steps of {}{TITLE:#}\n", robot.name);
     for line in heading(robot, sheet.axes, state) {
@@ -97,7 +97,7 @@ pub(crate) fn text(robot: &Robot, sheet: &Worksheet, narrowed: Narrowed, state: 
     text
 }
 
-/// The axes, and what the recursion starts with.
+/// Writes the axes, and the values with which the recursion begins.
 fn heading(robot: &Robot, axes: worksheet::Axes, state: &State) -> Vec<String> {
     let n = robot.dof();
     let meaning = match axes {
@@ -136,7 +136,7 @@ fn heading(robot: &Robot, axes: worksheet::Axes, state: &State) -> Vec<String> {
     vec![meaning.to_owned(), format!("{base}, g0 = {} m/s², {lever}", triple(&gravity)), tip]
 }
 
-/// `(0, -9.81, 0)`.
+/// Writes three numbers in the form `(0, -9.81, 0)`.
 pub(crate) fn triple(values: &[f64]) -> String {
     let numbers: Vec<String> = values.iter().map(|value| fixed(*value).trim().to_owned()).collect();
     format!("({})", numbers.join(", "))
@@ -158,7 +158,7 @@ fn title(text: &mut String, robot: &Robot, line: &Line, letters: Letters) {
     };
 }
 
-/// The numbers of a row of the table that the lines below it need.
+/// Writes the numbers of a table row that the lines below it need.
 fn of_file(robot: &Robot, joint: usize) -> String {
     let (i, row) = (joint, &robot.joints[joint - 1].row);
     let number = |value: f64| {
@@ -212,7 +212,7 @@ fn write_line(text: &mut String, line: &Line, letters: Letters) {
     let name = if matrix.is_some() { format!("  {step:1} {symbol} x") } else { format!("  {step:1} {symbol}") };
     let numbers = match (&matrix, line.values.as_slice()) {
         (Some(rows), _) => rows[0].map(fixed).concat(),
-        // it is the z element
+        // τ is the z element of the moment vector
         (None, [tau]) if line.quantity == Quantity::Tau => {
             format!("{}{TITLE}{}{TITLE:#}", " ".repeat(2 * WIDTH), fixed(*tau))
         }
@@ -241,20 +241,20 @@ fn write_line(text: &mut String, line: &Line, letters: Letters) {
         }
     }
     if below {
-        // a line breaks before a term
+        // a line may be broken only before a term
         let tied = formula.replace(' ', TIED).replace(&format!("{TIED}+{TIED}"), &format!(" +{TIED}"));
         let wrapped = wrap(&format!("{}{tied}", TIED.repeat(6)), PAGE, "        ").replace(TIED, " ");
         let _ = writeln!(text, "{style}{wrapped}{style:#}");
     }
 }
 
-/// Whether the right side says how to compute it, not what it is.
+/// Returns whether the right-hand side of a line is a formula, and not a description.
 pub(crate) fn is_formula(line: &Line) -> bool {
     let at_the_tip = matches!(line.quantity, Quantity::NextForce | Quantity::NextMoment) && line.terms.is_empty();
     !at_the_tip && !matches!(line.formula.as_str(), "given" | "of the row")
 }
 
-/// The rows of a matrix of nine numbers, or of the six of a symmetric one.
+/// Returns the rows of a matrix from nine numbers, or from the six of a symmetric one.
 pub(crate) fn matrix(values: &[f64]) -> Option<[[f64; 3]; 3]> {
     match *values {
         [xx, xy, xz, yx, yy, yz, zx, zy, zz] => Some([[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]]),

@@ -1,4 +1,4 @@
-//! Choices that several commands offer: a function, a form, a convention, a joint, a step, quantities to keep.
+//! Reads choices that several commands offer: a function, a form, a convention, a joint, a step, quantities to keep.
 
 use std::fmt;
 
@@ -12,13 +12,14 @@ use rne_model::{Convention, Robot};
 use crate::outcome::Failure;
 use crate::palette::TYPED;
 
-/// Reads the name of a function; help and messages list them all.
+/// Reads the name of a function; the help and the messages list all names.
 pub(crate) fn function() -> impl TypedValueParser<Value = Function> {
     let value = |function: Function| PossibleValue::new(function.name()).help(function.summary());
     PossibleValuesParser::new(Function::ALL.map(value)).try_map(|name| rne_codegen::function_named(&name))
 }
 
-/// Explains a step of an integrator that no function computes alone, because it is composed of calls of another one.
+/// Explains a step of an integrator that is no function of its own, because it is composed of calls of another
+/// function.
 pub(crate) fn composed(name: &str) -> Option<String> {
     let where_it_is = match name {
         "runge_kutta_step" | "runge_kutta_step_derivatives" => format!(
@@ -43,7 +44,7 @@ pub(crate) fn composed(name: &str) -> Option<String> {
     ))
 }
 
-/// One function, or all that a robot has.
+/// One function, or all functions of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FunctionOrAll {
     All,
@@ -95,7 +96,7 @@ pub(crate) fn trick() -> impl TypedValueParser<Value = Trick> {
 
 /// Reads a convention.
 pub(crate) fn convention() -> impl TypedValueParser<Value = Convention> {
-    // docs/robot-file.md says what they are
+    // without descriptions, because docs/robot-file.md explains the conventions
     PossibleValuesParser::new(["standard", "modified"])
         .map(|word| if word == "modified" { Convention::Modified } else { Convention::Standard })
 }
@@ -109,7 +110,7 @@ pub(crate) fn robot_name(text: &str) -> Result<String, String> {
     Err("a robot's name has small letters, digits and underscores, and starts with a letter: my_arm".to_owned())
 }
 
-/// Reads a number of joints; which numbers there are, the robot says.
+/// Reads the number of a joint, which is later compared with the joints of the robot.
 pub(crate) fn joint(text: &str) -> Result<usize, String> {
     text.parse().map_err(|_| "a joint is given by its number, counted from 1 at the base".to_owned())
 }
@@ -167,7 +168,7 @@ impl Kept {
         }
     }
 
-    /// The quantity in words and with its letter.
+    /// Returns the quantity in words, with its symbol.
     pub(crate) const fn words(self) -> &'static str {
         match self {
             Self::Omega => "angular velocities ω",
@@ -183,7 +184,7 @@ impl Kept {
     }
 }
 
-/// The joint of a robot with this number, counted from 1 at the base, or with this name.
+/// Returns the joint of a robot with this number, counted from 1 at the base, or with this name.
 pub(crate) fn joint_of(robot: &Robot, told: Option<&str>) -> Result<Option<usize>, Failure> {
     let Some(told) = told else { return Ok(None) };
     let number = told.parse().ok().filter(|number| (1..=robot.joints.len()).contains(number));
@@ -196,7 +197,7 @@ pub(crate) fn joint_of(robot: &Robot, told: Option<&str>) -> Result<Option<usize
     Err(Failure::usage(format!("{} has no joint {told}; its joints are {joints}", robot.name)))
 }
 
-/// The torques of a robot with closed loops, where the default is asked for, the torques of an open tree.
+/// Replaces the default function, the torques of an open tree, by the torques of closed loops if the robot has loops.
 pub(crate) fn of_loops(function: Function, robot: &Robot) -> Function {
     match function {
         Function::InverseDynamics if !robot.closed.is_empty() => Function::InverseDynamicsOfLoops,
@@ -204,10 +205,10 @@ pub(crate) fn of_loops(function: Function, robot: &Robot) -> Function {
     }
 }
 
-/// The functions that a robot has something to compute for, in the order of the traits. Without motors, the torques of
-/// motors are zero, and there for who asks for them by name. With couplings, there is no `regressor`, and without
-/// contacts no motion in contact. Without named tips, a function with a wrench at each tip is the one with a wrench at
-/// the tip. Functions of a floating base are for robots that have one.
+/// Returns the functions that are useful for a robot, in the order of the traits. Torques of motors are left out
+/// without motors, because they are zero; `regressor` is left out with couplings, and motion in contact without
+/// contacts. Without named tips, functions with a wrench at each tip are left out, because they equal those with a
+/// wrench at the tip. Functions of a floating base are included only if the robot has one.
 pub(crate) fn functions_of(robot: &Robot) -> impl Iterator<Item = Function> {
     let has_motors = robot.joints.iter().any(|joint| joint.motor.is_some());
     let has_tips = !robot.tips.is_empty();

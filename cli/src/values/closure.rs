@@ -1,4 +1,4 @@
-//! Positions of the dependent joints that close the loops of a robot.
+//! Computes positions of the dependent joints that close the loops of a robot.
 
 use std::f64::consts::TAU;
 
@@ -8,22 +8,22 @@ use rne_model::{JointKind, Robot, six_digits};
 use crate::outcome::Failure;
 use crate::values::state::State;
 
-/// Newton steps from one guess: some are far away.
+/// Largest number of Newton steps from one guess, because a guess may be far away.
 const STEPS: usize = 50;
-/// The largest residual of an equation of a closed loop, m or a product of axes.
+/// Largest residual of an equation of a closed loop, m or a scalar product of axes.
 const CLOSED: f64 = 1e-12;
-/// How far the other joints move between two closures on the way from a reference at most, rad or m.
+/// Largest step of the other joints between two closures on the path from a known configuration, rad or m.
 const STRIDE: f64 = 0.05;
-/// The shortest part of a stride where the loops bend.
+/// The shortest part of such a step, where the solution curves strongly.
 const SHORTEST: f64 = 1e-3;
-/// Strides of the longest way.
+/// Largest number of steps on a path.
 const STRIDES: f64 = 1000.0;
 /// A pivot below this part of the largest singular value is nearly zero.
 const NEARLY_SINGULAR: f64 = 1e-3;
 
-/// Positions of the dependent joints for positions `q` of the others: the closure that a guess leads to. Without a
-/// guess, the closure that is reached from the first configuration of the robot file, without a singular position on
-/// the way and so without a jump to another assembly; where no such way leads there, from the other configurations.
+/// Returns positions of the dependent joints for positions `q` of the others: the closure to which a guess leads.
+/// Without a guess, the closure that a path reaches from the first configuration of the robot file without a singular
+/// position, and so without a jump to another assembly; if there is no such path, from the other configurations.
 pub(crate) fn closed(robot: &Robot, q: &[f64], guess: Option<&[f64]>) -> Result<Vec<f64>, Failure> {
     let arm = DynArm::from_robot(robot);
     let names: Vec<_> = robot.closed.passive.iter().map(|&at| robot.joints[at].name.as_str()).collect();
@@ -58,10 +58,10 @@ pub(crate) fn closed(robot: &Robot, q: &[f64], guess: Option<&[f64]>) -> Result<
     ))
 }
 
-/// A note where the loops are close to a singular position: positions of few digits then give torques of fewer, and
-/// other assemblies are near.
+/// Returns a note if the loops are close to a singular position, because positions with few digits then give torques
+/// with fewer digits, and other assemblies are near.
 ///
-/// Another note where nothing chose the assembly and it is not that of the first configuration.
+/// Returns another note if the user did not choose the assembly and it is not that of the first configuration.
 pub(crate) fn remark(robot: &Robot, arm: &DynArm, state: &State, is_chosen: bool) -> String {
     if state.passive.is_empty() {
         return String::new();
@@ -92,19 +92,20 @@ pub(crate) fn remark(robot: &Robot, arm: &DynArm, state: &State, is_chosen: bool
         )
 }
 
-/// The closure that is reached from a configuration of the file, or where the way to it ends.
+/// Follows the path from a configuration of the file to the positions `q`. Returns the closure there, or the positions
+/// of the other joints at which the path ends.
 fn reached(robot: &Robot, arm: &DynArm, closure: &[f64], q: &[f64]) -> Result<Vec<f64>, Vec<f64>> {
     let of = |joints: &mut dyn Iterator<Item = usize>| joints.map(|at| closure[at]).collect::<Vec<f64>>();
     let start = of(&mut robot.coordinates());
     continued(robot, arm, [&start, q], of(&mut robot.closed.passive.iter().copied()))
 }
 
-/// A number with three digits.
+/// Writes a number with three digits.
 fn three_digits(x: f64) -> String {
     format!("{x:.2e}").parse().map_or_else(|_| six_digits(x), six_digits)
 }
 
-/// The closure that Newton's method finds from a guess.
+/// Searches a closure by Newton's method, beginning at a guess.
 fn newton(arm: &DynArm, q: &[f64], mut passive: Vec<f64>) -> Option<Vec<f64>> {
     for _ in 0..STEPS {
         let step = arm.closure_step(q, &passive).ok()?;
@@ -116,13 +117,13 @@ fn newton(arm: &DynArm, q: &[f64], mut passive: Vec<f64>) -> Option<Vec<f64>> {
     None
 }
 
-/// Whether an equation of the loops has a larger residual than `allowed`, m or a product of axes.
+/// Returns whether an equation of the loops has a larger residual than `allowed`, m or a scalar product of axes.
 pub(crate) fn are_open(arm: &DynArm, q: &[f64], passive: &[f64], allowed: f64) -> bool {
     arm.closure_step(q, passive).is_ok_and(|step| step.residual.iter().any(|left| left.abs() > allowed))
 }
 
-/// The pivots of the equations in the order of elimination, by differences of the residuals. Their product is the
-/// determinant, which changes its sign where an assembly ends or meets another one.
+/// Returns the pivots of the equations in the order of elimination, from finite differences of the residuals. Their
+/// product is the determinant, which changes its sign where an assembly ends or meets another one.
 fn pivots(robot: &Robot, arm: &DynArm, q: &[f64], passive: &[f64]) -> Vec<f64> {
     const STEP: f64 = 1e-6;
     let order = &robot.closed.elimination;
@@ -135,7 +136,7 @@ fn pivots(robot: &Robot, arm: &DynArm, q: &[f64], passive: &[f64]) -> Vec<f64> {
         let slope = |equation: usize| (ahead.get(equation).zip(behind.get(equation))).map_or(0.0, |(a, b)| a - b);
         order.iter().map(|row| slope(row.equation) / (2.0 * STEP)).collect::<Vec<f64>>()
     };
-    // by columns, in the order of elimination
+    // the matrix is stored by columns, in the order of elimination
     let mut matrix: Vec<Vec<f64>> = order.iter().map(|pivot| column(pivot.passive)).collect();
     for step in 0..matrix.len() {
         let (before, after) = matrix.split_at_mut(step + 1);
@@ -148,8 +149,8 @@ fn pivots(robot: &Robot, arm: &DynArm, q: &[f64], passive: &[f64]) -> Vec<f64> {
     (0..matrix.len()).map(|step| matrix[step][step]).collect()
 }
 
-/// The closure at the end of a straight way of the other joints: each stride begins with the velocities that the loops
-/// allow, and is halved where the closure is not near. If the assembly ends, or the determinant of its equations
+/// Follows the closure along a straight path of the other joints. Each step is predicted by the velocities that the
+/// loops allow, and halved if the closure found is not near. If the assembly ends, or the determinant of its equations
 /// changes its sign, the error has the positions of the other joints there.
 fn continued(
     robot: &Robot,
@@ -167,7 +168,7 @@ fn continued(
     let (mut part, mut stride) = (0.0, whole);
     while part < 1.0 {
         let next = (part + stride).min(1.0);
-        // to the last bit at the end
+        // the end of the path is exactly `to`, without rounding
         let q = if next >= 1.0 { to.to_vec() } else { at(next) };
         let step: Vec<f64> = q.iter().zip(at(part)).map(|(a, b)| a - b).collect();
         let map = arm.loop_map(&at(part), &passive).unwrap_or_default();
@@ -190,7 +191,7 @@ fn continued(
     Ok(passive)
 }
 
-/// Positions without whole turns.
+/// Removes whole turns from the positions of revolute joints.
 fn without_turns(robot: &Robot, passive: Vec<f64>) -> Vec<f64> {
     let of_joint = |(position, &joint): (f64, &usize)| match robot.joints[joint].row.kind {
         JointKind::Revolute => position - TAU * (position / TAU).round(),

@@ -1,5 +1,5 @@
-//! Whether a mass matrix is positive definite. The mass matrix of a robot whose links are bodies is positive definite,
-//! or singular; with `physical: false` a link need not be a body.
+//! Checks whether a mass matrix is positive definite. If all links are physical bodies, it is positive definite or
+//! singular; with `physical: false` a link need not be one.
 
 use rne::{DynArm, Payload};
 use rne_codegen::{Argument, Function};
@@ -7,24 +7,26 @@ use rne_model::Robot;
 
 use crate::render::physics::smallest_pivot;
 
-/// A pivot counts as negative beyond this part of the largest element: rounding does not make such a pivot.
+/// A pivot counts as negative if it is below zero by more than this part of the largest element, which rounding cannot
+/// cause.
 const NEGATIVE: f64 = 1e-9;
 
-/// A pivot counts as zero below this part of the element of the diagonal: fewer than three digits would be left.
+/// A pivot counts as zero if it is below this part of the diagonal element, because fewer than three digits would be
+/// left.
 const SINGULAR: f64 = 1e-13;
 
-/// The mistake in the result of a function that inverts the mass matrix, where this is singular but for rounding.
+/// The message for a result of a function that inverts the mass matrix, if this is singular up to rounding.
 pub(crate) const BUT_FOR_ROUNDING: &str = "the mass matrix is singular at this position, so the numbers are \
                                            rounding errors: no inertia resists a joint, or the base, when others move \
                                            against it; give its link mass and inertia (`rne check` names the link if \
                                            this is so at all positions)";
 
-/// The mistake in the result of a function that inverts the mass matrix, where this is not positive definite.
+/// The message for a result of a function that inverts the mass matrix, if this is not positive definite.
 pub(crate) const NOT_DEFINITE: &str = "the mass matrix is not positive definite at this position: a link is no real \
                                        body (`physical: false`)";
 
-/// Whether the mass matrix that a function inverts is not positive definite at a position: q, and the dependent joints
-/// of closed loops.
+/// Returns whether the mass matrix that a function inverts has a negative direction at a position, given by q and the
+/// dependent joints of closed loops.
 pub(crate) fn is_indefinite(
     robot: &Robot,
     function: Function,
@@ -34,7 +36,7 @@ pub(crate) fn is_indefinite(
     inverted_mass_matrix(&DynArm::from_robot(robot), function, joints, payload).is_some_and(has_negative_direction)
 }
 
-/// Whether the mass matrix that a function inverts is singular at a position, but for rounding.
+/// Returns whether the mass matrix that a function inverts is singular up to rounding at a position.
 pub(crate) fn is_singular(
     robot: &Robot,
     function: Function,
@@ -46,7 +48,7 @@ pub(crate) fn is_singular(
         && !is_indefinite(robot, function, joints, payload)
 }
 
-/// The [smallest pivot](smallest_pivot) of the mass matrix that a function inverts, if it inverts one.
+/// Returns the [smallest pivot](smallest_pivot) of the mass matrix that a function inverts; `None` if it inverts none.
 pub(crate) fn least_resistance(
     arm: &DynArm,
     function: Function,
@@ -56,7 +58,8 @@ pub(crate) fn least_resistance(
     inverted_mass_matrix(arm, function, joints, payload).map(smallest_pivot)
 }
 
-/// The mass matrix that a function inverts, if it inverts one: with the rows of a floating base, or with a payload.
+/// Returns the mass matrix that a function inverts, with the rows of a floating base or with a payload; `None` if it
+/// inverts none.
 fn inverted_mass_matrix(
     arm: &DynArm,
     function: Function,
@@ -75,8 +78,8 @@ fn inverted_mass_matrix(
     function.inverts_mass().then(matrix)?.ok()
 }
 
-/// Whether xᵀ M x < 0 for some x: elimination with the largest pivot of the diagonal, or a rest whose diagonal is zero
-/// and whose other elements are not.
+/// Returns whether xᵀ M x < 0 for some x. Elimination takes the largest pivot of the diagonal each time; if the rest
+/// has a zero diagonal, any other element that is not zero gives such an x.
 fn has_negative_direction(mut m: Vec<Vec<f64>>) -> bool {
     let largest = m.iter().flatten().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     let least = NEGATIVE * largest;
@@ -112,10 +115,10 @@ mod tests {
     fn definiteness_is_that_of_the_eigenvalues() {
         for (matrix, is_negative) in [
             (vec![vec![2.0, 1.0], vec![1.0, 2.0]], false),
-            // eigenvalues 0 and 2: singular
+            // a singular matrix, with the eigenvalues 0 and 2
             (vec![vec![1.0, 1.0], vec![1.0, 1.0]], false),
             (vec![vec![0.0, 0.0], vec![0.0, 3.0]], false),
-            // eigenvalues -1 and 1, 3 and -1, -1
+            // eigenvalues of this matrix and the next two: -1 and 1; 3 and -1; -1
             (vec![vec![0.0, 1.0], vec![1.0, 0.0]], true),
             (vec![vec![1.0, 2.0], vec![2.0, 1.0]], true),
             (vec![vec![-1.0]], true),

@@ -1,12 +1,12 @@
-//! Limits of joints in a robot file, compared with a motion.
+//! Compares a motion with the limits of joints in a robot file.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use rne_model::{Joint, JointKind, Robot, six_digits};
 
-/// A line for each joint whose position, rad or m, or whose velocity lies outside of its limits in the file: of `q`, of
-/// `qd`, and of the dependent joints of closed loops. The numbers are right all the same: limits are no part of the
+/// Returns a line for each joint whose position in `q`, rad or m, or whose velocity in `qd` is outside of its limits in
+/// the file, also for dependent joints of closed loops. Results are right even so, because limits are no part of the
 /// dynamics.
 pub(crate) fn remark(robot: &Robot, [q, qd]: [&[f64]; 2], passive: &[f64]) -> String {
     let mut text = String::new();
@@ -16,7 +16,7 @@ pub(crate) fn remark(robot: &Robot, [q, qd]: [&[f64]; 2], passive: &[f64]) -> St
     let dependent = dependent.map(|(joint, p)| ("the position".to_owned(), (joint, joint.limits), p));
     for (name, (joint, limits), &q) in joints.chain(dependent) {
         let Some((lower, upper)) = limits.position else { continue };
-        // a limit that is given as an expression and a position that is given as its digits
+        // allows for the rounding between a limit that is an expression and a position that is written in digits
         let rounding = 1e-12 * lower.abs().max(upper.abs());
         if lower - rounding <= q && q <= upper + rounding {
             continue;
@@ -43,28 +43,28 @@ pub(crate) fn remark(robot: &Robot, [q, qd]: [&[f64]; 2], passive: &[f64]) -> St
     text
 }
 
-/// A position of a revolute joint that is probably in degrees: it is more than a turn, and the positions of all states
-/// have few digits, as no angles in radians; or it is many turns.
+/// Finds positions of revolute joints that are probably in degrees: a position is more than a full turn, and either all
+/// positions have at most one decimal, which is unusual for radians, or one is many turns.
 #[derive(Default)]
 pub(crate) struct Degrees {
-    /// The first position over a turn, and the name of its joint.
+    /// The first position of more than a turn, and the name of its joint.
     first: Option<(String, f64)>,
     have_digits: bool,
     is_far: bool,
 }
 
-/// No joint turns as often, rad.
+/// Position that no joint reaches, rad.
 const MANY_TURNS: f64 = 5.0 * TAU;
 
 impl Degrees {
-    /// Looks at the positions of each state.
+    /// Examines the positions of each state.
     pub(crate) fn of<'a>(robot: &Robot, states: impl IntoIterator<Item = &'a [f64]>) -> Self {
         let mut degrees = Self::default();
         states.into_iter().for_each(|q| degrees.see(robot, q));
         degrees
     }
 
-    /// The positions of one more state.
+    /// Examines the positions of one more state.
     pub(crate) fn see(&mut self, robot: &Robot, q: &[f64]) {
         let turns = |(joint, _): &(&Joint, &f64)| joint.row.kind == JointKind::Revolute;
         for (joint, &q) in robot.independent_joints().zip(q).filter(turns) {
@@ -76,7 +76,7 @@ impl Degrees {
         }
     }
 
-    /// The remark; `remedy` says how the position is written instead.
+    /// Returns the remark; `remedy` says how to write the position instead.
     pub(crate) fn remark(&self, remedy: impl Fn(f64) -> String) -> String {
         self.first.as_ref().filter(|_| self.is_far || !self.have_digits).map_or_else(String::new, |(joint, q)| {
             let remedy = remedy(*q);
@@ -101,7 +101,7 @@ mod tests {
     fn joints_beyond_their_limits() {
         let robot = Robot::from_yaml(ARM).unwrap_or_else(|report| panic!("{report}"));
         assert_eq!(remark(&robot, [&[0.0, 1e9, 0.25], &[]], &[]), "");
-        // at a limit, as an expression and as digits, and of a function that takes no positions
+        // positions at a limit, as an expression and in digits; and a function that takes no positions
         assert_eq!(remark(&robot, [&[std::f64::consts::FRAC_PI_2, 0.0, 0.5], &[]], &[]), "");
         assert_eq!(remark(&robot, [&[-2.792_526_803_190_927, 0.0, 0.0], &[]], &[]), "");
         assert_eq!(remark(&robot, [&[], &[]], &[]), "");
@@ -113,7 +113,7 @@ mod tests {
         );
     }
 
-    /// A dependent joint of closed loops has limits, too.
+    /// Dependent joints of closed loops are compared with their limits, too.
     #[test]
     fn dependent_joints_beyond_their_limits() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/four_bar.yaml");

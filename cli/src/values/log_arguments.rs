@@ -1,4 +1,4 @@
-//! Options of every command that reads logs.
+//! Options that all commands have that read logs.
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -68,7 +68,7 @@ fn mapping(text: &str) -> Result<Mapping, String> {
     Ok(Mapping { target: target.trim().parse()?, column: column.trim().to_owned() })
 }
 
-/// The mapping of a column of times.
+/// Makes the mapping for a column of times.
 fn of_times(column: &str) -> Mapping {
     Mapping { target: Target::Time, column: column.to_owned() }
 }
@@ -93,19 +93,19 @@ fn hertz(text: &str) -> Result<f64, String> {
 }
 
 impl LogArguments {
-    /// The arguments with another cut-off of the low-pass, Hz.
+    /// Returns the arguments with another cut-off frequency of the low-pass filter, Hz.
     pub(crate) fn with_cutoff(&self, cutoff: f64) -> Self {
         Self { cutoff: Some(cutoff), ..self.clone() }
     }
 
-    /// The arguments with only the rows that have a text in a column.
+    /// Returns the arguments for only those rows that have a text in a column.
     pub(crate) fn with_rows(&self, column: &str, text: &str) -> Self {
         let mut rows = self.clone();
         rows.select.push((column.to_owned(), text.to_owned()));
         rows
     }
 
-    /// Options for the reader of logs.
+    /// Returns the options for the reader of logs.
     pub(crate) fn options(&self) -> Options {
         let angles = match (self.degrees, self.radians) {
             (true, _) => Angles::Degrees,
@@ -131,7 +131,8 @@ impl LogArguments {
     }
 }
 
-/// A log that cannot be read, or a request that it cannot serve; `joints` are those of the arm, as far as it is known.
+/// Makes the error for a log that cannot be read, or that does not have what the command line asks for; `joints` are
+/// those of the arm, if they are known.
 pub(crate) fn failure(error: &LogError, joints: &[String]) -> Failure {
     let text = remedy::log::sentence(error, joints);
     if error.is_of_request() { Failure::usage(text) } else { Failure::input(text) }

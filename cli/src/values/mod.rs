@@ -1,4 +1,4 @@
-//! Values of options and arguments: numbers, states, choices, options of logs.
+//! Values of options and arguments: numbers, states, choices, and options for logs.
 
 pub(crate) mod choice;
 pub(crate) mod closure;

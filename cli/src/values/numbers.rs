@@ -1,10 +1,11 @@
-//! Numbers on the command line and in tables.
+//! Reads and writes numbers on the command line and in tables.
 
 use std::str::FromStr;
 
 pub(crate) use rne_logs::number::rounded;
 
-/// A comma-separated list of finite numbers, as `--q` takes it. Each is written as in a robot file: `pi/2`, `deg(30)`.
+/// A comma-separated list of finite numbers, as `--q` takes it. Each number is written as in a robot file: `pi/2`,
+/// `deg(30)`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct List(pub(crate) Vec<f64>);
 
@@ -20,7 +21,7 @@ impl FromStr for List {
             if element.is_empty() {
                 return Err(format!("number {place} is missing; write numbers with commas between them"));
             }
-            // as the fields of the page take it
+            // `30deg` is accepted, too, as in the input fields of the web page
             let in_degrees = element.strip_suffix("deg").map(|number| format!("deg({number})"));
             rne_model::number(in_degrees.as_deref().unwrap_or(element)).map_err(|mistake| {
                 let hint = "write numbers or expressions with commas between them, such as 0.1,-pi/2";
@@ -35,44 +36,46 @@ impl FromStr for List {
     }
 }
 
-/// Why `text` is not a number: the reason alone, or, where the message about it already says that it is no number, the
-/// message.
+/// Returns `Ok` with the reason why `text` is not a number; or `Err` with the message, if this already says that it is
+/// no number.
 fn refused<'m>(text: &str, message: &'m str) -> Result<&'m str, &'m str> {
     if message.starts_with(&format!("`{text}` is not a number")) { Err(message) } else { Ok(message) }
 }
 
-/// The message about a text that is not a number.
+/// Returns the message about a text that is not a number.
 pub(crate) fn not_a_number(text: &str, message: &str) -> String {
     refused(text, message).map_or_else(str::to_owned, |reason| format!("`{text}` is not a number: {reason}"))
 }
 
-/// Texts of numbers, their decimal points in one column.
+/// Pads texts of numbers so that their decimal points are in one column.
 pub(crate) fn at_the_point(texts: &[String]) -> Vec<String> {
     let places = |text: &String| text.find('.').unwrap_or_else(|| text.find('e').unwrap_or(text.len()));
     let most = texts.iter().map(places).max().unwrap_or(0);
     texts.iter().map(|text| format!("{}{text}", " ".repeat(most - places(text)))).collect()
 }
 
-/// Digits after the decimal point in a worksheet.
+/// Number of decimals in a worksheet.
 const DIGITS: usize = 6;
 
-/// Width of a number of a worksheet.
+/// Width of a number in a worksheet.
 pub(crate) const WIDTH: usize = 12;
 
-/// A number for a worksheet: fixed digits, an exact zero alone, the point always in the same column.
+/// Writes a number for a worksheet: with fixed decimals, an exact zero as `0`, and the decimal point always in the same
+/// column.
 pub(crate) fn fixed(value: f64) -> String {
     if value == 0.0 {
-        // the column of the point is one left of the digits
+        // puts the zero in the column before the decimal point
         return format!("{:>1$}{2}", "0", WIDTH - DIGITS - 1, " ".repeat(DIGITS + 1));
     }
-    // four digits at least, for a hand computes with so many
+    // exponent form, where fixed decimals would show fewer than four digits or be too wide, because a person computes
+    // with four
     if value.abs() < 1e-3 || value.abs() >= 1e5 {
         return format!("{value:>WIDTH$.4e}");
     }
     format!("{value:>WIDTH$.DIGITS$}")
 }
 
-/// A value with its deviation, both with the digits that the deviation leaves: `0.454 ± 0.011`.
+/// Writes a value with its deviation, with as many digits as the deviation allows: `0.454 ± 0.011`.
 pub(crate) fn with_deviation(value: f64, deviation: f64) -> String {
     if !(value.is_finite() && deviation.is_finite() && deviation > 0.0) {
         return "not known".to_owned();
@@ -80,12 +83,12 @@ pub(crate) fn with_deviation(value: f64, deviation: f64) -> String {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // it saturates
     let digits = (1.0 - deviation.log10().floor()).clamp(0.0, 12.0) as usize;
     let value = format!("{value:.digits$}");
-    // no sign before a zero
+    // removes the minus sign of a zero
     let value = if value.trim_start_matches(['-', '0', '.']).is_empty() { value.replace('-', "") } else { value };
     format!("{value} ± {deviation:.digits$}")
 }
 
-/// A parser of an argument: a number that `is_fine`, or else the message `allowed`.
+/// Makes a parser for an argument: a number for which `is_fine` is true; for others the error is `allowed`.
 pub(crate) fn checked<T: FromStr>(
     is_fine: fn(&T) -> bool,
     allowed: &'static str,
@@ -93,12 +96,12 @@ pub(crate) fn checked<T: FromStr>(
     move |text| text.parse().ok().filter(is_fine).ok_or_else(|| allowed.to_owned())
 }
 
-/// A parser of a finite number above 0.
+/// Makes a parser for a finite number above 0.
 pub(crate) fn above_zero(allowed: &'static str) -> impl Fn(&str) -> Result<f64, String> + Clone {
     checked(|number: &f64| number.is_finite() && *number > 0.0, allowed)
 }
 
-/// Reads the duration of a step.
+/// Makes a parser for the duration of a step.
 pub(crate) fn duration() -> impl Fn(&str) -> Result<List, String> + Clone {
     let is_fine = |List(numbers): &List| matches!(numbers[..], [seconds] if seconds > 0.0);
     checked(is_fine, "write a number of seconds above 0, such as 0.01")

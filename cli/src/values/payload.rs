@@ -1,15 +1,15 @@
-//! A payload on the command line.
+//! Reads a payload from the command line.
 
 use rne::Payload;
 
 use crate::outcome::Failure;
 use crate::values::numbers::List;
 
-/// The numbers of a payload in words.
+/// The numbers of a payload in words, for messages.
 pub(super) const PAYLOAD: &str =
     "mass, centre of mass and inertia about it: m,cx,cy,cz,xx,yy,zz,xy,xz,yz; or m,cx,cy,cz of a point";
 
-/// A payload from its list: mass and centre of mass, and inertia where it is given.
+/// Makes a payload from a list: mass and centre of mass, and the inertia if the list has it.
 pub(crate) fn payload(List(values): &List) -> Result<Payload<f64>, Failure> {
     if values.len() != 4 && values.len() != 10 {
         let found = values.len();

@@ -1,4 +1,4 @@
-//! Random numbers and states that are the same in each run.
+//! Makes random numbers and states, the same in each run.
 
 use rne::Pose;
 use rne::testing::{JOINTS, Random};
@@ -9,12 +9,12 @@ use rne_model::Robot;
 
 use crate::values::state::State;
 
-/// Numbers that a number type holds.
+/// Makes a generator of numbers that a number type represents exactly.
 pub(crate) const fn of(precision: Precision) -> Random {
     Random::new(0x5EED, rounding(precision))
 }
 
-/// The nearest number of a number type.
+/// Returns a function that rounds to the nearest number of a number type.
 #[allow(clippy::cast_possible_truncation)] // rounded
 pub(crate) const fn rounding(precision: Precision) -> fn(f64) -> f64 {
     match precision {
@@ -23,11 +23,11 @@ pub(crate) const fn rounding(precision: Precision) -> fn(f64) -> f64 {
     }
 }
 
-/// A state of an arm, and what acts on it: rad, m, kg, N.
+/// Makes a random state of an arm, with wrenches and a payload; in rad, m, kg, N.
 pub(crate) fn state(random: &Random, robot: &Robot) -> State {
     let dof = robot.dof();
     let [mut q, qd, qdd, tau] = JOINTS.map(|limit| (0..dof).map(|_| random.number(limit)).collect::<Vec<f64>>());
-    // loops are closed in few positions
+    // a random q would not close the loops, so one of the known closures is used
     let mut passive = Vec::new();
     let closures = &robot.closed.closures;
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a place in a list
@@ -38,16 +38,16 @@ pub(crate) fn state(random: &Random, robot: &Robot) -> State {
     }
     let (wrench, payload) = (Some(random.wrench()), Some(random.payload()));
     let base = random.base();
-    // without named tips, the wrench at the tip
+    // without named tips, the only wrench is that at the tip
     let wrenches = match robot.tips.len() {
         0 => wrench.into_iter().collect(),
         tips => (0..tips).map(|_| random.wrench()).collect(),
     };
-    // hundredths, which single precision rounds: the code and the runtime agree for a rotation
+    // rounded to hundredths and then to single precision, the rotation is the same for the code and for the runtime
     let rounded = BASE_ROTATION.map(|x| (f64::from(x) * 100.0).round() / 100.0);
     let base_rotation = [0, 1, 2].map(|row| [0, 1, 2].map(|column| rounded[3 * row + column]));
     let pose = Pose { rotation: base_rotation, translation: base.velocity };
-    // last, so that the other numbers stay what they were
+    // drawn last, so that earlier numbers do not change
     let multipliers = (0..dof).map(|_| random.number(1.0)).collect();
     let step = random.number(0.1);
     let function = Function::InverseDynamics;

@@ -1,4 +1,4 @@
-//! Arguments of a function, complete and of the right lengths.
+//! The arguments of a function, complete and with the right lengths.
 
 use clap::Args;
 use rne::{BaseMotion, BaseTwist, DynArm, Inputs, Payload, Pose, Quaternion, Wrench, WrongLength};
@@ -70,7 +70,7 @@ pub(crate) struct Given {
 }
 
 impl Given {
-    /// The lists with q, q̇ and q̈ of a state, where no positions are given.
+    /// Uses q, q̇ and q̈ of a state if no positions are given.
     pub(crate) fn or_state(mut self, state: [Option<List>; 3]) -> Self {
         if self.q.is_none() {
             for (own, of_state) in [&mut self.q, &mut self.qd, &mut self.qdd].into_iter().zip(state) {
@@ -80,8 +80,8 @@ impl Given {
         self
     }
 
-    /// The lists with zeros for velocities and accelerations that a function takes and that are not given, of the
-    /// joints, of a base that moves and of its pose; with their options.
+    /// Sets velocities and accelerations that a function takes and that are not given to zero: those of the joints, of
+    /// a moving base, and its pose. Returns the lists, and the options that were assumed.
     pub(crate) fn at_rest(mut self, function: Function, dof: usize) -> (Self, Vec<&'static str>) {
         use Argument::{Accelerations, Base, BasePose, BaseTwist, BaseVelocity, Rates};
         let mut assumed = Vec::new();
@@ -105,7 +105,7 @@ impl Given {
     }
 }
 
-/// The arguments of a function. What it does not take is empty, zero, or at rest, or is not asked for.
+/// The arguments of a function. Those that it does not take are empty, zero or `None`.
 #[derive(Clone)]
 pub(crate) struct State {
     pub(crate) function: Function,
@@ -115,22 +115,22 @@ pub(crate) struct State {
     pub(crate) qd: Vec<f64>,
     pub(crate) qdd: Vec<f64>,
     pub(crate) tau: Vec<f64>,
-    /// The duration of a step.
+    /// Duration of a step of an integrator, s.
     pub(crate) step: f64,
     pub(crate) multipliers: Vec<f64>,
     pub(crate) wrench: Option<Wrench<f64>>,
-    /// One for each tip.
+    /// A wrench for each tip.
     pub(crate) wrenches: Vec<Wrench<f64>>,
     pub(crate) payload: Option<Payload<f64>>,
     pub(crate) base: BaseMotion<f64>,
     /// The pose of frame 0 in the world.
     pub(crate) pose: Pose<f64>,
-    /// Its columns are the axes of frame 0 in the world.
+    /// Rotation matrix of the base; its columns are the axes of frame 0 in the world.
     pub(crate) base_rotation: [[f64; 3]; 3],
 }
 
 impl State {
-    /// Checks that the function's arguments, all of them and no others, are there.
+    /// Checks that all arguments of the function are given, and no others, and completes them.
     pub(crate) fn new(function: Function, given: &Given, robot: &Robot) -> Result<Self, Failure> {
         use Argument::{Accelerations, Positions, Rates, Torques};
         let joints: Vec<&str> = robot.independent_joints().map(|joint| joint.name.as_str()).collect();
@@ -160,7 +160,7 @@ impl State {
         let base = motion_of_base(function, given, robot)?;
         let rows = "nine numbers, row by row; its columns are the axes of frame 0 in the world";
         let base_rotation = match given.base_rotation.as_ref() {
-            // the world has the axes of frame 0
+            // the default is a world with the axes of frame 0
             None => IDENTITY,
             list => argument(function, "--base-rotation", list, Argument::BaseRotation, 9, rows)?
                 .map_or(Ok(IDENTITY), |list| rotation("--base-rotation", &list))?,
@@ -185,7 +185,7 @@ impl State {
         })
     }
 
-    /// The numbers of an argument that says how the joints move and what drives them.
+    /// Returns the numbers of an argument that has an element for each joint; `None` for other arguments.
     pub(crate) fn of_joints(&self, argument: Argument) -> Option<&[f64]> {
         match argument {
             Argument::Positions => Some(&self.q),
@@ -196,17 +196,17 @@ impl State {
         }
     }
 
-    /// The velocity of a floating base.
+    /// Returns the velocity of a floating base.
     pub(crate) const fn twist(&self) -> BaseTwist<f64> {
         BaseTwist { linear: self.base.velocity, angular: self.base.omega }
     }
 
-    /// The arguments for another function.
+    /// Returns the same arguments for another function.
     pub(crate) fn of(&self, function: Function) -> Self {
         Self { function, ..self.clone() }
     }
 
-    /// The function's result, in the order of its layout.
+    /// Computes the result of the function, in the order of its layout.
     pub(crate) fn numbers(&self, arm: &DynArm) -> Result<Vec<f64>, WrongLength> {
         let Self { q, passive, qd, qdd, tau, multipliers, wrenches, base, pose, base_rotation, step, .. } = self;
         let (sin, cos): (Vec<f64>, Vec<f64>) = q.iter().map(|&q| rne::Scalar::sin_cos(q)).unzip();
@@ -233,8 +233,8 @@ impl State {
     }
 }
 
-/// Positions of the dependent joints of closed loops: those that close the loops, from the given ones. A Newton step
-/// takes the given ones as they are.
+/// Returns positions of the dependent joints that close the loops, beginning at the given positions. For a Newton step
+/// the given positions are used without change.
 fn passive(function: Function, list: Option<&List>, q: Option<&[f64]>, robot: &Robot) -> Result<Vec<f64>, Failure> {
     if !function.takes(Argument::Passive) {
         let refused = list.map(|_| not_taken(function, "--passive", Argument::Passive));
@@ -253,7 +253,7 @@ fn passive(function: Function, list: Option<&List>, q: Option<&[f64]>, robot: &R
     }
 }
 
-/// The motion of the base, at rest where it is not given, and gravity.
+/// Returns the motion of the base, which is at rest where it is not given, and gravity.
 fn motion_of_base(function: Function, given: &Given, robot: &Robot) -> Result<BaseMotion<f64>, Failure> {
     let axes = "three numbers x,y,z, in the axes of frame 0";
     let of_base = |name, list: &Option<List>| {
@@ -271,16 +271,16 @@ fn motion_of_base(function: Function, given: &Given, robot: &Robot) -> Result<Ba
         omega_dot: of_base("--base-omega-dot", &given.base_omega_dot)?,
         velocity: of_base("--base-velocity", &given.base_velocity)?,
         acceleration: of_base("--base-acceleration", &given.base_acceleration)?,
-        // a base that only moves stays under the gravity of the file
+        // without `--gravity`, a moving base has the gravity of the file
         gravity: if given.gravity.is_some() { of_base("--gravity", &given.gravity)? } else { robot.gravity },
     })
 }
 
-/// The numbers of a pose in words.
+/// The numbers of a pose in words, for messages.
 const POSE: &str = "position and rotation of frame 0 in the world: x,y,z,roll,pitch,yaw; or the rows of the rotation \
                     matrix, then x,y,z";
 
-/// A pose from its list: a position with three angles, as in the robot file, or with a rotation matrix before it.
+/// Makes a pose from a list: a position and three angles, as in the robot file; or a rotation matrix and a position.
 fn pose_of_base(function: Function, given: Option<&List>) -> Result<Pose<f64>, Failure> {
     let Some(List(values)) = given else {
         return argument(function, "--base-pose", None, Argument::BasePose, 6, POSE).map(|_| Pose::identity());
@@ -298,10 +298,10 @@ fn pose_of_base(function: Function, given: Option<&List>) -> Result<Pose<f64>, F
     Ok(Pose { rotation: turn.rotation(), translation: triple(values, 0) })
 }
 
-/// The conditions for a rotation.
+/// The conditions for a rotation matrix in words, for messages.
 const ROTATION: &str = "its three rows must have the length 1, be at right angles to each other, and be right-handed";
 
-/// The rotation of these nine numbers, row by row.
+/// Makes a rotation matrix from nine numbers, row by row.
 fn rotation(name: &str, numbers: &[f64]) -> Result<[[f64; 3]; 3], Failure> {
     let rotation = [0, 3, 6].map(|row| triple(numbers, row));
     if (Pose { rotation, translation: [0.0; 3] }).is_rigid() {
@@ -314,10 +314,10 @@ pub(super) fn triple(list: &[f64], from: usize) -> [f64; 3] {
     [0, 1, 2].map(|index| list.get(from + index).copied().unwrap_or_default())
 }
 
-/// The most functions that a message names.
+/// Largest number of functions that a message names.
 const MOST_NAMED: usize = 6;
 
-/// One argument of a function; `expected` numbers, in words `what`.
+/// Returns the numbers of an argument of a function; it must have `expected` numbers, which `what` describes.
 fn argument(
     function: Function,
     name: &str,
@@ -338,11 +338,11 @@ fn argument(
     }
 }
 
-/// The option of `rne eval` for an argument of a function.
+/// Returns the options of `rne eval` for an argument of a function.
 const fn option(argument: Argument) -> &'static str {
     match argument {
         Argument::Positions => "--q",
-        // those of the positions
+        // sines and cosines are computed from the positions
         Argument::Sines | Argument::Cosines => "",
         Argument::Rates => "--qd",
         Argument::Accelerations => "--qdd",
@@ -361,16 +361,16 @@ const fn option(argument: Argument) -> &'static str {
     }
 }
 
-/// The options of `rne eval` for a function, in the order of its arguments.
+/// Returns the options of `rne eval` for a function, in the order of its arguments.
 pub(crate) fn options(function: Function) -> String {
     let options = function.arguments().iter().map(|argument| option(*argument)).filter(|option| !option.is_empty());
     options.collect::<Vec<_>>().join(" ")
 }
 
-/// The error of an option that a function does not take, with the functions that do.
+/// Makes the error for an option that a function does not take; it names functions that do.
 pub(super) fn not_taken(function: Function, name: &str, kind: Argument) -> Failure {
-    // --payload chooses the others
-    // no robot has functions of closed loops and others
+    // variants with a payload are not named, because `--payload` chooses them; and functions of closed loops are for
+    // other robots than functions without loops
     let is_named = |other: &Function| {
         other.arguments().iter().any(|argument| option(*argument).split(' ').any(|option| option == name))
             && other.capability() != Capability::PayloadDynamics

@@ -1,4 +1,4 @@
-//! Wrenches at tips on the command line.
+//! Reads wrenches at tips from the command line.
 
 use std::str::FromStr;
 
@@ -10,7 +10,7 @@ use crate::outcome::Failure;
 use crate::values::numbers::List;
 use crate::values::state::{not_taken, triple};
 
-/// The wrench at a tip: `left=0,0,-5,0,0,0`.
+/// A tip and the wrench that acts on it: `left=0,0,-5,0,0,0`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct TipWrench {
     tip: String,
@@ -30,7 +30,7 @@ impl FromStr for TipWrench {
     }
 }
 
-/// The wrench at each tip of a robot, for a function that takes them: that of the command line, or zero.
+/// Returns the wrench at each tip of a robot for a function that takes them: that of the command line, or zero.
 pub(super) fn tip_wrenches(
     function: Function,
     given: &[TipWrench],

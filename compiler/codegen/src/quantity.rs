@@ -325,8 +325,8 @@ quantities! {
     TipAcceleration:            "acc",       Vector,    8, false, "", "",
         "acceleration of the tip where joints do not accelerate";
     ComPosition:                "pos",       Vector,    8, true,  "", "", "centre of mass in frame 0";
-    Kinetic:                    "kinetic",   Alone,     8, false, "", "", "kinetic energy";
-    Potential:                  "potential", Alone,     8, false, "", "", "potential energy";
+    Kinetic:                    "kinetic",   Alone,     8, false, "", "J", "kinetic energy";
+    Potential:                  "potential", Alone,     8, false, "", "J", "potential energy";
     CoriolisElement:            "cor",       Column,    8, false, "", "", "element (i, j) of the Coriolis matrix";
     RegressorElement:           "y",         Parameter, 8, false, "", "", "torque i per parameter of link j";
     LowerFactor:                "low",       Column,    8, true,  "", "", "element (i, j) of L, M = L D Lᵀ";

@@ -1,4 +1,4 @@
-//! Constant angles: their sine and cosine are computed once, here, and right angles are exact.
+//! Constant angles: sine and cosine are computed only here, when an angle is made, and right angles are exact.
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -37,8 +37,8 @@ impl QuarterTurns {
 
 /// A constant angle with its sine and cosine, all in the scalar `S` (`f64` or `f32`).
 ///
-/// Everything that reads the table takes sine and cosine from here, so the generated code and the runtime use the
-/// same bits on every host and target.
+/// All readers of a table use this sine and cosine, so generated code and the runtime have the same bits on every host
+/// and target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Angle<S = f64> {
     /// The angle, rad.

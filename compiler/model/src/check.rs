@@ -20,7 +20,8 @@ pub struct Checked {
     pub identifiers: Result<Vec<JointIdentifier>, Report>,
 }
 
-/// Reads robot files: a name for the messages, what to read otherwise than the file says, and then the file.
+/// A reader of robot files. It gets a name for messages, then options such as other values of parameters, and then the
+/// file.
 ///
 /// ```
 /// use rne_model::{Entry, Formula, Reader};
@@ -118,7 +119,7 @@ impl<'a> Reader<'a> {
         self
     }
 
-    /// Reads and checks a robot file: its text, or bytes that may not be text.
+    /// Reads and checks a robot file, given as text or as bytes that may not be text.
     ///
     /// # Errors
     ///

@@ -5,7 +5,7 @@
 pub struct Contact {
     /// The tip, as an index into the list `tips`.
     pub tip: usize,
-    /// The part of the tip that is held.
+    /// Which motion of the tip is held.
     pub kind: ContactKind,
 }
 

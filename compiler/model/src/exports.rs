@@ -1,4 +1,4 @@
-//! The public names that need `std`: robots, their files, readers and errors.
+//! The public names that exist only with the feature `std`: robots, their files, readers and errors.
 
 pub use crate::check::{Checked, Reader};
 pub use crate::loops::closed_loop::{ClosedLoop, ClosedLoops, Cut, Pivot};

@@ -1,4 +1,4 @@
-//! The validated robot: what a robot file says, with every expression evaluated.
+//! The validated robot: all data of a robot file, with every expression evaluated.
 
 use crate::{
     Angle, Bodies, ClosedLoops, Contact, Convention, Coupling, Drive, FixedFrame, FloatingBase, Frame, FrameId,
@@ -54,7 +54,7 @@ pub struct Robot {
     pub rotors: bool,
 }
 
-/// One joint of a [`Robot`], with the link it moves.
+/// One joint of a [`Robot`], with the link that the joint moves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
     /// The name of the joint; `joint1`, `joint2`, … when the file gives none.
@@ -64,9 +64,9 @@ pub struct Joint {
     /// The link that carries the joint, and where on it the row of the joint begins; `None` if it begins at the link
     /// frame of the row before. `gamma` and `b` of a file are such a placement, Rz(gamma) Tz(b).
     pub branch: Option<FixedFrame>,
-    /// The inertia as the file writes it, and the point it refers to.
+    /// The inertia of the link as the file writes it, and the point about which it is.
     pub written_inertia: (Inertia, InertiaReference),
-    /// Position, velocity and effort limits.
+    /// Position, velocity and effort limits of the joint.
     pub limits: Limits,
     /// How the joint follows others; such a joint is no coordinate of the robot. `None` for an independent joint.
     pub coupling: Option<Coupling>,

@@ -100,8 +100,8 @@ impl<S: Copy> Inertia<S> {
     }
 }
 
-/// The inertial parameters of a link in the order in which regressors count them: mass, first moments, inertia about
-/// the origin of the link frame.
+/// The names of the inertial parameters of a link, in the order of regressors: mass, first moments, inertia about the
+/// origin of the link frame.
 pub const INERTIAL_PARAMETERS: [&str; 10] = ["m", "mcx", "mcy", "mcz", "Jxx", "Jxy", "Jxz", "Jyy", "Jyz", "Jzz"];
 
 /// The number of inertial parameters of a link: the mass, three first moments, six numbers of the inertia.
@@ -137,7 +137,7 @@ impl Link {
     }
 }
 
-/// One joint with the link it moves.
+/// One joint of a table, with the link that the joint moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row<S = f64> {
     /// Revolute or prismatic.

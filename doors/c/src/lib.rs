@@ -1,8 +1,8 @@
-//! The C library of `rne`: an arm from a robot file, a URDF or the box, and its functions over plain arrays.
+//! The C library of `rne`: an arm from a robot file, a URDF or the shipped robots, and its functions over plain arrays.
 //!
-//! What C sees is `include/rne.h`, which is written of the module [`border`]; `docs/firmware/c-library.md` shows how it
-//! is used. Everything that needs `unsafe` stands in that module: it turns pointers into slices and texts, and has no
-//! logic. The rest is safe Rust.
+//! C programs include `include/rne.h`, which is generated from the module [`border`]; `docs/firmware/c-library.md`
+//! shows how it is used. All code that needs `unsafe` is in that module: it turns pointers into slices and texts, and
+//! has no logic. The rest is safe Rust.
 #![warn(missing_debug_implementations)]
 
 pub mod border;

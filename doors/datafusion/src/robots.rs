@@ -80,7 +80,7 @@ impl Robots {
     /// `name`.
     ///
     /// # Errors
-    /// When the file cannot be read, or everything that is wrong with it.
+    /// When the file cannot be read, or with all errors in it.
     pub fn with_file(self, path: impl AsRef<Path>) -> Result<Self> {
         // read once: if a file is replaced meanwhile, the hash and the torques must still be those of one file
         let files = RobotFiles::read(path).map_err(external)?;
@@ -92,7 +92,7 @@ impl Robots {
     /// Adds the robot that the text of a robot file describes, under the name that the text has in its key `name`.
     ///
     /// # Errors
-    /// Everything that is wrong with it.
+    /// With all errors in it.
     pub fn with_yaml(self, text: &str) -> Result<Self> {
         let arm = CompiledArm::from_yaml(text).map_err(external)?;
         let name = arm.robot().name.clone();

@@ -64,7 +64,7 @@ impl OfRows {
 pub(crate) struct Rows {
     of: &'static OfRows,
     pub(crate) robot: Robot,
-    /// The names of these columns.
+    /// The names of the columns of the call, for messages.
     pub(crate) columns: Vec<String>,
 }
 

@@ -1,8 +1,8 @@
-//! The border to JavaScript: a text goes in byte by byte, an answer comes out four bytes at a time.
+//! The interface to JavaScript: a text is passed byte by byte, and the answer is returned four bytes at a time.
 //!
 //! A page calls [`clear`], then [`push`] for every byte of the text in UTF-8, then [`compile`], which returns how many
-//! bytes the answer has, then [`word`] for each four of them. Only integers cross: no address, no memory that both
-//! sides write, and so nothing that the compiler of Rust could not check.
+//! bytes the answer has, then [`word`] for each four of them. Only integers are passed, no addresses and no memory to
+//! which both sides write. So the compiler of Rust can check everything.
 //!
 //! `unsafe` is here the attribute alone that keeps the names of the exports, and it is sound: what it asks for is that
 //! no other symbol of the module has these names. They start with `rne_`, and the linker refuses two of one name.
@@ -11,7 +11,7 @@
 use std::cell::RefCell;
 
 thread_local! {
-    /// The text that is being handed in, and then the answer.
+    /// The text that is being passed, and then the answer.
     static BYTES: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
 }
 

@@ -106,7 +106,7 @@ impl Arm {
                 Some(plan) => CompiledArm::with_plan(&origin.robot, plan),
                 None => CompiledArm::from_yaml(&origin.robot),
             });
-            // told again with the name of the file
+            // reported again, with the name of the file
             match arm {
                 Ok(arm) => arm,
                 Err(error) => {

@@ -1,4 +1,4 @@
-//! From a message with joint states to torques.
+//! Computes torques from messages with joint states.
 //!
 //! ```text
 //! gravity torques    g(q), what the actuators deliver to hold the arm still
@@ -40,7 +40,7 @@ impl Default for Settings {
 /// message, base to tip. N m, or N for a prismatic joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Torques {
-    /// The torques of the actuators that hold the arm still in this position.
+    /// The torques of the actuators that hold the arm at rest in this position.
     pub gravity: JointState,
     /// The torques of the environment on the arm, positive along the joint.
     pub external: Result<JointState, Lacking>,

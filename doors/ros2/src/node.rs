@@ -53,7 +53,7 @@ struct Topics {
     diagnostics: Publisher<DiagnosticArray>,
 }
 
-/// Runs the node until `is_ended`; `started` is called with the topics when all of them are there.
+/// Runs the node until `is_ended`; `started` is called with the topics when all of them have been created.
 ///
 /// # Errors
 /// When a name is not a valid name of a ROS topic or node. When the participant, its topics or its sockets cannot be

@@ -2,7 +2,7 @@
 
 use rne_model::Motor;
 
-/// The friction of a joint as a URDF has it.
+/// The friction of a joint in the terms of a URDF.
 pub(super) struct Friction {
     /// Viscous friction at the joint, N m s/rad or N s/m.
     pub(super) damping: f64,

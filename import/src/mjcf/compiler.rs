@@ -29,11 +29,11 @@ pub(super) struct Compiler {
 /// Which bodies get their inertia from their geoms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum FromGeoms {
-    /// No body.
+    /// No body: only `inertial` counts.
     Never,
-    /// Bodies without `inertial`.
+    /// Bodies without an element `inertial`.
     Missing,
-    /// All bodies with geoms.
+    /// All bodies that have geoms.
     Always,
 }
 

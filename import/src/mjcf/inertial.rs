@@ -39,8 +39,8 @@ pub(super) fn read(
     let inertial = match (of_geoms, written.first()) {
         (Some(inertial), _) => inertial,
         (None, Some(content)) => explicit(settings.plain(content.element), name, content)?,
-        // such a body has only the least mass; MuJoCo puts it at the coordinates of the body's `pos`, but in the frame
-        // of the body itself
+        // a body without `inertial` and geoms has only the least mass; MuJoCo puts it at the coordinates of the body's
+        // `pos`, but in the frame of the body itself
         (None, None) => {
             let (com, rpy) = placed(place);
             Inertial { com, rpy, ..Inertial::default() }

@@ -48,14 +48,14 @@ pub(crate) struct Scanned {
     pub(crate) unknown: Vec<String>,
 }
 
-/// The values of a link, a joint, a coupling or a loop.
+/// The values of one link, joint, coupling or loop.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Seen {
     /// The place of the tag in the text.
     pub(crate) span: Range<usize>,
     /// The relevant elements inside it, at any depth, with the places of their tags.
     pub(crate) elements: BTreeMap<&'static str, Range<usize>>,
-    /// The values of their attributes, by element and attribute.
+    /// The values of attributes, by the names of the element and the attribute.
     values: HashMap<(&'static str, &'static str), String>,
     /// Unknown names inside it, as indices into [`Scanned::unknown`].
     pub(crate) unknown: BTreeSet<usize>,

@@ -10,9 +10,9 @@ capability! {
 ///
 /// `q`, `qd`, `qdd` and `tau` have `DOF` elements, of the joints that move by themselves. `passive` has the positions
 /// of the `PASSIVE` dependent joints, in the order of the robot file. They must close the loops: [`close`](Self::close)
-/// finds them, and its residual says how well. Where they do not close the loops, the other functions return numbers
-/// that mean nothing. In a singular position, where the dependent joints are not determined, the numbers are not
-/// finite.
+/// finds them, and its residual shows how accurately. If they do not close the loops, the results of the other
+/// functions are meaningless. In a singular position, where the dependent joints are not determined, the numbers are
+/// not finite.
 ///
 /// `EQUATIONS` is the number of equations of all loops: 5 of a revolute cut, 3 of a spherical one, 4 of a universal
 /// one, 6 of a weld. The equations are solved in the order that the robot file determines, without a search for pivots;

@@ -32,8 +32,8 @@ capability! {
 ///
 /// The tips and their wrenches are those of [`TipWrenches`]. `NV` = `DOF` + 6 velocities: three linear ones of the
 /// base, three angular ones, all in axes of frame 0, then those of the joints. Accelerations are (a - g, ω̇, q̈) with
-/// the classical acceleration a of the origin of frame 0; forces are (force, moment about this origin, τ). So neither
-/// gravity nor the orientation of the base enters.
+/// the classical acceleration a of the origin of frame 0; forces are (force, moment about this origin, τ). So they
+/// depend neither on gravity nor on the orientation of the base.
 #[diagnostic::on_unimplemented(
     note = "`FloatingBase` belongs into the same `derive`: `#[derive(FloatingBase)]`, and with batches \
             `#[derive(FloatingBase, BatchFloatingInverseDynamics)]`"
@@ -42,8 +42,8 @@ pub trait FloatingBase<DOF, NV, TIPS> {
     /// Torques, and the wrench that must act on the base, when frame 0 moves as `base` says.
     ///
     /// `base` is what an inertial measurement unit reads: ω, ω̇, and the acceleration of the origin of frame 0 less
-    /// gravity, in axes of frame 0. Only the difference `acceleration` - `gravity` counts. No orientation and no linear
-    /// velocity enter.
+    /// gravity, in axes of frame 0. Only the difference `acceleration` - `gravity` counts. Orientation and linear
+    /// velocity of the base have no effect.
     fn inverse_dynamics_of_floating_base(q: joints, qd: joints, qdd: joints, base: motion, wrenches: wrenches)
         -> FloatingTorques<DOF> = |robot| robot.torques_and_wrench([q, qd, qdd], base, AtTip::Wrenches(wrenches));
 
@@ -134,26 +134,6 @@ pub trait CentroidalMomentum<DOF, NV> {
         let [q, qd] = [q, qd].map(|values| robot.of_joints(values));
         robot.mechanism.centroidal_momentum(q.as_ref(), qd.as_ref(), twist)
     };
-}
-}
-
-capability! {
-/// Energy of a robot with a floating base.
-pub trait FloatingEnergy<DOF> {
-    /// Kinetic energy ½ vᵀ M v, J, with the [mass matrix](crate::FloatingBase::floating_mass_matrix) M; rotors included
-    /// in an arm with its rotors.
-    ///
-    /// `twist`: velocity of the origin of frame 0, m/s, and angular velocity of the base, rad/s, in axes of frame 0.
-    fn floating_kinetic_energy(q: joints, qd: joints, twist: twist) -> Number =
-        |robot| robot.kinetic(q, qd, Some(twist));
-
-    /// Potential energy -Σ m g·c, J, with c from the origin of the world to each centre of mass: zero where all masses
-    /// are there.
-    ///
-    /// `pose` of frame 0 in the world, whose axes are those in which the robot file has gravity. Where `pose` is no
-    /// rotation and no translation, this is the [potential energy](crate::Energy::potential_energy).
-    fn floating_potential_energy(q: joints, pose: pose) -> Number =
-        |robot| robot.mechanism.floating_potential(robot.of_joints(q).as_ref(), pose);
 }
 }
 

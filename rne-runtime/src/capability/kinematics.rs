@@ -68,16 +68,16 @@ pub trait AtFrame<const DOF: usize, const FRAME: usize> {
     fn wrench_torques_at_frame<T: Scalar>(&self, q: &[T; DOF], wrench: &Wrench<T>) -> [T; DOF];
 
     /// The rate J̇ of the Jacobian of the frame, as
-    /// [`JacobianDerivatives::jacobian_rate`](crate::JacobianDerivatives::jacobian_rate). Without code of its own, by
-    /// dual numbers through the Jacobian of the frame.
+    /// [`JacobianDerivatives::jacobian_rate`](crate::JacobianDerivatives::jacobian_rate). The default implementation
+    /// uses dual numbers through the Jacobian of the frame.
     #[must_use]
     fn jacobian_rate_at_frame<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> [[T; DOF]; 6] {
         rate_of_rows(q, qd, |q| self.jacobian_at_frame(q))
     }
 
     /// ∂J/∂q of the frame, as
-    /// [`JacobianDerivatives::jacobian_derivatives`](crate::JacobianDerivatives::jacobian_derivatives). Without code of
-    /// its own, by dual numbers.
+    /// [`JacobianDerivatives::jacobian_derivatives`](crate::JacobianDerivatives::jacobian_derivatives). The default
+    /// implementation uses dual numbers.
     #[must_use]
     fn jacobian_derivatives_at_frame<T: Scalar>(&self, q: &[T; DOF]) -> [[[T; DOF]; DOF]; 6] {
         derivatives_of_rows(q, |q| self.jacobian_at_frame(q))

@@ -93,6 +93,26 @@ pub trait Energy<DOF> {
 }
 
 capability! {
+/// Energy of a robot with a floating base.
+pub trait FloatingEnergy<DOF> {
+    /// Kinetic energy ½ vᵀ M v, J, with the [mass matrix](crate::FloatingBase::floating_mass_matrix) M; rotors included
+    /// in an arm with its rotors.
+    ///
+    /// `twist`: velocity of the origin of frame 0, m/s, and angular velocity of the base, rad/s, in axes of frame 0.
+    fn floating_kinetic_energy(q: joints, qd: joints, twist: twist) -> Number =
+        |robot| robot.kinetic(q, qd, Some(twist));
+
+    /// Potential energy -Σ m g·c, J, with c from the origin of the world to each centre of mass: zero if all masses are
+    /// at this origin.
+    ///
+    /// `pose` of frame 0 in the world, whose axes are those in which the robot file has gravity. Where `pose` is no
+    /// rotation and no translation, this is the [potential energy](crate::Energy::potential_energy).
+    fn floating_potential_energy(q: joints, pose: pose) -> Number =
+        |robot| robot.mechanism.floating_potential(robot.of_joints(q).as_ref(), pose);
+}
+}
+
+capability! {
 /// The centre of mass of the links, all together, in the world; the robot's `base` places frame 0 there. Rotors are not
 /// included. An arm without mass gives numbers that are not finite.
 pub trait CentreOfMass<DOF> {

@@ -33,8 +33,8 @@ pub trait InverseDynamics<DOF> {
         |robot| robot.torques([q, qd, qdd], AtTip::Payload(payload));
 
     /// Torques for a caller who has the sines and cosines of the joint positions already, from a CORDIC or a kinematics
-    /// pass: `sin[i]` and `cos[i]` are those of `q[i]` of a revolute joint, without the constant part of its angle;
-    /// those of a prismatic joint are not used, as `q[i]` of a revolute joint is not.
+    /// pass: `sin[i]` and `cos[i]` are those of `q[i]` of a revolute joint, without the constant part of its angle.
+    /// Sines and cosines of prismatic joints and `q[i]` of revolute joints are not used.
     fn inverse_dynamics_from_sin_cos(sin: joints, cos: joints, q: joints, qd: joints, qdd: joints) -> Vector =
         |robot| robot.torques_from_turns([sin, cos], [q, qd, qdd]);
 

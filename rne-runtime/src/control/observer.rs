@@ -70,10 +70,10 @@ impl<const DOF: usize, T: Scalar> ObserverState<DOF, T> {
     }
 
     /// One tick: positions, rates and torques of the actuators as they are measured at its end. Returns the external
-    /// torques, N m or N. The first update after [`new`](Self::new) or [`reset`](Self::reset) begins, and returns
-    /// zeros.
+    /// torques, N m or N. The first update after [`new`](Self::new) or [`reset`](Self::reset) only starts the observer,
+    /// and returns zeros.
     ///
-    /// Torques that are commanded and then held: those that were held until now.
+    /// If torques are commanded and then kept constant, `tau` has those that acted until now, and not the next ones.
     ///
     /// An update has no branch that looks at its numbers. After a sample that is not finite the external torques are
     /// not finite until [`reset`](Self::reset); a program whose sensors can give such samples skips the update then.
@@ -172,9 +172,9 @@ impl<T: Scalar> DynObserverState<T> {
         self.advance(self.period, now.momentum, now.rate)
     }
 
-    /// One tick of any length, `period` s after the tick before: as [`update`](Self::update), with what
-    /// `momentum_and_rate` of an arm returns, from whatever implementation. The first tick begins and returns zeros; a
-    /// `period` below 1e-30 s leaves the external torques as they are.
+    /// One tick of any length, `period` s after the tick before: as [`update`](Self::update), with the results of
+    /// `momentum_and_rate` of an arm, of any implementation. The first tick begins and returns zeros; a `period` below
+    /// 1e-30 s does not change the external torques.
     ///
     /// `momentum` is M(q) q̇, N m s or N s, and `rate` is τ + C(q, q̇)ᵀ q̇ - g(q), N m or N, base to tip. Returns the
     /// external torques, N m or N.

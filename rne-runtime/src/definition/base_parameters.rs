@@ -3,8 +3,8 @@
 //! The [regressor](DynArm::regressor) is stacked at random states, the same in every run. A column that is a
 //! combination of earlier columns belongs to a parameter whose effect on the torques cannot be distinguished from that
 //! of the earlier parameters, so it is eliminated and regrouped into them. The columns run from the base to the tip and
-//! within a link as J, m c, m, so that what is eliminated is regrouped into links nearer to the base, and Jxx is kept
-//! where Jyy or Jzz goes: the usual choice.
+//! within a link as J, m c, m, so that eliminated parameters are regrouped into links nearer to the base, and Jxx is
+//! kept where Jyy or Jzz is eliminated, as usual.
 //!
 //! M. Gautier, W. Khalil, Direct calculation of minimum set of inertial parameters of serial robots, IEEE Transactions
 //! on Robotics and Automation 6 (1990), 368-373, for the rules; M. Gautier, Numerical calculation of the base inertial

@@ -1,4 +1,4 @@
-//! The centre of mass of the whole arm and how it moves with the joints.
+//! The centre of mass of the whole arm, and its Jacobian.
 //!
 //! ```text
 //! μ_i = m_i (1 / Σ m)                                     sums of masses from the base to the tip

@@ -1,5 +1,5 @@
-//! From the coordinates of a robot to all its joints, and from the numbers of all joints back to those of the
-//! coordinates. Where no joint follows another, each joint is a coordinate.
+//! Converts between the coordinates of a robot and all its joints, in both directions. If no joint follows another,
+//! each joint is a coordinate.
 
 use core::marker::PhantomData;
 

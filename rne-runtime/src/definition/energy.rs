@@ -29,7 +29,7 @@ use crate::seven_steps::mechanism::Mechanism;
 use crate::{BaseMotion, BaseTwist, Constant, Pose, Scalar};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    /// The kinetic energy on a base with a given motion, or at rest.
+    /// Returns the kinetic energy on a base with a given motion, or at rest.
     pub(crate) fn kinetic<T: Scalar>(self, q: &[T], qd: &[T], twist: Option<&BaseTwist<T>>) -> T {
         let zeros = self.zeros();
         let joints = JointMotions::new(q, qd, zeros.as_ref());
@@ -70,7 +70,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         self.potential_in(q, &Vector3::from(*self.gravity).map(S::to::<T>))
     }
 
-    /// `pose` of frame 0 in the world.
+    /// Returns the potential energy, where `pose` is that of frame 0 in the world.
     pub(crate) fn floating_potential<T: Scalar>(self, q: &[T], pose: &Pose<T>) -> T {
         let gravity = Vector3::from(*self.gravity).map(S::to::<T>);
         let mass = self.chain.links::<T>().fold(self.chain.base::<T>().mass, |mass, link| mass + link.mass);
@@ -78,7 +78,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         self.potential_in(q, &(back * gravity)) - mass * gravity.dot(&origin)
     }
 
-    /// `gravity` in frame 0.
+    /// Returns the potential energy, with `gravity` in the axes of frame 0.
     fn potential_in<T: Scalar>(self, q: &[T], gravity: &Vector3<T>) -> T {
         let links = self.placements(Placement::identity(), q);
         let base = self.chain.base::<T>();

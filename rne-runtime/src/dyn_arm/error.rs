@@ -35,7 +35,8 @@ impl fmt::Display for LoadError {
 }
 
 impl Error for LoadError {
-    /// Returns the error of the operating system; the other two are shown as they are, without words of this error.
+    /// Returns the error of the operating system. The other two errors are displayed without additional words, so they
+    /// have no source.
     fn source(&self) -> Option<&(dyn Error + 'static)> {
         match self {
             Self::Unreadable { error, .. } => Some(error),

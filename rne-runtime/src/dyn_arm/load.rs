@@ -11,7 +11,7 @@ impl<const DOF: usize> Arm<DOF> {
     /// The robot of the text of a robot file.
     ///
     /// # Errors
-    /// Everything that is wrong with the text, or that it describes another number of joints than `DOF`.
+    /// With all errors in the text, or when it describes another number of joints than `DOF`.
     pub fn from_yaml(text: &str) -> Result<Self, LoadError> {
         Ok(Self::from_robot(&reader("<yaml>").read(text)?.robot)?)
     }
@@ -19,7 +19,7 @@ impl<const DOF: usize> Arm<DOF> {
     /// The robot of a robot file. A relative `path` starts at the working directory.
     ///
     /// # Errors
-    /// When the file cannot be read, everything that is wrong with it, or another number of joints than `DOF`.
+    /// When the file cannot be read, with all errors in it, or when it has another number of joints than `DOF`.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, LoadError> {
         Ok(Self::from_robot(&read(path.as_ref(), false)?)?)
     }
@@ -46,7 +46,7 @@ impl DynArm {
     /// The robot of the text of a robot file.
     ///
     /// # Errors
-    /// Everything that is wrong with the text.
+    /// With all errors in the text.
     pub fn from_yaml(text: &str) -> Result<Self, LoadError> {
         Ok(Self::from_robot(&reader("<yaml>").loops().read(text)?.robot))
     }
@@ -54,7 +54,7 @@ impl DynArm {
     /// The robot of a robot file. A relative `path` starts at the working directory.
     ///
     /// # Errors
-    /// When the file cannot be read, or everything that is wrong with it.
+    /// When the file cannot be read, or with all errors in it.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, LoadError> {
         Ok(Self::from_robot(&read(path.as_ref(), true)?))
     }

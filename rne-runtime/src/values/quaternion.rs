@@ -8,7 +8,7 @@ use crate::values::pose_log::half_turn;
 /// A unit quaternion w + x i + y j + z k: the rotation that turns components in the axes of a frame into components in
 /// the axes of the world. `q` and `-q` are the same rotation.
 ///
-/// An array of four numbers does not say where w stands, so each constructor says it.
+/// An array of four numbers does not show which element is w, so the name of each constructor tells the order.
 ///
 /// ```
 /// use rne_runtime::Quaternion;

@@ -1,4 +1,4 @@
-//! A computation of torques, into which slips are made.
+//! Computes torques with slips, as another tool might do.
 
 use nalgebra::Vector3;
 use rne_model::{Convention, JointKind, Robot, Row};
@@ -8,15 +8,15 @@ use crate::lecture::{self, Misprint};
 use crate::observation::Observation;
 use crate::slip::{Slip, rotation};
 
-/// The computation of another tool: the arm as it understands it, and its treatment of a state.
+/// The computation of another tool: its model of the arm, and its treatment of a state.
 #[derive(Clone, Debug)]
 pub(crate) struct Computation {
     pub(crate) robot: Robot,
     pub(crate) misprints: Vec<Misprint>,
     pub(crate) reversed: Vec<usize>,
-    /// For revolute joints: of the positions, of the velocities and accelerations.
+    /// Factors of positions, and of velocities and accelerations, of revolute joints.
     scales: [f64; 2],
-    /// Factor of the constant part that is added to a joint variable.
+    /// Multiple of its constant part that is added to each joint variable.
     offsets: f64,
     pub(crate) velocity_factor: f64,
     pub(crate) acceleration_factor: f64,
@@ -24,9 +24,9 @@ pub(crate) struct Computation {
     pub(crate) first_factor: f64,
     pub(crate) motor_torques: bool,
     pub(crate) rates_exchanged: bool,
-    /// The joint of each place in the lists of the state; empty: the order of the rows.
+    /// The joint at each index in the lists of the state; empty for the order of the rows.
     pub(crate) order_of_state: Vec<usize>,
-    /// The joint of each place in the list of torques; empty: the order of the rows.
+    /// The joint at each index in the list of torques; empty for the order of the rows.
     pub(crate) order_of_torques: Vec<usize>,
     /// A factor on the torques of revolute joints.
     pub(crate) moment_factor: f64,
@@ -35,7 +35,7 @@ pub(crate) struct Computation {
     pub(crate) torque_factor: f64,
 }
 
-/// The axes of a wrench and the point that its moment is about.
+/// The axes of a wrench, and the point about which its moment is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum WrenchAxes {
     /// Axes of the tip frame, at its origin.
@@ -48,13 +48,12 @@ pub(crate) enum WrenchAxes {
     AboutWorld,
 }
 
-/// Whether the lecture's formulas are of such a robot: a serial arm none of whose joints follows another, without
-/// rotors on links.
+/// Whether the lecture's formulas apply to a robot: a serial arm without dependent joints and without rotors on links.
 pub(crate) fn is_of_lecture(robot: &Robot) -> bool {
     robot.is_serial() && !robot.has_couplings() && !robot.has_spinning_rotors()
 }
 
-/// A state as a computation understands it, with the wrench at the tip in the axes of the tip.
+/// A state as a computation interprets it, with the wrench at the tip in the axes of the tip.
 #[derive(Clone)]
 pub(crate) struct Moved {
     pub(crate) q: Vec<f64>,
@@ -64,7 +63,7 @@ pub(crate) struct Moved {
 }
 
 impl Computation {
-    /// The right one.
+    /// Returns the correct computation, without slips.
     pub(crate) fn right(robot: &Robot) -> Self {
         Self {
             robot: robot.clone(),
@@ -86,8 +85,8 @@ impl Computation {
         }
     }
 
-    /// The computation with slips, made in the order of [`Slip`]; `None` if it cannot be computed: the lecture's
-    /// formulas are of standard tables of serial arms.
+    /// Returns the computation with some slips, made in the order of [`Slip`]; `None` if it is impossible, because the
+    /// lecture's formulas only apply to standard tables of serial arms.
     pub(crate) fn with(robot: &Robot, slips: &[Slip]) -> Option<Self> {
         let mut this = Self::right(robot);
         let mut slips = slips.to_vec();
@@ -99,22 +98,22 @@ impl Computation {
         (this.misprints.is_empty() || is_computable).then_some(this)
     }
 
-    /// The rows of the coordinates.
+    /// Returns the rows of the coordinates.
     fn rows(&self) -> impl Iterator<Item = &Row> {
         self.robot.independent_joints().map(|joint| &joint.row)
     }
 
-    /// Takes the angles, and if `all` speeds and accelerations too, for another unit.
+    /// Multiplies the angles of revolute joints by a factor, and if `all` is true, their speeds and accelerations too.
     pub(crate) fn scale(&mut self, factor: f64, all: bool) {
         self.scales = [factor, if all { factor } else { 1.0 }];
     }
 
-    /// Adds a multiple of the constant part to each joint's variable.
+    /// Adds `times` its constant part to each joint variable.
     pub(crate) fn offset(&mut self, times: f64) {
         self.offsets = times;
     }
 
-    /// The torques at the state of an observation.
+    /// Computes the torques at the state of an observation.
     ///
     /// # Errors
     /// When a list of the observation does not have one number per joint.
@@ -129,7 +128,7 @@ impl Computation {
         self.printed(arm, tau, &moved)
     }
 
-    /// The wrench at the tip in its axes, from one as this computation understands it.
+    /// Returns the wrench at the tip in tip axes, from a wrench in the axes that this computation assumes.
     fn in_tip_axes(&self, arm: &DynArm, q: &[f64], wrench: Wrench<f64>) -> Result<Wrench<f64>, WrongLength> {
         if self.wrench_axes == WrenchAxes::Tip {
             return Ok(wrench);
@@ -147,10 +146,10 @@ impl Computation {
         Ok(Wrench { force: to_tip(force), moment: to_tip(moment) })
     }
 
-    /// The state as this computation understands it.
+    /// Returns the state as this computation interprets it.
     ///
     /// # Errors
-    /// When `q` does not have one number per joint, and the wrench has to be turned.
+    /// When the wrench has to be rotated and `q` does not have one number per joint.
     pub(crate) fn moved(
         &self,
         arm: &DynArm,
@@ -163,7 +162,7 @@ impl Computation {
             std::mem::swap(&mut qd, &mut qdd);
         }
         for list in [&mut q, &mut qd, &mut qdd] {
-            // a list of another length is refused by the arm
+            // the arm refuses a list of another length later
             if list.len() == self.order_of_state.len() {
                 let given = list.clone();
                 self.order_of_state.iter().zip(given).for_each(|(&joint, number)| list[joint] = number);
@@ -189,7 +188,7 @@ impl Computation {
         Ok(Moved { q, qd, qdd, wrench })
     }
 
-    /// Torques as this computation prints them.
+    /// Converts torques to the form in which this computation prints them.
     pub(crate) fn printed(&self, arm: &DynArm, mut tau: Vec<f64>, moved: &Moved) -> Result<Vec<f64>, WrongLength> {
         if self.motor_torques {
             let motors = arm.actuator_torques(&moved.qd, &moved.qdd)?;
@@ -205,7 +204,8 @@ impl Computation {
         Ok(self.order_of_torques.iter().map(|&joint| tau[joint]).collect())
     }
 
-    /// Every vector of the lecture's formulas, in the lecture's axes, with the links where they stand.
+    /// Computes every vector of the lecture's formulas, in the lecture's axes, with the vectors and inertias of the
+    /// links at this state.
     pub(crate) fn lecture(&self, moved: &Moved) -> (Vec<lecture::Placed>, Vec<lecture::LinkVectors>) {
         let rows: Vec<_> = self.robot.rows().copied().collect();
         let state = self.state(moved);
@@ -214,7 +214,7 @@ impl Computation {
 
     fn state(&self, moved: &Moved) -> lecture::State {
         let Robot { tool, gravity, .. } = &self.robot;
-        // the lecture's wrench stands in frame n+1, where rne has the tool
+        // the lecture's wrench is in frame n+1, that of rne is in the tool frame
         let (force, moment) = moved.wrench.unwrap_or_else(Wrench::zero).vectors();
         let turn = rotation(tool);
         let force = turn * force;

@@ -1,7 +1,7 @@
-//! The seven steps as the slides of lecture 38 write them, with every slip of the transcript at its place.
+//! The seven steps as in the slides of lecture 38, with every misprint of its transcript as an option.
 //!
-//! Frame i sits on the axis of joint i and is fixed to link i-1; the vectors of link i are written in it, so e_i is
-//! always (0, 0, 1), and a_i, d_i, r_i and I_i are computed again at every angle:
+//! Frame i is on the axis of joint i and fixed to link i-1. The vectors of link i are expressed in frame i, so e_i is
+//! always (0, 0, 1), and a_i, d_i, r_i and I_i depend on the joint angle:
 //!
 //! ```text
 //! T_i = Rz(θ_i) Tz(b_i) Tx(a_i) Rx(α_i)    frame i+1 from frame i; its rotation is Q_i, its translation [a_i]_i
@@ -20,63 +20,63 @@ pub use crate::misprint::Misprint;
 /// The motion of an arm, and the forces on it.
 #[derive(Clone, Debug)]
 pub struct State {
-    /// θ_i or b_i, without the constant of the table.
+    /// Joint variables θ_i or b_i, without the constant of the table.
     pub q: Vec<f64>,
-    /// θ̇_i or ḃ_i
+    /// Joint velocities θ̇_i or ḃ_i.
     pub qd: Vec<f64>,
-    /// θ̈_i or b̈_i
+    /// Joint accelerations θ̈_i or b̈_i.
     pub qdd: Vec<f64>,
-    /// \[g\]_1
+    /// Acceleration of gravity \[g\]_1, in frame 1.
     pub gravity: [f64; 3],
-    /// f_{n,n+1}, n_{n,n+1} in frame n+1.
+    /// The wrench of the last link on its environment: f_{n,n+1} and n_{n,n+1}, in frame n+1.
     pub wrench: Wrench<f64>,
 }
 
 /// The results of the seven steps for link i, in frame i.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LinkVectors {
-    /// ω_i
+    /// Angular velocity ω_i.
     pub omega: Vector3<f64>,
-    /// ω̇_i
+    /// Angular acceleration ω̇_i.
     pub omega_dot: Vector3<f64>,
-    /// ċ_i
+    /// Velocity ċ_i of the centre of mass.
     pub velocity: Vector3<f64>,
-    /// c̈_i
+    /// Acceleration c̈_i of the centre of mass.
     pub acceleration: Vector3<f64>,
-    /// g_i
+    /// Acceleration of gravity g_i.
     pub gravity: Vector3<f64>,
-    /// f_i
+    /// Force f_i that accelerates the link, m_i c̈_i.
     pub inertia_force: Vector3<f64>,
-    /// n_i
+    /// Moment n_i that accelerates the link, about the centre of mass.
     pub inertia_moment: Vector3<f64>,
-    /// f_{i-1,i}
+    /// Force f_{i-1,i} of link i-1 on link i.
     pub joint_force: Vector3<f64>,
-    /// n_{i-1,i}
+    /// Moment n_{i-1,i} of link i-1 on link i.
     pub joint_moment: Vector3<f64>,
-    /// τ_i
+    /// Torque or force τ_i of the actuator.
     pub tau: f64,
 }
 
-/// Link i at the present angle.
+/// The vectors and the inertia of link i at a joint angle.
 #[derive(Clone, Copy, Debug)]
 pub struct Placed {
-    /// Q_i
+    /// The rotation Q_i.
     pub turn: Matrix3<f64>,
-    /// Q_iᵀ
+    /// The transposed rotation Q_iᵀ.
     turn_back: Matrix3<f64>,
-    /// \[a_i\]_i
+    /// The vector \[a_i\]_i from O_i to O_{i+1}.
     pub a: Vector3<f64>,
-    /// \[d_i\]_i
+    /// The vector \[d_i\]_i from O_i to C_i.
     pub d: Vector3<f64>,
-    /// \[r_i\]_i
+    /// The vector \[r_i\]_i from C_i to O_{i+1}.
     pub r: Vector3<f64>,
-    /// \[I_i\]_i
+    /// The inertia \[I_i\]_i about C_i.
     pub inertia: Matrix3<f64>,
-    /// b_i
+    /// The offset b_i.
     offset: f64,
 }
 
-/// Q_i: columns are the axes of frame i+1 in frame i.
+/// Returns Q_i, whose columns are the axes of frame i+1 in frame i.
 #[rustfmt::skip]
 pub fn turn(theta: f64, alpha: f64) -> Matrix3<f64> {
     let ((s, c), (sa, ca)) = (theta.sin_cos(), alpha.sin_cos());
@@ -87,7 +87,7 @@ pub fn turn(theta: f64, alpha: f64) -> Matrix3<f64> {
     )
 }
 
-/// Q_iᵀ, what step 1 multiplies with.
+/// Returns Q_iᵀ, which step 1 uses.
 #[rustfmt::skip]
 pub fn turn_back(theta: f64, alpha: f64, misprints: &[Misprint]) -> Matrix3<f64> {
     let ((s, c), (sa, ca)) = (theta.sin_cos(), alpha.sin_cos());
@@ -99,12 +99,12 @@ pub fn turn_back(theta: f64, alpha: f64, misprints: &[Misprint]) -> Matrix3<f64>
     )
 }
 
-/// a_i, d_i, r_i and I_i of every link at the joint positions `q`.
+/// Returns a_i, d_i, r_i and I_i of every link at the joint positions `q`.
 pub fn place(rows: &[Row], q: &[f64], misprints: &[Misprint]) -> Vec<Placed> {
     let mut placed = Vec::new();
     let mut frames_before = Vector3::zeros(); // O_{i-1} → O_i
     for (row, &q) in rows.iter().zip(q) {
-        // θ_i and b_i, one of which moves.
+        // θ_i and b_i, one of which is the joint variable
         let (theta, b) = match row.kind {
             Revolute => (row.dh.theta.radians + q, row.dh.d),
             Prismatic => (row.dh.theta.radians, row.dh.d + q),
@@ -133,7 +133,7 @@ pub fn place(rows: &[Row], q: &[f64], misprints: &[Misprint]) -> Vec<Placed> {
     placed
 }
 
-/// The seven steps for the standard table `rows`, correct without misprints.
+/// Computes the seven steps for the standard table `rows`; they are correct without misprints.
 pub fn seven_steps(rows: &[Row], state: &State, misprints: &[Misprint]) -> Vec<LinkVectors> {
     let links = place(rows, &state.q, misprints);
     let mut found = forward(rows, &links, state, misprints);
@@ -141,7 +141,7 @@ pub fn seven_steps(rows: &[Row], state: &State, misprints: &[Misprint]) -> Vec<L
     found
 }
 
-/// Steps 1 to 5.
+/// Computes steps 1 to 5, from the base to the tip.
 fn forward(rows: &[Row], links: &[Placed], state: &State, misprints: &[Misprint]) -> Vec<LinkVectors> {
     let e = axis(misprints);
     let mut all = Vec::new();
@@ -203,7 +203,7 @@ fn forward(rows: &[Row], links: &[Placed], state: &State, misprints: &[Misprint]
     all
 }
 
-/// Q_{i-1}ᵀ
+/// Returns Q_{i-1}ᵀ, the rotation from frame i-1 to frame i.
 fn turn_from_before(links: &[Placed], i: usize, misprints: &[Misprint]) -> Matrix3<f64> {
     match i {
         _ if misprints.contains(&Misprint::E2WrongQ) => links[i].turn.transpose(),
@@ -212,7 +212,7 @@ fn turn_from_before(links: &[Placed], i: usize, misprints: &[Misprint]) -> Matri
     }
 }
 
-/// Steps 6 and 7.
+/// Computes steps 6 and 7, from the tip to the base.
 fn backward(rows: &[Row], links: &[Placed], state: &State, misprints: &[Misprint], found: &mut [LinkVectors]) {
     let e = axis(misprints);
     // f_{i,i+1} and n_{i,i+1}, in frame i+1
@@ -220,7 +220,7 @@ fn backward(rows: &[Row], links: &[Placed], state: &State, misprints: &[Misprint
     for ((row, link), this) in rows.iter().zip(links).zip(found).rev() {
         let mass = row.link.mass;
 
-        // [f_{i,i+1}]_i = Q_i [f_{i,i+1}]_{i+1}, n as well
+        // [f_{i,i+1}]_i = Q_i [f_{i,i+1}]_{i+1}, and the same for n
         if !misprints.contains(&Misprint::E10ForceNotTurned) {
             force = link.turn * force;
         }
@@ -237,7 +237,7 @@ fn backward(rows: &[Row], links: &[Placed], state: &State, misprints: &[Misprint
         if !misprints.contains(&Misprint::NoGyroscopicMoment) {
             this.inertia_moment += this.omega.cross(&(link.inertia * this.omega));
         }
-        // of a first moment beside the mass, which no body has: the lecture does not know it
+        // a first moment in addition to the mass, which no body has and the lecture does not treat
         let first_moment = row.link.has_first_moment().then(|| link.turn * Vector3::from(row.link.first_moment));
         if let Some(h) = first_moment {
             this.inertia_force += this.omega_dot.cross(&h) + this.omega.cross(&this.omega.cross(&h));
@@ -258,7 +258,7 @@ fn backward(rows: &[Row], links: &[Placed], state: &State, misprints: &[Misprint
     }
 }
 
-/// e_i, the axis of joint i in frame i.
+/// Returns e_i, the axis of joint i in frame i.
 fn axis(misprints: &[Misprint]) -> Vector3<f64> {
     if misprints.contains(&Misprint::E17AxisX) { Vector3::x() } else { Vector3::z() }
 }

@@ -1,10 +1,10 @@
-//! Why is my torque different? Two tools that disagree have, as a rule, made one of the same few slips: the rows read
-//! in the other convention, gravity upwards, an inertia about another point, degrees.
+//! Explains why two tools compute different torques. Usually, one of them makes one of a few slips: it reads the rows
+//! in the other convention, or takes gravity upwards, an inertia about another point, or degrees.
 //!
-//! Where a computation by hand goes wrong, [`worksheet`] says line by line.
+//! The module [`worksheet`] finds the first wrong line of a calculation by hand.
 //!
-//! [`diagnose`] makes every one of them, one [`Typo`] at a time, then every pair, and names those that give the
-//! numbers in question. Numbers in, data out: nothing here opens a file or prints.
+//! [`diagnose`] tries every slip and every [`Typo`] alone, then every pair of slips, and names those that give the
+//! torques in question. This crate does not read files and does not print.
 //!
 //! ```
 //! use rne_diagnose::{Diagnosis, Observation, Slip, diagnose};
@@ -43,25 +43,25 @@ pub use crate::typo::Typo;
 /// The diagnosis of given torques.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Diagnosis {
-    /// They are right: the largest difference, in parts of the largest torque.
+    /// The torques are right; the number is the largest difference, as a part of the largest torque.
     Agrees(f64),
-    /// These slips give them, the likeliest first; each explanation has as few slips as there must be.
+    /// These slips give the torques, the likeliest first. Each explanation has as few slips as possible.
     Explained(Vec<Explanation>),
-    /// None of the slips does, nor does any pair to [`COARSEST`] of the largest torque: how far the torques are off, in
-    /// parts of the largest.
+    /// No slip gives the torques, nor does any pair of slips within [`COARSEST`] of the largest torque. The number is
+    /// the largest difference from the right torques, as a part of the largest torque.
     Unexplained(f64),
 }
 
 /// Slips that, made together, give the torques in question.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Explanation {
-    /// One, or two.
+    /// One slip, or two.
     pub slips: Vec<Slip>,
-    /// The largest difference that is left, in parts of the largest torque.
+    /// The largest remaining difference, as a part of the largest torque.
     pub error: f64,
 }
 
-/// Looks for the slips that explain the torques of some states, all of them at once: the more states, the surer.
+/// Finds the slips that explain the torques of all given states. More states make the diagnosis more reliable.
 ///
 /// # Errors
 /// When a list of an observation does not have one number per joint.
@@ -82,9 +82,9 @@ pub fn diagnose(robot: &Robot, seen: &[Observation]) -> Result<Diagnosis, WrongL
     if !found.is_empty() {
         return Ok(Diagnosis::Explained(found));
     }
-    // some of so many pairs give torques of few digits by accident
+    // there are so many pairs that some agree with torques of few digits by chance
     let seen: Vec<Observation> = seen.iter().map(Observation::to_enough_digits).collect();
-    // of two that fit together neither is idle: the other would have fitted alone
+    // both slips of a pair that fits are needed, because no slip fits alone
     let pairs = slips.iter().enumerate().flat_map(|(index, &first)| {
         slips.iter().skip(index + 1).filter(move |second| first.goes_with(**second)).map(move |&second| [first, second])
     });
@@ -93,12 +93,12 @@ pub fn diagnose(robot: &Robot, seen: &[Observation]) -> Result<Diagnosis, WrongL
     Ok(if found.is_empty() { Diagnosis::Unexplained(off) } else { Diagnosis::Explained(found) })
 }
 
-/// Looks for one slip that explains the torques only nearly, where [`diagnose`] explains them with all of their digits
-/// by none: the angles of one of both programs may be rounded. The tolerance grows until the torques are right, or a
-/// slip gives them; returns this tolerance and the diagnosis, or `None` where nothing explains the torques.
+/// Finds one slip that explains the torques approximately, if [`diagnose`] finds none that explains all their digits:
+/// one of the programs may use rounded angles. The tolerance is raised until the torques are right, or a slip gives
+/// them. Returns this tolerance and the diagnosis, or `None` if nothing explains the torques.
 ///
-/// `tolerances` are parts of the largest torque, in ascending order. Pairs of slips are not tried, because some of so
-/// many pairs give almost any torques nearly.
+/// `tolerances` are parts of the largest torque, in ascending order. Pairs of slips are not tried: there are so many
+/// that some approximate almost any torques.
 ///
 /// # Errors
 /// When a list of an observation does not have one number per joint.
@@ -121,19 +121,19 @@ pub fn diagnose_nearly(
     if right <= tolerance {
         return Ok(Some((tolerance, Diagnosis::Agrees(right))));
     }
-    // what explains the torques far less well than the best explanation does is a coincidence
+    // an explanation that is far less accurate than the best one is a coincidence
     tried.retain(|explanation| explanation.error <= tolerance.min(3.0 * nearest));
     Ok(Some((tolerance, Diagnosis::Explained(tried))))
 }
 
-/// The slips that are made one at a time, the likeliest first.
+/// Returns the slips that are tried alone, the likeliest first.
 fn one_by_one(robot: &Robot) -> Vec<Slip> {
     let typos = Typo::candidates(robot).into_iter().map(Slip::Typo);
     Slip::candidates(robot).into_iter().chain(Slip::alone(robot)).chain(typos).collect()
 }
 
-/// The torques of a computation that makes some slips, at the state of `at`, whose own torques do not count; `None`
-/// where they cannot be made: the lecture's formulas are of standard tables of serial arms.
+/// Computes the torques with some slips at the state of `at`, whose own torques are ignored. `None` if the slips are
+/// impossible: the lecture's formulas only apply to standard tables of serial arms.
 ///
 /// # Errors
 /// When a list of `at` does not have one number per joint.
@@ -144,7 +144,7 @@ pub fn torques_with(robot: &Robot, slips: &[Slip], at: &Observation) -> Result<O
 
 /// The result of trying some slips.
 struct Tried {
-    /// Whether the torques are the torques that were seen.
+    /// Whether the torques with the slips agree with the observed ones.
     fits: bool,
     error: f64,
 }

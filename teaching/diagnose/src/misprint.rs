@@ -1,6 +1,6 @@
 //! The misprints of the lecture's transcript, their words, and the right formulas.
 
-/// A row for each misprint: the formula as it was printed or is often written, and as it is right.
+/// A row for each misprint: the formula as it was printed or is often written, and the correct formula.
 macro_rules! misprints {
     ($($variant:ident: $says:literal, $right:literal;)*) => {
         /// A formula as it was printed or spoken; its number in the list of errata comes first. Two are mistakes.
@@ -15,7 +15,7 @@ macro_rules! misprints {
                 match self { $(Self::$variant => $says,)* }
             }
 
-            /// The formula as it is right.
+            /// The correct formula.
             #[must_use]
             pub fn right(self) -> &'static str {
                 match self { $(Self::$variant => $right,)* }
@@ -62,7 +62,7 @@ misprints! {
 }
 
 impl Misprint {
-    /// The misprints that change torques; no torque uses step 3, the velocity.
+    /// The misprints that change torques. Misprints in step 3, the velocity, do not.
     pub const IN_TORQUES: [Self; 15] = [
         Self::NoGyroscopicMoment,
         Self::CoriolisOnce,

@@ -1,8 +1,8 @@
-//! The printed torques of somebody else's computation.
+//! The printed torques of another computation.
 
 use rne_runtime::Wrench;
 
-/// A state of an arm, and the torques that another tool, or a hand, found for it.
+/// A state of an arm, and the torques of another tool, or of a calculation by hand, for it.
 ///
 /// Lists run from base to tip. Revolute joints: rad, rad/s, rad/s², N m; prismatic joints: m, m/s, m/s², N.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,12 +17,12 @@ pub struct Observation {
     pub wrench: Option<Wrench<f64>>,
     /// The torques in question.
     pub tau: Vec<f64>,
-    /// Largest deviation of a torque that counts as equal: half of its last digit, at least. Rounding, 1e-9 of the
-    /// largest torque, is added to it.
+    /// Tolerance of each torque: at least half a unit of its last digit. In addition, rounding errors up to 1e-9 of the
+    /// largest torque are allowed.
     pub resolution: Vec<f64>,
 }
 
-/// The largest tolerance of a pair of slips, in parts of the largest torque.
+/// The largest tolerance for a pair of slips, as a part of the largest torque.
 pub const COARSEST: f64 = 1e-3;
 
 impl Observation {
@@ -33,7 +33,7 @@ impl Observation {
         Self { resolution: self.resolution.iter().map(|half| half.min(most)).collect(), ..self.clone() }
     }
 
-    /// Whether torques are those of the observation, as far as it can tell.
+    /// Whether torques agree with those of the observation within its tolerances.
     pub(crate) fn shows(&self, tau: &[f64]) -> bool {
         if tau.len() != self.tau.len() || tau.iter().any(|tau| !tau.is_finite()) {
             return false;
@@ -54,7 +54,7 @@ impl Observation {
     }
 }
 
-/// The difference of two right computations, in parts of the largest torque.
+/// The largest difference between two right computations, as a part of the largest torque.
 const ROUNDING: f64 = 1e-9;
 
 pub(crate) fn largest(values: &[f64]) -> f64 {

@@ -1,4 +1,4 @@
-//! The usual slips, and what each makes of a computation.
+//! The usual slips, and how each changes a computation.
 
 use std::f64::consts::PI;
 
@@ -11,18 +11,18 @@ use crate::links::{each_link, move_com, shifted, untwist};
 use crate::order;
 use crate::typo::Typo;
 
-/// A row for each slip: its documentation, its word for programs, what it changes, and the words for the slip and for
-/// what is right; no words where they depend on the robot.
+/// A row for each slip: its documentation, its name for programs, the subject that it changes, and the words for the
+/// slip and for the correct way. The words are empty if they depend on the robot.
 macro_rules! slips {
     ($($(#[$doc:meta])* $variant:ident $(($($of:ty),+))?: $name:literal, $subject:literal,
        $says:literal, $right:literal;)*) => {
-        /// A slip that makes two tools disagree. In this order they are looked for: the commonest first.
+        /// A slip that makes two tools disagree. They are tried in this order, the commonest first.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
         #[non_exhaustive]
         pub enum Slip { $($(#[$doc])* $variant $(($($of),+))?,)* }
 
         impl Slip {
-            /// A word for programs: `gravity_reversed`, `joint_reversed`.
+            /// Returns the name for programs, such as `gravity_reversed` or `joint_reversed`.
             #[must_use]
             pub fn name(self) -> &'static str {
                 if let Self::Typo(typo) = self {
@@ -31,12 +31,12 @@ macro_rules! slips {
                 match self { $(Self::$variant { .. } => $name,)* }
             }
 
-            /// The subject that it changes: two slips that change the same thing exclude each other.
+            /// Returns the subject that the slip changes: two slips with the same subject exclude each other.
             fn subject(self) -> &'static str {
                 match self { $(Self::$variant { .. } => $subject,)* }
             }
 
-            /// The words for it and for what is right; empty where they depend on the robot.
+            /// Returns the words for the slip and for the correct way; empty if they depend on the robot.
             pub(crate) const fn words(self) -> [&'static str; 2] {
                 match self { $(Self::$variant { .. } => [$says, $right],)* }
             }
@@ -51,40 +51,40 @@ slips! {
     GravityReversed: "gravity_reversed", "gravity", "gravity points the other way", "";
     /// There is no gravity.
     NoGravity: "no_gravity", "gravity", "there is no gravity", "";
-    /// Gravity points along another axis: 0 to 2, and whether the other way.
+    /// Gravity points along another axis, 0 to 2; `true` for the negative direction.
     GravityAlong(usize, bool): "gravity_along_another_axis", "gravity", "", "";
-    /// Gravity is given in the world's axes and turned by the base.
+    /// Gravity is taken in world axes, and rotated by the placement of the base.
     GravityInWorld: "gravity_in_world", "gravity", "gravity is taken in world axes, and is rotated by `base`", "";
-    /// The inertia as it is written is taken for one about the origin of the link frame.
+    /// The inertia in the file is taken to be about the origin of the link frame.
     InertiaAboutOrigin: "inertia_about_origin", "inertia", "", "";
-    /// The inertia gets m (c² 1 - c cᵀ) once more.
+    /// The term m (c² 1 - c cᵀ) is added to the inertia once more.
     InertiaShifted: "inertia_shifted", "inertia", "", "";
-    /// xy, xz and yz have the other sign.
+    /// The products of inertia xy, xz and yz have the other sign.
     ProductsOfInertia: "products_of_inertia", "products",
         "xy, xz and yz of the inertias have the other sign", "`xy` is the element of the tensor, -∫ x y dm";
-    /// The inertias of a standard table are not turned by alpha into axes with z along the joint.
+    /// The inertias of a standard table are not rotated by alpha into axes with z along the joint.
     InertiaNotTwisted: "inertia_not_twisted", "inertia",
         "the inertias are not turned by alpha: they are used in axes with z along the joint as the file has \
          them, whose z is along the next joint",
         "[I] = Rx(α) I Rx(α)ᵀ in axes with z along the joint";
-    /// The centres of mass are on the other side.
+    /// The centres of mass have the other sign.
     ComReversed: "com_reversed", "com", "the centres of mass have the other sign", "";
-    /// The centres of mass count from the frame at the other end of the link.
+    /// The centres of mass are taken from the frame at the other end of the link.
     ComFromOtherEnd: "com_from_other_end", "com", "", "";
-    /// The centres of mass are given from the other end of the link and count from this one.
+    /// The vectors from the other end of the link to the centre of mass are used as if they began at the link frame.
     ComOfOtherEnd: "com_of_other_end", "com", "", "";
-    /// The angles are taken for degrees.
+    /// The angles are in radians, but are read as degrees.
     PositionsAsDegrees: "positions_as_degrees", "units",
         "the angles are in radians, but are read as degrees",
         "q in rad: deg(30) is pi/6. If your torques are right, the q that you gave here is in degrees";
-    /// Degrees are taken for radians.
+    /// The angles are converted to degrees, but then read as radians.
     PositionsInDegrees: "positions_in_degrees", "units",
         "the angles are multiplied by 180/π, and then read as radians", "q in rad: deg(30) is pi/6";
-    /// Angles, speeds and accelerations of revolute joints are taken for degrees.
+    /// Angles, speeds and accelerations of revolute joints are in radians, but are read as degrees.
     StateAsDegrees: "state_as_degrees", "units",
         "angles, speeds and accelerations are in rad, rad/s and rad/s², but are read as degrees",
         "q, q̇ and q̈ in rad, rad/s and rad/s². If your torques are right, the state that you gave here is in degrees";
-    /// Degrees are taken for radians in angles, speeds and accelerations.
+    /// Angles, speeds and accelerations of revolute joints are converted to degrees, but then read as radians.
     StateInDegrees: "state_in_degrees", "units",
         "angles, speeds and accelerations are multiplied by 180/π", "q, q̇ and q̈ in rad, rad/s and rad/s²";
     /// The constant parts of the joint variables are left out.
@@ -92,29 +92,29 @@ slips! {
     /// The constant parts of the joint variables are subtracted.
     OffsetsReversed: "offsets_reversed", "offsets",
         "the constant `theta` (or `d`) of the joints' rows has the other sign", "";
-    /// A joint, counted from 0, turns or slides the other way.
+    /// A joint, counted from 0, has the opposite positive direction.
     JointReversed(usize): "joint_reversed", "joint",
         "", "q, q̇, q̈ and τ are positive about (prismatic joints: along) +z of the joint";
-    /// The velocities do not count.
+    /// The velocities are taken as zero.
     NoVelocities: "no_velocities", "velocities",
         "the velocities are zero: no Coriolis and centrifugal terms", "n = I ω̇ + ω × I ω, and c̈ with its ω × (ω × …)";
-    /// The accelerations do not count.
+    /// The accelerations are taken as zero.
     NoAccelerations: "no_accelerations", "accelerations",
         "the accelerations are zero: no inertia terms", "τ includes M(q) q̈";
-    /// The acceleration of a first joint that slides is dropped in modified tables, as in the C code of the Robotics
+    /// The acceleration of a prismatic first joint is ignored in modified tables, as in the C code of the Robotics
     /// Toolbox for MATLAB.
     NoFirstSlide: "no_first_slide", "accelerations",
         "the acceleration of a prismatic first joint is ignored",
         "the C code of the Robotics Toolbox for MATLAB has this mistake; its MATLAB code is right";
-    /// The rotors' inertia G² Jm belongs to the arm.
+    /// The rotors' inertia G² Jm is included in the arm.
     RotorInertia: "rotor_inertia", "motors",
         "the rotors' inertia G² Jm is part of the arm",
         "the arm consists of the links of the file; rotors are added only on request";
-    /// The motors' inertia and friction are added.
+    /// The motors' inertia and friction are added to the torques.
     MotorTorques: "motor_torques", "motors",
         "the motors' inertia and friction are in the torques",
         "τ is without motors; `actuator_torques` adds their inertia and friction";
-    /// The wrench is that of the environment on the arm.
+    /// The wrench is taken as that of the environment on the arm.
     WrenchReversed: "wrench_reversed", "wrench",
         "the wrench is what the environment exerts on the arm",
         "the wrench is what the last link exerts on its environment: τ = τ_free + Jᵀ w";
@@ -122,52 +122,55 @@ slips! {
     NoWrench: "no_wrench", "wrench", "the wrench is left out", "τ = τ_free + Jᵀ w";
     /// The wrench acts at the last frame instead of the tip.
     NoTool: "no_tool", "wrench", "", "the wrench acts at the tip frame, in its axes: frame n, then `tool`";
-    /// The wrench at the tip is in world axes.
+    /// The wrench at the tip is taken in world axes.
     WrenchInWorld: "wrench_in_world", "axes of the wrench", "the wrench at the tip is in world axes", "";
-    /// The wrench at the tip is in the axes of frame 0.
+    /// The wrench at the tip is taken in the axes of frame 0.
     WrenchInBase: "wrench_in_base", "axes of the wrench", "the wrench at the tip is in the axes of frame 0", "";
-    /// The wrench is in world axes, and its moment is about the origin of the world.
+    /// The wrench is taken in world axes, with its moment about the origin of the world.
     WrenchAboutWorld: "wrench_about_world", "axes of the wrench",
         "the wrench is in world axes, and its moment is about the origin of the world", "";
-    /// The link of the last row of a tree carries the tip.
+    /// The tip of a tree is taken to be on the link of the last row.
     TipOnLastRow: "tip_on_last_row", "wrench", "the wrench acts at the link of the last row", "";
-    /// The torques are those of the arm on its motors.
+    /// The torques are those that the arm exerts on its motors.
     TorquesReversed: "torques_reversed", "torques",
         "the torques are what the arm exerts on its motors", "τ is what the motor exerts on the arm: positive lifts";
-    /// The torques stand from tip to base.
+    /// The torques are listed from tip to base.
     TorquesFromTheTip: "torques_from_the_tip", "order", "", "";
-    /// The torques stand in the alphabetical order of the joints.
+    /// The torques are listed in the alphabetical order of the joints.
     TorquesByName: "torques_by_name", "order", "the torques are listed in the alphabetical order of the joints", "";
-    /// Positions, velocities, accelerations and torques stand in the alphabetical order of the joints.
+    /// Positions, velocities, accelerations and torques are listed in the alphabetical order of the joints.
     JointsByName: "joints_by_name", "order",
         "positions, velocities, accelerations and torques are listed in the alphabetical order of the joints", "";
-    /// Positions, velocities, accelerations and torques stand from tip to base.
+    /// Positions, velocities, accelerations and torques are listed from tip to base.
     JointsFromTheTip: "joints_from_the_tip", "order",
         "positions, velocities, accelerations and torques are listed from the last joint to the first", "";
-    /// Positions, velocities, accelerations and torques stand by the number of joints from the base: breadth first.
+    /// Positions, velocities, accelerations and torques are listed breadth first: by the number of joints from the
+    /// base.
     JointsByLevel: "joints_by_level", "order",
         "positions, velocities, accelerations and torques are listed breadth first: by the number of joints \
          from the base", "";
-    /// Two branches of a tree with equally many joints are exchanged in all lists; each is given by its first joint.
+    /// Two branches of a tree with equal numbers of joints are exchanged in all lists; each is given by its first
+    /// joint.
     BranchesExchanged(usize, usize): "branches_exchanged", "order", "", "";
-    /// Two coordinates are exchanged in all lists; looked for alone, not in pairs.
+    /// Two coordinates are exchanged in all lists. This slip is tried alone only, not in pairs.
     JointsExchanged(usize, usize): "joints_exchanged", "order", "", "";
-    /// A joint that follows others, counted from 0, follows them with the other sign.
+    /// A dependent joint, counted from 0, has ratios with the other sign.
     FollowerReversed(usize): "follower_reversed", "follower", "", "";
-    /// The torques of revolute joints are N mm.
+    /// The torques of revolute joints are in N mm.
     TorquesInNmm: "torques_in_nmm", "unit of torque",
         "the torques of revolute joints are in N mm", "N m for a revolute joint, N for a prismatic joint";
     /// Velocities and accelerations are exchanged.
     RatesExchanged: "rates_exchanged", "rates",
         "velocities and accelerations are exchanged", "q̇ before q̈: τ(q, q̇, q̈)";
-    /// A formula of the lecture as it was printed, or a common mistake in one.
+    /// A misprinted formula of the lecture, or a common mistake in one.
     Misprint(Misprint): "misprint", "formula", "", "";
-    /// A sign that is mistyped in one row or link; looked for alone, not in pairs.
+    /// A wrong sign in one row or link. This slip is tried alone only, not in pairs.
     Typo(Typo): "typo", "number", "", "";
 }
 
 impl Slip {
-    /// All that could be made with a robot, singly and in pairs: what concerns all links, one joint or a formula.
+    /// Returns all slips of a robot that are tried alone and in pairs: those that concern all links, one joint or a
+    /// formula.
     #[must_use]
     pub fn candidates(robot: &Robot) -> Vec<Self> {
         let mut all = vec![Self::OtherConvention, Self::GravityReversed, Self::NoGravity];
@@ -176,7 +179,7 @@ impl Slip {
         for slip in turned.chain([Self::GravityInWorld]) {
             let mut computation = Computation::right(robot);
             slip.make(&mut computation);
-            // the same under another name
+            // skips slips that give the same gravity as an earlier one
             if !known.iter().any(|known| close(known, &computation.robot.gravity)) {
                 known.push(computation.robot.gravity);
                 all.push(slip);
@@ -185,7 +188,7 @@ impl Slip {
         all.extend([Self::InertiaAboutOrigin, Self::InertiaShifted, Self::ProductsOfInertia, Self::ComReversed]);
         all.extend((robot.convention == Convention::Standard).then_some(Self::InertiaNotTwisted));
         if robot.is_serial() {
-            // a link of a tree may have several other ends
+            // only for serial arms: a link of a tree may have several other ends
             all.extend([Self::ComFromOtherEnd, Self::ComOfOtherEnd]);
         }
         all.extend([
@@ -217,7 +220,7 @@ impl Slip {
         if is_of_lecture(robot) {
             all.extend(Misprint::IN_TORQUES.map(Self::Misprint));
         } else {
-            // the lecture's formulas are those of a chain
+            // other slips of a tree; the lecture's formulas only apply to serial arms
             all.retain(|slip| *slip != Self::NoFirstSlide);
             all.extend(robot.tip_on.map(|_| Self::TipOnLastRow));
         }
@@ -229,7 +232,7 @@ impl Slip {
         all
     }
 
-    /// The slips that put all lists into another order, each order once.
+    /// Returns the slips that change the order of all lists, each order once.
     fn orders(robot: &Robot) -> Vec<Self> {
         let branches = order::equal_branches(robot).into_iter().map(|[one, other]| Self::BranchesExchanged(one, other));
         let named = [Self::JointsByName, Self::JointsFromTheTip, Self::JointsByLevel];
@@ -243,8 +246,8 @@ impl Slip {
         named.into_iter().chain(branches).filter(is_new).collect()
     }
 
-    /// The exchanges of two joints in all lists. There are many, so each is tried as the only slip, as a [`Typo`] is,
-    /// and in no pair of slips.
+    /// Returns the exchanges of two joints in all lists. There are so many that each is tried alone, like a [`Typo`],
+    /// and not in pairs.
     pub(crate) fn alone(robot: &Robot) -> impl Iterator<Item = Self> {
         let known: Vec<Vec<usize>> = Self::orders(robot).into_iter().map(|slip| slip.order(robot)).collect();
         let dof = robot.dof();
@@ -252,7 +255,7 @@ impl Slip {
         pairs.filter(move |slip| !known.contains(&slip.order(robot)))
     }
 
-    /// The coordinate at each place of all lists; those of the file where the slip does not change the order.
+    /// Returns the coordinate at each index of all lists; the order of the file if the slip does not change it.
     fn order(self, robot: &Robot) -> Vec<usize> {
         match self {
             Self::JointsByName => order::by_name(robot),
@@ -268,7 +271,8 @@ impl Slip {
         }
     }
 
-    /// Whether both can be made at once. Of joints, formulas and numbers there are several.
+    /// Whether both slips can be made at once. Two slips of the same kind can, if they concern different joints,
+    /// formulas or numbers.
     #[must_use]
     pub fn goes_with(self, other: Self) -> bool {
         let is_one_of_several =
@@ -276,7 +280,7 @@ impl Slip {
         self.subject() != other.subject() || is_one_of_several && self != other
     }
 
-    /// Makes the slip.
+    /// Changes a computation as the slip does.
     pub(crate) fn make(self, of: &mut Computation) {
         let robot = &mut of.robot;
         match self {
@@ -344,7 +348,7 @@ fn other(convention: Convention) -> Convention {
     }
 }
 
-/// Whether the first joint of a modified table slides.
+/// Whether the first joint of a modified table is prismatic.
 fn slides_first(robot: &Robot) -> bool {
     let is_first_prismatic = robot.rows().next().is_some_and(|row| row.kind == JointKind::Prismatic);
     is_first_prismatic && robot.convention == Convention::Modified
@@ -360,7 +364,7 @@ fn reverse_follower(robot: &mut Robot, joint: usize) {
     coupling.into_iter().flat_map(|it| &mut it.follows).for_each(|(_, ratio)| *ratio = -*ratio);
 }
 
-/// Whether a placement does not turn.
+/// Whether a placement has no rotation.
 fn is_unturned(placement: &Transform) -> bool {
     placement.rpy.iter().all(|angle| angle.radians == 0.0)
 }

@@ -1,4 +1,4 @@
-//! Signs that are mistyped in one row of the table, or in one link.
+//! Wrong signs in one row of the table, or in one link.
 
 use rne_model::{Angle, JointKind, Robot};
 
@@ -14,7 +14,7 @@ pub enum Typo {
 }
 
 impl Typo {
-    /// All that make another arm: zero has no sign, nor has half a turn.
+    /// Returns all wrong signs that change the arm: those of zero and of half a turn do not.
     #[must_use]
     pub fn candidates(robot: &Robot) -> Vec<Self> {
         let mut all = Vec::new();
@@ -26,7 +26,7 @@ impl Typo {
         all
     }
 
-    /// Makes the slip.
+    /// Changes the sign in a robot.
     pub(crate) fn make(self, robot: &mut Robot) {
         let Some(row) = robot.joints.get_mut(self.joint()).map(|joint| &mut joint.row) else { return };
         let reversed = |angle: &mut Angle| *angle = Angle::new(-angle.radians);
@@ -37,14 +37,14 @@ impl Typo {
         }
     }
 
-    /// The joint whose row it is in.
+    /// Returns the joint in whose row the number is.
     pub(crate) const fn joint(self) -> usize {
         match self {
             Self::Alpha(joint) | Self::Theta(joint) | Self::Com(joint, _) => joint,
         }
     }
 
-    /// A word for programs.
+    /// Returns the name for programs.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -54,7 +54,7 @@ impl Typo {
         }
     }
 
-    /// The name of the number, its value in the file and its unit.
+    /// Returns the name of the number, its value in the file and its unit.
     fn number(self, robot: &Robot) -> (String, f64, &'static str) {
         let of_row = |key: &str| {
             let kind = robot.rows().nth(self.joint()).map_or(JointKind::Revolute, |row| row.kind);
@@ -73,13 +73,13 @@ impl Typo {
         }
     }
 
-    /// The mistake of the other computation, in a clause.
+    /// Describes the mistake of the other computation in a clause.
     #[must_use]
     pub fn says(self, robot: &Robot) -> String {
         format!("{} has the other sign", self.number(robot).0)
     }
 
-    /// The number in the file.
+    /// Describes the correct number, that in the file.
     #[must_use]
     pub fn right(self, robot: &Robot) -> String {
         let (what, value, unit) = self.number(robot);

@@ -1,11 +1,11 @@
-//! The words for slips: what the other computation does, and what is right.
+//! The words for slips: the mistake of the other computation, and the correct way.
 
 use rne_model::{Convention, InertiaReference, Robot, six_digits};
 
 use crate::slip::Slip;
 
 impl Slip {
-    /// The mistake of the other computation, in a clause: "gravity points the other way".
+    /// Describes the mistake of the other computation in a clause: "gravity points the other way".
     #[must_use]
     pub fn says(self, robot: &Robot) -> String {
         let [this, other, near, far] = match robot.convention {
@@ -68,7 +68,8 @@ impl Slip {
         }
     }
 
-    /// The line that is right, or what to write where: "`gravity: [0, 0, -9.81]` is its acceleration, downwards".
+    /// Describes the correct way, or what to write in the file: "`gravity: [0, 0, -9.81]` is its acceleration,
+    /// downwards".
     #[must_use]
     pub fn right(self, robot: &Robot) -> String {
         let [x, y, z] = robot.gravity;
@@ -131,17 +132,17 @@ impl Slip {
     }
 }
 
-/// The name of the joint of a coordinate, counted from 0.
+/// Returns the name of the joint of a coordinate, counted from 0.
 fn name(robot: &Robot, coordinate: usize) -> &str {
     robot.independent_joint(coordinate).map_or("", |joint| &joint.name)
 }
 
-/// The name of a joint, counted from 0.
+/// Returns the name of a joint, counted from 0.
 fn joint_name(robot: &Robot, joint: usize) -> &str {
     robot.joints.get(joint).map_or("", |joint| &joint.name)
 }
 
-/// The joints that a joint follows, and the ratios.
+/// Returns the joints on which a joint depends, and the ratios.
 fn follows(robot: &Robot, joint: usize) -> &[(usize, f64)] {
     let coupling = robot.joints.get(joint).and_then(|joint| joint.coupling.as_ref());
     coupling.map_or(&[], |coupling| &coupling.follows)

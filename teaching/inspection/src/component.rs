@@ -1,4 +1,4 @@
-//! The equation of one component: in general, for this robot, what folded, and what is left.
+//! Describes one component: its general equation, that for this robot, the folded terms, and the remaining code.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -8,15 +8,15 @@ use rne_model::Robot;
 use crate::record::{Became, Component, Folded};
 use crate::tree::{Mark, Tree, signed};
 
-/// Most operations of a number of the table that are listed one by one.
+/// Largest number of operations of a constant of the table whose equation is shown.
 const SIMPLE: usize = 12;
 
-/// The equations of a program, and what is asked of them again and again.
+/// The equations of a program, with tables for frequent look-ups.
 pub(crate) struct Equations<'p> {
     robot: &'p Robot,
     program: &'p Program,
     became: HashMap<String, Became>,
-    /// The components that no statement needs, where they are a letter or a number.
+    /// The components that no statement needs and that are a symbol or a number.
     plain: HashMap<String, Tree>,
     used_by: BTreeMap<String, Vec<String>>,
     statements: HashMap<String, Vec<String>>,
@@ -71,14 +71,15 @@ impl<'p> Equations<'p> {
         all
     }
 
-    /// The components of the chosen equations, in order.
+    /// Returns the components of the chosen equations, in order.
     pub(crate) fn components(&mut self, is_here: impl Fn(&Equation) -> bool) -> Vec<Component> {
         let program = self.program;
         program.equations.iter().filter(|equation| is_here(equation)).map(|of| self.component(of)).collect()
     }
 
-    /// The components that are dead in the code and plain on paper: an element of a rotation that is s1, an angular
-    /// velocity that is qd1. An equation names those before it alone.
+    /// Finds the components that the code does not compute because they are a symbol or a number, such as an element of
+    /// a rotation that is s1, or an angular velocity that is qd1. One pass is enough, because an equation only uses
+    /// earlier components.
     fn find_plain(&mut self) {
         for equation in &self.program.equations {
             let name = equation.name.to_string();
@@ -97,13 +98,13 @@ impl<'p> Equations<'p> {
         }
     }
 
-    /// All reasons that trees tell by number.
+    /// Returns all reasons, to which trees refer by number.
     pub(crate) fn into_reasons(self) -> Vec<String> {
         self.reasons
     }
 
-    /// Whether a value reaches a statement, by itself or as a part of others that have none. A statement without an
-    /// equation, as the sums of a floating base are, does not tell what it reads.
+    /// Whether a value has a statement, or is a part of another value that has one. If some statement has no equation,
+    /// like the sums of a floating base, it is unknown which values it uses, so the result is true.
     fn is_stated(&self, name: &str) -> bool {
         self.statements.contains_key(name)
             || !self.is_whole
@@ -125,7 +126,7 @@ impl<'p> Equations<'p> {
                 reasons.len() - 1
             })
         });
-        // how the inertia of a link is turned is no step of the lecture, and long
+        // the rotation of a link's inertia is no step of the lecture, and its equation is long
         let general = match self.became.get(&name) {
             Some(Became::Constant { value, .. }) if equation.place.is_none() && general.size() > SIMPLE => {
                 Tree::Number(*value)
@@ -138,9 +139,9 @@ impl<'p> Equations<'p> {
         folded.dedup();
         let statements = self.statements.get(&name).cloned().unwrap_or_default();
         let became = match self.became.get(&name) {
-            // a torque that is another name is returned under its own
+            // a torque that equals another value still has a statement of its own
             Some(Became::Same { .. }) if statements.contains(&name) => Became::Computed,
-            // the code has the same product for something else
+            // the code contains the same product, but for another value
             None | Some(Became::Inside) if !self.is_stated(&name) => Became::Unused,
             found => found.cloned().unwrap_or(Became::Inside),
         };
@@ -155,7 +156,7 @@ impl<'p> Equations<'p> {
         }
     }
 
-    /// The tree that replaces a name for this robot.
+    /// Returns the tree that replaces a name for this robot.
     fn here(&self, name: &str) -> Tree {
         match self.became.get(name) {
             Some(Became::Constant { value, .. }) => Tree::Number(*value),
@@ -167,7 +168,7 @@ impl<'p> Equations<'p> {
         }
     }
 
-    /// The largest terms that are gone, from left to right.
+    /// Lists the largest terms that were folded away, from left to right.
     fn fold(&self, tree: &Tree, folded: &mut Vec<Folded>) {
         let Tree::Node(operator, operands, mark) = tree else { return };
         let (fold, why, name) = match mark {
@@ -203,7 +204,7 @@ impl<'p> Equations<'p> {
         }
     }
 
-    /// The rest of a product with a factor of 1 or -1.
+    /// Returns the rest of a product with a factor of 1 or -1.
     fn other_factor(&self, operands: &[Tree]) -> String {
         let unit = |operand: &Tree| match operand.map_names(&|name| self.here(name)) {
             of if !of.names().is_empty() => None,
@@ -219,7 +220,7 @@ impl<'p> Equations<'p> {
     }
 }
 
-/// The component that a statement computes, wholly or in part.
+/// Returns the component that a statement computes, completely or in part.
 pub(crate) fn owner(statement: &codegen::Statement) -> codegen::Name {
     codegen::Name { part: 0, ..statement.name }
 }
@@ -232,13 +233,13 @@ mod tests {
 
     use super::*;
 
-    /// A number for a letter: any, the same each time.
+    /// Returns an arbitrary number for a symbol, always the same one.
     fn letter(name: &str) -> f64 {
         let sum = name.bytes().fold(7_u32, |sum, byte| (sum * 31 + u32::from(byte)) % 1009);
         f64::from(sum) / 500.0 - 1.0
     }
 
-    /// The values of components by the equations alone, each computed once.
+    /// The values of components, computed from the equations only, each once.
     struct Values<'e> {
         equations: &'e Equations<'e>,
         trees: HashMap<String, Tree>,

@@ -1,8 +1,9 @@
-//! The compiler's knowledge of an arm as data: for every component of every step the general equation, the
-//! equation of this robot, what folded away and because of which zeros, the code that is left, units, frames, counts.
+//! The compiler's knowledge of an arm as data: for every component of every step the general equation, the equation for
+//! this robot, the terms that were folded away with the zeros that cause it, the remaining code, units, frames and
+//! counts of operations.
 //!
-//! [`inspect`] makes it; it becomes JSON by serde. Text, pages and plots are renderers of it, and none of them computes
-//! dynamics of its own. Data in, data out: nothing here opens a file or prints.
+//! [`inspect`] makes an inspection, which serde can write as JSON. Text, pages and plots only display it; they do not
+//! compute dynamics themselves. This crate does not read files and does not print.
 //!
 //! ```
 //! use rne_codegen::{Form, Function};
@@ -38,18 +39,17 @@ pub use crate::tree::{Mark, Tree};
 /// The version of the shape.
 pub const VERSION: u32 = 1;
 
-/// Compiles the seven steps of a function and tells all of them.
+/// Compiles the seven steps of a function and inspects the program.
 ///
 /// # Errors
-/// When it does not compile: [`Compiler::compile`].
+/// When the function does not compile: [`Compiler::compile`].
 pub fn inspect(robot: &rne_model::Robot, function: Function) -> Result<Inspection, CompileError> {
     let program = Compiler::new(robot).with_equations().compile(function, Form::SevenSteps)?;
     Ok(Inspection::new(robot, &program))
 }
 
 impl Inspection {
-    /// Inspects a program. Equations are told where the program has them
-    /// ([`Compiler::with_equations`]).
+    /// Inspects a program. It needs equations ([`Compiler::with_equations`]) to describe components.
     #[must_use]
     pub fn new(robot: &rne_model::Robot, program: &Program) -> Self {
         let mut equations = Equations::new(robot, program);
@@ -103,13 +103,13 @@ impl Inspection {
         }
     }
 
-    /// A step of a joint; both count from 1.
+    /// Returns a step of a joint; both count from 1.
     #[must_use]
     pub fn cell(&self, joint: usize, step: usize) -> Option<&Cell> {
         self.cells.iter().find(|cell| cell.joint == joint && cell.step == step)
     }
 
-    /// The unit of a name; empty for plain numbers.
+    /// Returns the unit of a name; empty for plain numbers.
     #[must_use]
     pub fn unit(&self, name: &str) -> &'static str {
         let Some((name, quantity)) = self.meaning(name) else { return "" };
@@ -117,7 +117,7 @@ impl Inspection {
         quantity.units[usize::from(kind == "prismatic")]
     }
 
-    /// In the axes of which frame a name is: a joint's number, 0 for the base.
+    /// Returns the number of the joint in whose link axes a name is expressed; 0 for the base.
     #[must_use]
     pub fn frame(&self, name: &str) -> Option<usize> {
         let (name, quantity) = self.meaning(name)?;
@@ -127,14 +127,14 @@ impl Inspection {
         }
     }
 
-    /// The meaning of a name, and its quantity.
+    /// Returns the meaning of a name, and its quantity.
     #[must_use]
     pub fn meaning(&self, name: &str) -> Option<(&Name, &Quantity)> {
         let name = self.names.get(name)?;
         Some((name, self.quantities.get(&name.quantity)?))
     }
 
-    /// A component of any step, or of the table.
+    /// Returns a component of any step, or of the table.
     #[must_use]
     pub fn component(&self, name: &str) -> Option<&Component> {
         let of_cells = self.cells.iter().flat_map(|cell| &cell.components);
@@ -143,14 +143,14 @@ impl Inspection {
 }
 
 impl Cell {
-    /// One of its components.
+    /// Returns one of the components of this cell.
     #[must_use]
     pub fn component(&self, name: &str) -> Option<&Component> {
         self.components.iter().find(|component| component.name == name)
     }
 }
 
-/// The steps of the joints with their equations; none where the program has no equations.
+/// Returns the steps of the joints with their equations; empty if the program has no equations.
 fn cells(robot: &rne_model::Robot, program: &Program, equations: &mut Equations<'_>) -> Vec<Cell> {
     if program.equations.is_empty() {
         return Vec::new();
@@ -192,7 +192,7 @@ fn cells(robot: &rne_model::Robot, program: &Program, equations: &mut Equations<
     cells
 }
 
-/// The statements as they stand in Rust, by name.
+/// Returns the text of each statement in Rust, by name.
 fn rust(robot: &rne_model::Robot, program: &Program) -> BTreeMap<String, String> {
     let listing = rne_emit::listing(robot, program, Selection::default());
     let lines = listing.sections.iter().flat_map(|section| &section.lines);
@@ -226,7 +226,7 @@ fn sine_and_cosine(program: &Program, turn: &codegen::SineCosine) -> SineCosine 
     SineCosine { joint, sine: text(&turn.sine), cosine: text(&turn.cosine), angle }
 }
 
-/// The meaning of every name of the program.
+/// Returns every name of the program.
 fn names(program: &Program) -> BTreeSet<codegen::Name> {
     let turned = program.sines_and_cosines.iter().flat_map(|turn| turn.sine.into_iter().chain(turn.cosine));
     let written = program.equations.iter().flat_map(|of| std::iter::once(of.name).chain(of.term.names()));

@@ -1,11 +1,11 @@
-//! The meaning of a name: quantity, unit, frame, and where it is drawn on the arm.
+//! The meaning of a name: quantity, unit, frame, and the place in drawings of the arm.
 
 use rne_codegen::{self as codegen, Component, Quantity};
 use rne_model::{JointKind, Robot};
 
 use crate::record::{self, Name};
 
-/// `Omega` as `omega`, `JointForce` as `joint_force`.
+/// Converts the name of a quantity, such as `JointForce` to `joint_force`.
 pub(crate) fn quantity(quantity: Quantity) -> String {
     let mut text = String::new();
     for letter in format!("{quantity:?}").chars() {
@@ -42,7 +42,7 @@ pub(crate) fn of_quantity(robot: &Robot, of: Quantity) -> record::Quantity {
     }
 }
 
-/// The number of the joint that carries another, or the tip; 0 is the base.
+/// Returns the number of the joint whose link carries a joint or the tip; 0 is the base.
 pub(crate) fn parent(robot: &Robot, joint: usize) -> usize {
     match joint {
         0 => 0,
@@ -53,9 +53,9 @@ pub(crate) fn parent(robot: &Robot, joint: usize) -> usize {
 
 const fn axes(quantity: Quantity) -> Option<&'static str> {
     match quantity {
-        // from one frame to another
+        // a rotation belongs to two frames
         Quantity::Rotation | Quantity::TipRotation => None,
-        // the joint's point belongs to both links; its acceleration is wanted in the axes of the one before
+        // the joint's point belongs to both links; its velocity and acceleration are in the axes of the previous one
         Quantity::JointPointVelocity | Quantity::JointPointAcceleration => Some("parent"),
         _ if quantity.is_vector() => Some("link"),
         _ => None,
@@ -70,7 +70,7 @@ const fn drawn(quantity: Quantity) -> Option<&'static str> {
         Q::JointPointAcceleration | Q::OriginAcceleration | Q::ReducedForce | Q::ReducedMoment => "joint",
         Q::OmegaCrossD | Q::Velocity | Q::Acceleration | Q::BaseAcceleration | Q::Gravity => "com",
         Q::InertiaForce | Q::InertiaMoment | Q::AngularMomentum | Q::MasslessForce | Q::OmegaCrossMoment => "com",
-        // of the next joint: what it carries
+        // drawn at the next joint
         Q::ChildForce | Q::ChildMoment | Q::OmegaCrossR | Q::R => "lever",
         Q::Position | Q::Rate | Q::RateDot | Q::Torque | Q::AppliedTorque | Q::TwiceRate => "axis",
         Q::Angle | Q::Sine | Q::Cosine | Q::TurnedSine | Q::TurnedCosine | Q::Theta => "axis",

@@ -7,8 +7,8 @@ use serde::ser::{Serialize, SerializeSeq, Serializer};
 
 /// A formula. In JSON a name is a string, a number a number, and everything else an array with the operator first:
 /// `["+", "a", ["*", "b", 2.0]]`. Operators: `+ - * /` with two operands; `neg`, `sin`, `cos` with one; `sign` with
-/// three (the second where the first is positive, the third where it is negative, else 0). What folding made of an
-/// operation is an object behind its operands.
+/// three (the second where the first is positive, the third where it is negative, else 0). If an operation was folded,
+/// an object after its operands describes the result.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Tree {
     /// A name.
@@ -19,16 +19,16 @@ pub enum Tree {
     Node(&'static str, Vec<Tree>, Option<Mark>),
 }
 
-/// The fate of an operation.
+/// The result of folding an operation.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Mark {
-    /// `kept`, `zero`, `one`, `constant`, `cancelled`, `shared` or `unused`.
+    /// The kind of result: `kept`, `zero`, `one`, `constant`, `cancelled`, `shared` or `unused`.
     pub fold: &'static str,
-    /// Why: the number of an entry of [`Inspection::reasons`](crate::Inspection::reasons), from 0; absent where nothing
-    /// of the arm is the reason.
+    /// The reason, as an index into [`Inspection::reasons`](crate::Inspection::reasons), from 0; absent if the arm is
+    /// not the reason.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why: Option<usize>,
-    /// The name that the value has in the code, with a minus sign before it where that is its negative.
+    /// The name of the value in the code, with a minus sign if the name has the negative value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
 }
@@ -71,7 +71,8 @@ const fn word(fold: Fold) -> &'static str {
 }
 
 impl Tree {
-    /// A formula before folding; `why` words the causes of a zero (0) or a one (1).
+    /// Makes the tree of a formula before folding. `why` returns the index of the reason for a zero (0) or a one (1)
+    /// from its causes.
     pub(crate) fn of_term(term: &Term, why: &mut impl FnMut(&rne_codegen::Causes, u8) -> usize) -> Self {
         match term {
             Term::Variable(name) => Self::Name(name.to_string()),
@@ -89,7 +90,7 @@ impl Tree {
                     why: operation.causes.as_ref().map(|causes| why(causes, magnitude)),
                     name: operation.name.map(|(name, sign)| signed(name.to_string(), sign)),
                 };
-                // that it is kept goes without saying
+                // a mark that only says `kept` is left out
                 let mark = (mark.fold != "kept" || mark.name.is_some()).then_some(mark);
                 let operands = operation.operands.iter().map(|operand| Self::of_term(operand, why)).collect();
                 Self::Node(sign(operation.operator), operands, mark)
@@ -97,7 +98,7 @@ impl Tree {
         }
     }
 
-    /// The code of a statement.
+    /// Makes the tree of a statement of the code.
     pub(crate) fn of_expression(expression: Expression<'_>) -> Self {
         let node = |operator, operands| Self::Node(operator, operands, None);
         match expression.kind() {
@@ -156,7 +157,7 @@ impl Tree {
         }
     }
 
-    /// How many operations it has.
+    /// Returns the number of operations.
     #[must_use]
     pub fn size(&self) -> usize {
         match self {
@@ -165,7 +166,7 @@ impl Tree {
         }
     }
 
-    /// The names in it, from left to right, each as often as it stands there.
+    /// Returns the names in the tree from left to right, each as often as it occurs.
     #[must_use]
     pub fn names(&self) -> Vec<&str> {
         match self {
@@ -175,7 +176,7 @@ impl Tree {
         }
     }
 
-    /// Its value, when `of` gives those of the names.
+    /// Returns the value of the tree; `of` returns the values of names.
     pub fn evaluate(&self, of: &impl Fn(&str) -> f64) -> f64 {
         match self {
             Self::Name(name) => of(name),
@@ -198,7 +199,7 @@ impl Tree {
         }
     }
 
-    /// How tightly it holds together: sums least.
+    /// Returns the precedence of the operator; sums have the lowest.
     fn rank(&self) -> u8 {
         match self {
             Self::Node("+" | "-" | "neg", ..) => 0,
@@ -226,12 +227,12 @@ impl Tree {
             Self::Node(operator @ ("+" | "-" | "*" | "/"), operands, _) => {
                 let (rank, is_sum) = (self.rank(), *operator == "+");
                 if let [a, b] = &operands[..] {
-                    // what begins with a sign may begin a sum
+                    // an operand with a sign needs no parentheses at the beginning of a sum
                     let begins =
                         if matches!(a, Self::Node("neg", ..) | Self::Number(_)) && rank == 0 { 0 } else { rank };
                     inner(a, begins, text);
                     let _ = write!(text, " {operator} ");
-                    // sums and products are computed in the order in which they stand
+                    // a right operand of the same rank needs parentheses, to keep the order of computation
                     let least = if is_sum && matches!(b, Self::Node("*" | "/", ..)) { 1 } else { rank + 1 };
                     inner(b, least, text);
                 }
@@ -263,7 +264,7 @@ impl std::fmt::Display for Tree {
     }
 }
 
-/// A name, with a minus sign where it stands for the negative.
+/// Returns a name, with a minus sign for the negative.
 pub(crate) fn signed(name: String, sign: Sign) -> String {
     if sign == Sign::Minus { format!("-{name}") } else { name }
 }

@@ -1,18 +1,18 @@
-//! The data of a page: the inspection, without the parts that the page can derive.
+//! Makes the data of a page: the inspection without the parts that the page can derive.
 
 use rne_codegen::Program;
 use rne_inspection::{Became, Component, Inspection, Name, Statement};
 use rne_model::{Angle, FixedFrame, Robot};
 use serde_json::{Map, Value, json};
 
-/// The data of a page.
+/// Returns the data of a page.
 ///
 /// `robot`, `counts`, `quantities`, `reasons` and `cells` are those of the inspection of `torques`, which has
-/// equations. `names` has arrays of quantity, joint, component (or null), part (where it is one) and what the link
-/// carries there (where it is not the first). A component has its name, its equation and, unless it is computed, what
-/// became of it, with its reason by number. `programs` are three: `folded`, with the tip wrench as arguments
-/// `with_wrench`, and `reduced` with names of its own, for its frames are not those of the lecture. With a
-/// floating base, `folded` takes the wrenches at the tips itself, and `floating` has the base and these tips.
+/// equations. `names` has arrays of quantity, joint, component (or null), part (if the name is one) and carried joint
+/// (if it is not the first). A component has its name, its equation and, unless it is computed, what it became, with
+/// the index of the reason. There are three `programs`: `folded`, `with_wrench`, which has the tip wrench as arguments,
+/// and `reduced`, which has its own names, because its frames are not those of the lecture. With a floating base,
+/// `folded` itself has the wrenches at the tips as arguments, and `floating` describes the base and these tips.
 #[must_use]
 pub fn data(robot: &Robot, torques: &Program, with_wrench: Option<&Program>, reduced: Option<&Program>) -> Value {
     let folded = Inspection::new(robot, torques);
@@ -22,7 +22,7 @@ pub fn data(robot: &Robot, torques: &Program, with_wrench: Option<&Program>, red
     if let Some(with_wrench) = with_wrench {
         let wrench = Inspection::new(robot, with_wrench);
         quantities.extend(wrench.quantities.clone());
-        // only its torques are shown
+        // the page shows only its torques, not its code
         programs.insert("with_wrench".to_owned(), program(&wrench, false));
     }
     if let Some(reduced) = reduced {
@@ -70,7 +70,7 @@ pub fn data(robot: &Robot, torques: &Program, with_wrench: Option<&Program>, red
     data
 }
 
-/// A floating base, and the tips of its robot; `on` counts joints from 1, 0 is the base.
+/// Returns the floating base and the tips of a robot; `on` is the number of a joint, from 1, or 0 for the base.
 fn floating(robot: &Robot) -> Option<Value> {
     let base = robot.floating_base.as_ref()?;
     let tip = |name: &str, FixedFrame { on, placement }: FixedFrame| {
@@ -87,7 +87,7 @@ fn floating(robot: &Robot) -> Option<Value> {
     Some(json!({ "name": base.name, "mass": link.mass, "com": link.com, "inertia": inertia, "tips": tips }))
 }
 
-/// The meaning of every name.
+/// Returns the meaning of every name.
 fn names(inspection: &Inspection) -> Value {
     let record = |name: &Name| match (name.part, name.carries) {
         (None, None) => json!([name.quantity, name.joint, name.component]),
@@ -98,12 +98,12 @@ fn names(inspection: &Inspection) -> Value {
     Value::Object(all)
 }
 
-/// Components; the reason for which one became a number is an entry of `reasons`, by its number.
+/// Returns components. The reason for which one became a constant is given by its index in `reasons`.
 fn components(all: &[Component], reasons: &mut Vec<String>) -> Value {
     let mut told = |component: &Component| {
         let mut became = json!(component.became);
         match &component.became {
-            // that a number is one of the table goes without saying
+            // constants of the table need no reason
             Became::Constant { why, .. } if why == "of the table" => {
                 became.as_object_mut().and_then(|became| became.remove("why"));
             }
@@ -114,7 +114,7 @@ fn components(all: &[Component], reasons: &mut Vec<String>) -> Value {
                 });
                 became["why"] = json!(at);
             }
-            // nor is it told that one is computed
+            // for a computed component, `became` is left out
             Became::Computed => return json!({ "name": component.name, "general": component.general }),
             _ => {}
         }
@@ -123,8 +123,8 @@ fn components(all: &[Component], reasons: &mut Vec<String>) -> Value {
     all.iter().map(&mut told).collect()
 }
 
-/// The code that computes the outputs. Where it is shown, its statements are objects; else each is its name and its
-/// value. The page writes their text, which the tests compare with the text that is emitted.
+/// Returns the code of the outputs. If the page shows the code, its statements are objects; otherwise, each is a name
+/// and a value. The page writes the text of the statements, which tests compare with the emitted text.
 fn program(inspection: &Inspection, is_shown: bool) -> Value {
     let told = |statement: &Statement| {
         if !is_shown {

@@ -1,9 +1,8 @@
 //! One page of HTML in which a robot arm's dynamics can be inspected: the arm in 3-D, the seven steps joint by joint,
-//! equations beside code beside numbers, torques over a motion. The page is complete in itself: no network, nothing to
-//! install.
+//! equations, code and numbers side by side, and torques over a motion. The page needs no network and no installation.
 //!
-//! [`page`] makes it. The page holds the inspection ([`rne_inspection`]) as JSON and evaluates that: it has no dynamics
-//! of its own. Data in, a text out: nothing here opens a file or prints.
+//! [`page`] makes the page. It contains the inspection ([`rne_inspection`]) as JSON and evaluates it, without other
+//! code for dynamics. This crate does not read files and does not print.
 //!
 //! ```
 //! let file = rne_robots::find("planar2").expect("it is shipped");
@@ -24,11 +23,11 @@ use rne_model::Robot;
 
 pub use crate::data::data;
 
-/// The parts of every page besides its data.
+/// The parts of every page other than its data.
 const HTML: &str = include_str!("../web/index.html");
 const STYLE: &str = include_str!("../web/style.css");
 
-/// The scripts of the page, in the order in which they stand in it: each uses only those before it.
+/// The scripts of the page in order: each uses only earlier ones.
 pub const SCRIPTS: [(&str, &str); 24] = [
     ("pose.js", include_str!("../web/pose.js")),
     ("inspection.js", include_str!("../web/inspection.js")),
@@ -56,11 +55,11 @@ pub const SCRIPTS: [(&str, &str); 24] = [
     ("page.js", include_str!("../web/page.js")),
 ];
 
-/// The page of an arm. Units are SI: m, rad, N, N m.
+/// Makes the page of an arm. Units are SI: m, rad, N, N m.
 ///
-/// `reduced` is the program of [`rne_codegen::function_of_plan`] in the reduced form, by whatever plan there is for the
-/// arm; without it the one is taken that the compiler makes without a plan. This function is the inverse dynamics: of a
-/// robot with a floating base, the one whose arguments are the motion of the base and wrenches at the tips.
+/// `reduced` is the program of [`rne_codegen::function_of_plan`] in the reduced form, by any plan for the arm. If it is
+/// `None`, the program is compiled without a plan. This function is the inverse dynamics; for a robot with a floating
+/// base, it has the motion of the base and wrenches at the tips as arguments.
 ///
 /// # Errors
 /// When the inverse dynamics do not compile: [`Compiler::compile`].

@@ -1,10 +1,10 @@
-//! A page with gaps, and texts that stay what they are wherever they stand in it.
+//! Fills the gaps of a page, and escapes the texts in it.
 
 use std::fmt::Write as _;
 
 use serde_json::Value;
 
-/// The template with every `{{name}}` replaced, in one pass: what is put in is not searched for gaps.
+/// Returns the template with every `{{name}}` replaced, in one pass: inserted text is not searched for gaps.
 pub(crate) fn filled(template: &str, parts: &[(&str, String)]) -> String {
     let mut page = String::new();
     let mut rest = template;
@@ -25,7 +25,7 @@ pub(crate) fn filled(template: &str, parts: &[(&str, String)]) -> String {
     page + rest
 }
 
-/// Text as the content of an element, or inside the quotes of an attribute.
+/// Escapes a text for the content of an element, or for an attribute in quotes.
 pub(crate) fn text(text: &str) -> String {
     let mut inert = String::new();
     for c in text.chars() {
@@ -41,8 +41,8 @@ pub(crate) fn text(text: &str) -> String {
     inert
 }
 
-/// JSON as the content of a `script` element: neither `</script>` nor `<!--` can stand in it, and nothing that a reader
-/// of HTML would take for the name of a character. In JSON these signs stand inside strings alone.
+/// Writes JSON for the content of a `script` element: the characters of `</script>`, `<!--` and of HTML entities are
+/// escaped. In JSON, they occur only inside strings.
 pub(crate) fn json(mut value: Value) -> String {
     without_fractions(&mut value);
     let mut inert = String::new();
@@ -57,7 +57,7 @@ pub(crate) fn json(mut value: Value) -> String {
     inert
 }
 
-/// Whole numbers are written without their `.0`, which JavaScript does not need; a negative zero keeps it.
+/// Removes the `.0` of whole numbers, which JavaScript does not need, except for a negative zero.
 fn without_fractions(value: &mut Value) {
     const LARGEST: f64 = 1e9;
     match value {
@@ -75,8 +75,8 @@ fn without_fractions(value: &mut Value) {
     }
 }
 
-/// A source of the page without its indentation and without the lines that are comments alone: they would be a tenth of
-/// a page. They stand in `page/`. No text of a script may go over several lines.
+/// Returns a source of the page without indentation and without lines that are only comments, which would be a tenth of
+/// a page. A string in a script must not extend over several lines.
 pub(crate) fn code(script: &str) -> String {
     let mut code = String::new();
     let mut is_inside = false;

@@ -1,7 +1,8 @@
-//! The picture of a torque history: a panel for each joint with its torque and what it is made of, and one of powers.
+//! Draws a torque history: a panel for each joint with its torque and its parts, and one panel with powers.
 //!
-//! Light background, letters that are read from the last row, and the colours of Okabe and Ito, which the colour-blind
-//! tell apart; dashes tell them apart where there is no colour. No script, no font, no file beside it.
+//! The background is light, letters are large enough for the last row of a lecture room, and the colours are those of
+//! Okabe and Ito, which colour-blind people can distinguish; dashes distinguish lines without colours. The picture has
+//! no scripts, fonts or other files.
 
 use rne_model::Robot;
 
@@ -11,12 +12,12 @@ use crate::parts::TorqueParts;
 use crate::scale::{Scale, label, range, significant};
 use crate::trajectory::Trajectory;
 
-/// Pixels.
+/// Margin, height of the head, and height of a panel, pixels.
 pub(crate) const SIDE: f64 = 40.0;
 pub(crate) const HEAD: f64 = 132.0;
 pub(crate) const PANEL: f64 = 262.0;
 const POWERS: f64 = 330.0;
-/// Left of a panel's axes for numbers, above them for its title, below them for times.
+/// Space left of a panel's axes for numbers, above them for the title, and below them for times, pixels.
 const LEFT: f64 = 64.0;
 const ABOVE: f64 = 40.0;
 const BELOW: f64 = 44.0;
@@ -26,14 +27,14 @@ pub(crate) const QUIET: &str = "#595959";
 const GRID: &str = "#e4e4e4";
 const ZERO: &str = "#9a9a9a";
 
-/// Okabe and Ito, without yellow, which light backgrounds swallow; black is the total.
+/// The colours of Okabe and Ito without yellow, which is hard to see on a light background. Black is for the total.
 pub(crate) const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#7a5195"];
-/// Dashes of the lines that have a colour again.
+/// Dashes of lines, for when the colours repeat.
 const DASHES: [&str; 4] = ["", "9 4", "2 4", "11 4 2 4"];
 
-/// The torques and powers of a robot along a trajectory as an SVG of 1280 pixels width: for each joint its torque in
-/// N m (N where it slides) with the inertia, velocity and gravity parts and its peak, then all powers in W, over time
-/// in seconds. `about` says what the trajectory is. Texts of the robot file are shown and do nothing.
+/// Returns an SVG, 1280 pixels wide, of the torques and powers of a robot along a trajectory: for each joint its torque
+/// in N m (N for a prismatic joint) with the inertia, velocity and gravity parts and its peak, then all powers in W,
+/// over time in seconds. `about` describes the trajectory. Texts of the robot file are escaped.
 #[must_use]
 pub fn svg(robot: &Robot, trajectory: &Trajectory, history: &TorqueHistory, about: &str) -> String {
     let columns = if robot.dof() == 1 { 1 } else { 2 };
@@ -76,7 +77,7 @@ fn legend(svg: &mut Svg) {
     }
 }
 
-/// Where a panel stands, axes, numbers and all.
+/// Position and size of a panel, including axes and numbers.
 #[derive(Clone, Copy)]
 pub(crate) struct Place {
     pub(crate) x: f64,
@@ -114,7 +115,7 @@ fn torque_panel(
     }
 }
 
-/// The peak of a torque, and how much of it comes of velocities.
+/// Marks the peak of a torque, and the part of it that velocities cause.
 fn mark(svg: &mut Svg, place: Place, (across, up): (Scale, Scale), peak: Peak, unit: &str) {
     let (x, y) = (across.at(peak.time), up.at(peak.tau));
     let share = 100.0 * peak.velocity_share;
@@ -157,7 +158,7 @@ fn power_panel(svg: &mut Svg, place: Place, robot: &Robot, trajectory: &Trajecto
         let values = history.powers.iter().map(|powers| powers.iter().sum()).collect();
         curves.push(Curve { name: "all joints", colour: TEXT, dash: "", width: 3.2, values });
     }
-    // the names stand between the title and the axes, on as many lines as they need
+    // the names are between the title and the axes, on as many lines as needed
     let mut lines = vec![Vec::new()];
     let mut x = place.x;
     for curve in &curves {
@@ -171,7 +172,7 @@ fn power_panel(svg: &mut Svg, place: Place, robot: &Robot, trajectory: &Trajecto
         }
         x += needed;
     }
-    // of 64 joints some lines have room
+    // at most four lines, even for 64 joints
     let shown = lines.len().min(4);
     #[allow(clippy::cast_precision_loss)]
     let below = 22.0 * shown as f64;
@@ -193,7 +194,7 @@ fn power_panel(svg: &mut Svg, place: Place, robot: &Robot, trajectory: &Trajecto
     panel(svg, inner, "", &trajectory.time, &curves);
 }
 
-/// Axes with their grid, and the curves; returns the scales.
+/// Draws axes with their grid, and the curves; returns the scales.
 pub(crate) fn panel(svg: &mut Svg, place: Place, title: &str, time: &[f64], curves: &[Curve<'_>]) -> (Scale, Scale) {
     let values = curves.iter().flat_map(|curve| curve.values.iter().copied());
     let (across, up, _) = axes(svg, place, title, Ticks::Seconds, time, values);
@@ -203,16 +204,16 @@ pub(crate) fn panel(svg: &mut Svg, place: Place, title: &str, time: &[f64], curv
     (across, up)
 }
 
-/// Labels below the axes.
+/// Kind of labels below the axes.
 #[derive(Clone, Copy)]
 pub(crate) enum Ticks<'a> {
     /// Times, s.
     Seconds,
-    /// A name for each place, side by side.
+    /// A name for each position, side by side.
     Names(&'a [String]),
 }
 
-/// Axes with their grid for values over times; returns the scales, and where the axes are between: [top, bottom].
+/// Draws axes with their grid for values over times; returns the scales, and the vertical ends [top, bottom].
 pub(crate) fn axes(
     svg: &mut Svg,
     place: Place,
@@ -225,7 +226,7 @@ pub(crate) fn axes(
     let (left, right) = (place.x + LEFT, place.x + place.width);
     let (top, bottom) = (place.y + ABOVE, place.y + place.height - BELOW);
     let (start, end) = (time.first().copied().unwrap_or(0.0), time.last().copied().unwrap_or(1.0));
-    // a name has room on both sides of its place
+    // leaves space on both sides of a name
     let beside = if matches!(ticks, Ticks::Names(_)) { 0.5 } else { 0.0 };
     let across = Scale::new(start - beside, end + beside, left, right);
     let (low, high) = range(values, ABOUT_UP);
@@ -250,7 +251,7 @@ pub(crate) fn axes(
     (across, up, [top, bottom])
 }
 
-/// The ticks of the axis across with their words: of many names as many as have room.
+/// Returns the ticks of the horizontal axis with their labels: only as many names as there is space for.
 fn labels(ticks: Ticks<'_>, time: &[f64], across: Scale, width: f64) -> Vec<(f64, String)> {
     const LONGEST: usize = 24;
     match ticks {

@@ -1,29 +1,30 @@
-//! Bounds that leave the axes: what is shown of them, and what is written at the edge.
+//! Clips curves of bounds that exceed the axes, and makes the labels at the edges.
 
 use crate::elements::Curve;
 use crate::scale::significant;
 
-/// The axes are at most this many times as long as the curves need, so that bounds that are near are seen.
+/// Largest ratio of the length of the axes to the range of the curves, so that near bounds are visible.
 const ROOM: f64 = 2.0;
 
-/// The values for which axes have room: those of the curves, and those of the bounds that are not too far from them.
+/// Returns the ends of the range that axes should show: that of the curves, extended to bounds that are not too far.
 pub(crate) fn room(curves: impl Iterator<Item = f64>, bounds: impl Iterator<Item = f64>) -> Vec<f64> {
     let ends = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
     let (low, high) = curves.filter(|value| value.is_finite()).fold((0.0, 0.0), ends);
     let more = (ROOM - 1.0) / 2.0 * (high - low);
     let (least, most) = bounds.filter(|value| value.is_finite()).fold((low, high), ends);
-    // curves that are all zero leave the axes to the bounds
+    // if all curves are zero, the axes show the bounds
     if more > 0.0 { vec![least.max(low - more), most.min(high + more)] } else { vec![least, most] }
 }
 
-/// The parts of a curve between two values, each with its times; a part begins and ends where the curve crosses an end.
+/// Returns the parts of a curve between the values `low` and `high`, each with its times. A part begins and ends where
+/// the curve crosses one of them.
 pub(crate) fn clipped(time: &[f64], values: &[f64], [low, high]: [f64; 2]) -> Vec<(Vec<f64>, Vec<f64>)> {
     let mut parts: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
     let mut is_open = false;
     let points: Vec<(f64, f64)> = time.iter().copied().zip(values.iter().copied()).collect();
     for pair in points.windows(2) {
         let [(t0, v0), (t1, v1)] = [pair[0], pair[1]];
-        // the part of the way from one point to the next at which a value is crossed
+        // the position between two points, 0 to 1, at which a value is crossed
         let at = |value: f64| (value - v0) / (v1 - v0);
         let (from, to) = match (v0 == v1, v1 > v0) {
             (true, _) if (low..=high).contains(&v0) => (0.0, 1.0),
@@ -31,7 +32,7 @@ pub(crate) fn clipped(time: &[f64], values: &[f64], [low, high]: [f64; 2]) -> Ve
             (_, true) => (f64::max(0.0, at(low)), f64::min(1.0, at(high))),
             (_, false) => (f64::max(0.0, at(high)), f64::min(1.0, at(low))),
         };
-        // what is no number is nowhere
+        // NaN interrupts the curve
         if !(from <= to && v0.is_finite() && v1.is_finite()) {
             is_open = false;
             continue;
@@ -51,7 +52,7 @@ pub(crate) fn clipped(time: &[f64], values: &[f64], [low, high]: [f64; 2]) -> Ve
     parts
 }
 
-/// Words for the edges beyond which bounds are: whether it is the upper edge, and how far they are.
+/// Returns labels for the edges that bounds exceed: whether it is the upper edge, and the most distant values.
 pub(crate) fn edges(bounds: &[Curve<'_>], [low, high]: [f64; 2]) -> Vec<(bool, String)> {
     let farthest = |is_above: bool| {
         let values = |bound: &Curve<'_>| {
@@ -79,7 +80,7 @@ mod tests {
         let time = [0.0, 1.0, 2.0, 3.0, 4.0];
         let whole = clipped(&time, &[1.0, -1.0, 0.0, 0.5, 1.0], [-2.0, 2.0]);
         assert_eq!(whole, [(time.to_vec(), vec![1.0, -1.0, 0.0, 0.5, 1.0])]);
-        // up to 4 and back: it crosses 2 in the middle of its ways
+        // from 0 to 4 and back: the curve crosses 2 halfway
         let cut = clipped(&time, &[0.0, 4.0, 0.0, 0.0, 0.0], [-2.0, 2.0]);
         assert_eq!(cut, [(vec![0.0, 0.5], vec![0.0, 2.0]), (vec![1.5, 2.0, 3.0, 4.0], vec![2.0, 0.0, 0.0, 0.0])]);
         // from below to above within a step

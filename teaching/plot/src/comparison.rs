@@ -1,4 +1,4 @@
-//! The picture of a model beside what was measured: a panel for each joint with both torques and what is left.
+//! Draws measured and predicted torques: a panel for each joint with both and their difference.
 
 use rne_model::{Joint, Robot};
 
@@ -23,7 +23,7 @@ pub struct Comparison<'a> {
 }
 
 /// Draws measured and predicted torques and their difference for each joint, as an SVG of 1280 pixels width. Texts of
-/// the robot file are shown and do nothing.
+/// the robot file are escaped.
 #[must_use]
 pub fn comparison_svg(robot: &Robot, comparison: &Comparison<'_>) -> String {
     let Comparison { title, about, time, measured, predicted, notes } = *comparison;

@@ -1,4 +1,4 @@
-//! The elements of a picture, written as SVG one after the other.
+//! Writes the elements of a picture as SVG.
 
 use std::fmt::Write as _;
 use std::io;
@@ -15,7 +15,7 @@ pub(crate) const WIDTH: f64 = 1280.0;
 /// Colour of letters and of the most important line.
 pub(crate) const TEXT: &str = "#222222";
 
-/// More points than pixels tell nothing.
+/// Number of stretches of a curve of which points are drawn: half a picture's width in pixels.
 const BUCKETS: usize = 640;
 
 /// A line of a panel.
@@ -27,7 +27,7 @@ pub(crate) struct Curve<'a> {
     pub(crate) values: Vec<f64>,
 }
 
-/// The samples of a curve that a picture shows: of each stretch the first, the least, the largest and the last.
+/// Returns the samples of a curve that are drawn: the first, the smallest, the largest and the last of each stretch.
 fn kept(values: &[f64]) -> Vec<usize> {
     if values.len() <= 2 * BUCKETS {
         return (0..values.len()).collect();
@@ -48,15 +48,15 @@ fn kept(values: &[f64]) -> Vec<usize> {
     kept
 }
 
-/// Elements, written one after the other.
+/// A picture to which elements are appended.
 pub(crate) struct Svg {
     writer: Writer<Vec<u8>>,
-    /// Writing to memory does not fail; if it does, the picture is empty.
+    /// Whether writing has failed, so that the picture is empty; writing to memory normally does not fail.
     failed: bool,
 }
 
 impl Svg {
-    /// A white picture of `height` pixels; `name` is its title for readers who do not see it.
+    /// Begins a white picture of `height` pixels; `name` is its title for screen readers.
     pub(crate) fn with_root(name: &str, height: f64) -> Self {
         let mut svg = Self { writer: Writer::new_with_indent(Vec::new(), b' ', 1), failed: false };
         let size = format!("0 0 {} {}", pixels(WIDTH), pixels(height));
@@ -151,24 +151,24 @@ impl Svg {
     }
 }
 
-/// A text in which every character may stand in XML and none does anything.
+/// Replaces the characters of a text that XML does not allow.
 fn plain(text: &str) -> String {
     one_line(text).replace(['\u{FFFE}', '\u{FFFF}'], "\u{FFFD}")
 }
 
-/// A text of at most `most` characters.
+/// Shortens a text to at most `most` characters.
 pub(crate) fn shortened(text: &str, most: usize) -> String {
     let text = plain(text);
     if text.chars().count() <= most { text } else { text.chars().take(most - 1).chain(['…']).collect() }
 }
 
-/// Pixels in hundredths.
+/// Formats pixels, rounded to hundredths.
 pub(crate) fn pixels(value: f64) -> String {
     let rounded = (value * 100.0).round() / 100.0;
     format!("{}", rounded + 0.0)
 }
 
-/// About how wide a text is: fonts differ, and a legend has gaps for that.
+/// Returns the approximate width of a text, pixels; fonts differ, and gaps in a legend allow for that.
 pub(crate) fn width_of(text: &str, size: f64) -> f64 {
     let width = |c: char| match c {
         '\u{300}'..='\u{36F}' => 0.0,
@@ -180,7 +180,7 @@ pub(crate) fn width_of(text: &str, size: f64) -> f64 {
     size * text.chars().map(width).sum::<f64>()
 }
 
-/// ₁₂
+/// Writes a number in subscript digits, such as ₁₂.
 pub(crate) fn subscript(number: usize) -> String {
     let digit = |c: char| c.to_digit(10).and_then(|digit| char::from_u32(0x2080 + digit)).unwrap_or(c);
     number.to_string().chars().map(digit).collect()

@@ -10,11 +10,11 @@ use crate::trajectory::Trajectory;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct TorqueHistory {
-    /// At each sample.
+    /// Torques and their parts at each sample.
     pub parts: Vec<TorqueParts>,
     /// Powers τ q̇ at each sample, W, base to tip.
     pub powers: Vec<Vec<f64>>,
-    /// The largest torque of each joint, base to tip; none of a trajectory without samples.
+    /// The largest torque of each joint, base to tip; empty for a trajectory without samples.
     pub peaks: Vec<Peak>,
 }
 
@@ -22,18 +22,18 @@ pub struct TorqueHistory {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Peak {
-    /// The index of its sample; the first of several that are as large.
+    /// The index of the sample; the first one if several are equal.
     pub sample: usize,
-    /// Its time, s.
+    /// The time of the sample, s.
     pub time: f64,
     /// The torque, with its sign, N m or N.
     pub tau: f64,
-    /// How much of it comes of velocities, from 0 to 1: [`TorqueParts::velocity_share`].
+    /// The part of the torque that velocities cause, from 0 to 1: [`TorqueParts::velocity_share`].
     pub velocity_share: f64,
 }
 
 impl TorqueHistory {
-    /// The history of a robot with a free tip. Rotors count where they belong to it.
+    /// Computes the history of a robot with a free tip. Rotors are included if the robot has them.
     ///
     /// # Errors
     /// When the trajectory does not have one number per joint.
@@ -46,7 +46,7 @@ impl TorqueHistory {
         Ok(Self { parts, powers, peaks })
     }
 
-    /// The first sample at which a number is not finite.
+    /// Returns the first sample with a number that is not finite.
     #[must_use]
     pub fn overflows(&self) -> Option<usize> {
         self.parts.iter().position(|parts| !parts.is_finite())

@@ -1,8 +1,8 @@
-//! Torques along a trajectory, and what they are made of: the split of a torque into inertia, velocity and gravity
-//! parts ([`TorqueParts`]), a [`Trajectory`], the [`TorqueHistory`] of an arm along it, and its picture ([`svg`]).
-//! [`panels`] draws other signals of joints in the same manner.
+//! Torques along a trajectory and their parts: the inertia, velocity and gravity parts of a torque ([`TorqueParts`]), a
+//! [`Trajectory`], the [`TorqueHistory`] of an arm along it, and its picture ([`svg`]). [`panels`] draws other signals
+//! of joints in the same way.
 //!
-//! Numbers in, data and text out: nothing here opens a file or prints.
+//! This crate does not read files and does not print.
 //!
 //! ```
 //! use rne_plot::{TorqueHistory, Trajectory, svg};

@@ -1,4 +1,4 @@
-//! A picture of panels below each other's times: curves of a joint each, limits, and stretches that are marked.
+//! Draws panels over the same times: the curves of one joint in each, with limits and marked intervals.
 
 use crate::chart::{COLOURS, HEAD, PANEL, Place, QUIET, SIDE, Ticks, axes};
 use crate::clipped::{clipped, edges, room};
@@ -7,52 +7,53 @@ use crate::elements::{Curve, Svg, TEXT, WIDTH, pixels, shortened, width_of};
 /// A curve of a panel.
 #[derive(Clone, Copy, Debug)]
 pub struct PanelCurve<'a> {
-    /// Its name in the legend: the same in every panel. Curves of one name that follow each other look alike.
+    /// The name in the legend, the same in every panel. Successive curves with the same name have the same colour and
+    /// dash.
     pub name: &'a str,
     /// A value for each time.
     pub values: &'a [f64],
 }
 
-/// A stretch of time that is marked.
+/// A marked interval of time.
 #[derive(Clone, Debug)]
 pub struct Band {
-    /// s
+    /// Beginning, s.
     pub start: f64,
-    /// s
+    /// End, s.
     pub end: f64,
-    /// The words that a pointer shows.
+    /// The text of the tooltip.
     pub words: String,
 }
 
-/// Axes with what is in them.
+/// A panel: axes with their content.
 #[derive(Clone, Debug)]
 pub struct Panel<'a> {
-    /// Above the axes, with the unit.
+    /// Title above the axes, with the unit.
     pub title: String,
-    /// Above them, on the right.
+    /// Note above the axes, on the right.
     pub note: String,
     /// The curves.
     pub curves: Vec<PanelCurve<'a>>,
-    /// Dashed lines across.
+    /// Values of horizontal dashed lines.
     pub limits: Vec<f64>,
-    /// Curves that may leave the axes, such as thresholds: they are drawn like the others, but what is far beyond these
-    /// is cut off, and its largest value is written at the edge.
+    /// Curves that may exceed the axes, such as thresholds. They are drawn like the others, but values far outside are
+    /// cut off, and the largest one is written at the edge.
     pub bounds: Vec<PanelCurve<'a>>,
-    /// Marked stretches.
+    /// Marked intervals.
     pub bands: Vec<Band>,
 }
 
-/// Marks; light, so that curves are seen through them.
+/// Colour of marked intervals, so light that curves are visible on it.
 const MARKED: &str = "#f7dfa5";
 
-/// Panels over the same times (s), two in a row, as an SVG of 1280 pixels width. `name` is for who cannot see it,
-/// `title` stands above it and `about` below that. Texts are shown and do nothing.
+/// Returns an SVG, 1280 pixels wide, of panels over the same times (s), two in a row. `name` is the title for screen
+/// readers, `title` is at the top and `about` below it. Texts are escaped.
 #[must_use]
 pub fn panels(name: &str, title: &str, about: &str, time: &[f64], panels: &[Panel<'_>]) -> String {
     drawn(Ticks::Seconds, name, title, about, time, panels)
 }
 
-/// Panels like those of [`panels`], over names that stand side by side.
+/// Draws panels like [`panels`], but over names side by side instead of times.
 #[must_use]
 pub fn panels_over(names: &[String], name: &str, title: &str, about: &str, panels: &[Panel<'_>]) -> String {
     #[allow(clippy::cast_precision_loss)] // a number of names
@@ -96,7 +97,7 @@ fn drawn(ticks: Ticks<'_>, name: &str, title: &str, about: &str, time: &[f64], p
 }
 
 impl<'a> Panel<'a> {
-    /// All curves in the order of the legend.
+    /// Returns all curves in the order of the legend.
     fn all(&self) -> Vec<PanelCurve<'a>> {
         self.curves.iter().chain(&self.bounds).copied().collect()
     }
@@ -118,7 +119,7 @@ fn draw(svg: &mut Svg, place: Place, panel: &Panel<'_>, ticks: Ticks<'_>, time: 
     let (curves, bounds) = curves.split_at(panel.curves.len());
     let shown = curves.iter().flat_map(|curve| curve.values.iter().copied()).chain(panel.limits.iter().copied());
     let shown = room(shown, bounds.iter().flat_map(|bound| bound.values.iter().copied()));
-    // without a note the title has all the width
+    // without a note, the title may use the whole width
     let longest = if panel.note.is_empty() { 62 } else { 40 };
     let title = shortened(&panel.title, longest);
     let (across, up, [top, bottom]) = axes(svg, place, &title, ticks, time, shown.into_iter());
@@ -151,7 +152,7 @@ fn draw(svg: &mut Svg, place: Place, panel: &Panel<'_>, ticks: Ticks<'_>, time: 
     }
     for (is_above, words) in edges(bounds, up.ends()) {
         let y = if is_above { top + 14.0 } else { bottom - 6.0 };
-        // the words are read where curves cross them
+        // a background, so that the label is legible where curves cross it
         let wide = width_of(&words, 13.0) + 8.0;
         let place = [("x", right - 2.0 - wide), ("y", y - 13.0), ("width", wide), ("height", 17.0)];
         let place = place.map(|(name, value)| (name, pixels(value)));
@@ -162,7 +163,7 @@ fn draw(svg: &mut Svg, place: Place, panel: &Panel<'_>, ticks: Ticks<'_>, time: 
     svg.text(right, place.y + 26.0, &[("text-anchor", "end"), ("fill", QUIET)], &panel.note);
 }
 
-/// For each curve the number of its colour and dash.
+/// Returns for each curve the index of its colour and dash.
 fn looks(curves: &[PanelCurve<'_>]) -> Vec<usize> {
     let mut looks = Vec::with_capacity(curves.len());
     for (at, curve) in curves.iter().enumerate() {
@@ -180,7 +181,7 @@ fn colour(index: usize) -> &'static str {
     COLOURS[index % COLOURS.len()]
 }
 
-/// The first curve is whole.
+/// Returns the dash of a curve; the first one has none.
 fn dash(index: usize) -> &'static str {
     if index == 0 { "" } else { "9 3" }
 }

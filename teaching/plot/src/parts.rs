@@ -1,29 +1,29 @@
-//! The parts of a torque.
+//! Splits a torque into its parts.
 //!
 //! ```text
 //! τ = M(q) q̈ + C(q, q̇) q̇ + g(q)
 //! ```
 //!
-//! Each part is a call of inverse dynamics of its own, without gravity or without motion, so that their sum is a check.
+//! Each part is a separate call of inverse dynamics, without gravity or without motion, so that their sum is a check.
 
 use rne_runtime::{BaseMotion, DynArm, WrongLength};
 
-/// The torques of one state and their parts, base to tip: N m of a revolute joint, N of a prismatic one.
+/// The torques of one state and their parts, base to tip: N m for a revolute joint, N for a prismatic joint.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct TorqueParts {
-    /// M(q) q̈: what accelerates the arm; rotors too, where they belong to it.
+    /// M(q) q̈: the torques that accelerate the arm, including its rotors if it has them.
     pub inertia: Vec<f64>,
     /// C(q, q̇) q̇: Coriolis and centrifugal torques, quadratic in the velocities.
     pub velocity: Vec<f64>,
-    /// g(q): what holds the arm still.
+    /// g(q): the torques that hold the arm at rest.
     pub gravity: Vec<f64>,
-    /// τ(q, q̇, q̈), computed at once.
+    /// τ(q, q̇, q̈), computed by a single call.
     pub total: Vec<f64>,
 }
 
 impl TorqueParts {
-    /// The parts at a state of an arm with a free tip.
+    /// Computes the parts at a state of an arm with a free tip.
     ///
     /// # Errors
     /// When an argument does not have one element per joint.
@@ -38,14 +38,14 @@ impl TorqueParts {
         })
     }
 
-    /// The powers τ q̇ that the actuators deliver, W, base to tip; negative where they brake.
+    /// Returns the powers τ q̇ of the actuators, W, base to tip; negative if they brake.
     #[must_use]
     pub fn powers(&self, qd: &[f64]) -> Vec<f64> {
         self.total.iter().zip(qd).map(|(tau, qd)| tau * qd).collect()
     }
 
-    /// The part of a joint's torque that comes of velocities: its magnitude, of the sum of the magnitudes of all three
-    /// parts; 0 where there is no torque.
+    /// Returns the share of velocities in a joint's torque: the magnitude of the velocity part over the sum of the
+    /// magnitudes of all three parts; 0 if there is no torque.
     #[must_use]
     pub fn velocity_share(&self, joint: usize) -> f64 {
         let magnitude = |part: &[f64]| part.get(joint).map_or(0.0, |value| value.abs());

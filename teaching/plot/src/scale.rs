@@ -1,6 +1,6 @@
-//! Axes of a chart: from numbers to pixels, and where their ticks are.
+//! Axes of a chart: conversion of numbers to pixels, and ticks.
 
-/// A span that is smaller has no steps that are numbers of full precision.
+/// Smallest span of an axis, below which steps would lose floating-point precision.
 const SMALLEST: f64 = 1e-300;
 
 /// A linear axis.
@@ -8,7 +8,7 @@ const SMALLEST: f64 = 1e-300;
 pub(crate) struct Scale {
     low: f64,
     high: f64,
-    /// Pixels of both ends.
+    /// Positions of both ends, pixels.
     from: f64,
     to: f64,
 }
@@ -18,19 +18,20 @@ impl Scale {
         Self { low, high, from, to }
     }
 
-    /// The numbers at both ends.
+    /// Returns the numbers at both ends.
     pub(crate) const fn ends(&self) -> [f64; 2] {
         [self.low, self.high]
     }
 
-    /// Pixels of a number; the middle of an axis whose ends are too close together to tell numbers apart.
+    /// Returns the position of a number, pixels; the middle of the axis if its ends are too close to distinguish
+    /// numbers.
     pub(crate) fn at(&self, value: f64) -> f64 {
         let half = self.high / 2.0 - self.low / 2.0;
         let part = if half < SMALLEST { 0.5 } else { (value / 2.0 - self.low / 2.0) / half };
         self.from + part * (self.to - self.from)
     }
 
-    /// Round numbers on the axis; `about` is their approximate number.
+    /// Returns round numbers on the axis; `about` is the approximate number of ticks.
     pub(crate) fn ticks(&self, about: f64) -> Vec<f64> {
         let span = self.high - self.low;
         if !span.is_finite() || span < SMALLEST {
@@ -42,7 +43,7 @@ impl Scale {
         let mut ticks = Vec::new();
         let mut count = first;
         while count <= last && ticks.len() < 32 {
-            // no -0
+            // changes -0 to 0
             ticks.push(count * step + 0.0);
             count += 1.0;
         }
@@ -50,7 +51,7 @@ impl Scale {
     }
 }
 
-/// Both ends of an axis that has room for values and 0, at round numbers.
+/// Returns round numbers for both ends of an axis that includes all values and 0.
 pub(crate) fn range(values: impl Iterator<Item = f64>, about: f64) -> (f64, f64) {
     let (low, high) = values.fold((0.0_f64, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
     if high - low < SMALLEST || !(high - low).is_finite() {
@@ -60,7 +61,7 @@ pub(crate) fn range(values: impl Iterator<Item = f64>, about: f64) -> (f64, f64)
     ((low / step - 0.05).floor() * step, (high / step + 0.05).ceil() * step)
 }
 
-/// 1, 2 or 5 times a power of ten.
+/// Returns the step between ticks: 1, 2 or 5 times a power of ten.
 fn step(span: f64, about: f64) -> f64 {
     let rough = span / about;
     let power = 10_f64.powf(rough.log10().floor());
@@ -77,13 +78,13 @@ fn step(span: f64, about: f64) -> f64 {
     round * power
 }
 
-/// A number beside a tick, with a minus that is as long as a plus.
+/// Formats a number next to a tick, with a minus sign that is as long as a plus sign.
 pub(crate) fn label(value: f64) -> String {
-    // what the step of a tick leaves behind, 0.30000000000000004
+    // removes rounding errors of steps, such as 0.30000000000000004
     significant(value, 10)
 }
 
-/// A number with `digits` significant digits, without idle zeros.
+/// Formats a number with `digits` significant digits, without trailing zeros.
 #[must_use]
 pub fn significant(value: f64, digits: usize) -> String {
     let rounded: f64 = format!("{value:.0$e}", digits - 1).parse().unwrap_or(value);

@@ -4,7 +4,7 @@ use std::fmt;
 
 use rne_model::{JointKind, Robot};
 
-/// Samples of a motion; lists run from base to tip, rad or m, and per second.
+/// Samples of a motion. Lists run from base to tip, in rad or m, rad/s or m/s, and rad/s² or m/s².
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Trajectory {
@@ -12,30 +12,30 @@ pub struct Trajectory {
     pub time: Vec<f64>,
     /// Positions, a list for each time.
     pub q: Vec<Vec<f64>>,
-    /// Velocities.
+    /// Velocities, a list for each time.
     pub qd: Vec<Vec<f64>>,
-    /// Accelerations.
+    /// Accelerations, a list for each time.
     pub qdd: Vec<Vec<f64>>,
 }
 
-/// Why there is no such trajectory.
+/// The reason why a trajectory is not valid.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum TrajectoryError {
-    /// Fewer samples than there must be.
+    /// There are too few samples.
     TooFew {
-        /// Numbers that were found.
+        /// Number of samples that were given.
         found: usize,
-        /// Numbers that are needed.
+        /// Number of samples that are needed.
         needed: usize,
     },
-    /// A time that is not later than the one before it, or is no number: the index of its sample.
+    /// The time of the sample with this index is not later than the previous one, or is not a number.
     Time(usize),
-    /// A list of another length: the index of its sample.
+    /// A list of the sample with this index has another length.
     Length(usize),
-    /// A number that is not finite: the index of its sample.
+    /// A number of the sample with this index is not finite.
     NotFinite(usize),
-    /// A duration that is not above 0.
+    /// The duration is not above 0.
     Duration,
 }
 
@@ -57,13 +57,13 @@ impl std::error::Error for TrajectoryError {}
 type Samples = Vec<Vec<f64>>;
 
 impl Trajectory {
-    /// A trajectory of samples. Where velocities or accelerations are not given they are derived: each joint moves on
-    /// the parabola through a sample and its two neighbours (at the ends, through the three samples there); with
-    /// velocities, these are what the parabola is of.
+    /// Makes a trajectory from samples. Missing velocities or accelerations are derived: each joint moves on the
+    /// parabola through a sample and its two neighbours (at the ends, through the three samples there). If velocities
+    /// are given, accelerations follow from the parabola through them.
     ///
     /// # Errors
-    /// When lists do not fit, times do not grow, a number is not finite, or there are fewer than two samples, three
-    /// where something is derived.
+    /// When lengths of lists do not fit, times do not increase, a number is not finite, or there are fewer than two
+    /// samples, or fewer than three if something is derived.
     pub fn new(time: Vec<f64>, q: Samples, qd: Option<Samples>, qdd: Option<Samples>) -> Result<Self, TrajectoryError> {
         let needed = if qd.is_some() && qdd.is_some() { 2 } else { 3 };
         if time.len() < needed {
@@ -98,11 +98,12 @@ impl Trajectory {
         Ok(Self { time, q, qd, qdd })
     }
 
-    /// From rest to rest in `duration` seconds, all joints in step, on the polynomial of fifth degree whose speed and
-    /// acceleration vanish at both ends: q = a + (b - a)(10 s³ - 15 s⁴ + 6 s⁵), s = t / duration.
+    /// Makes a motion from rest to rest in `duration` seconds, for all joints at the same time. It is the polynomial of
+    /// fifth degree whose speed and acceleration vanish at both ends: q = a + (b - a)(10 s³ - 15 s⁴ + 6 s⁵), s = t /
+    /// duration.
     ///
     /// # Errors
-    /// When the postures are of other lengths, the duration is not above 0, or there are fewer than two samples.
+    /// When the lengths of the postures differ, the duration is not above 0, or there are fewer than two samples.
     pub fn quintic(from: &[f64], to: &[f64], duration: f64, samples: usize) -> Result<Self, TrajectoryError> {
         if !(duration.is_finite() && duration > 0.0) {
             return Err(TrajectoryError::Duration);
@@ -129,9 +130,9 @@ impl Trajectory {
         Self::new(time, q, Some(qd), Some(qdd))
     }
 
-    /// Two postures of a robot that are well inside its limits: at a quarter and at three quarters of the way between
-    /// them. A joint without limits turns from -45° to 45°, or slides from -0.1 m to 0.1 m; one that has more than a
-    /// turn uses the turn in the middle of it.
+    /// Returns two postures of a robot well inside its limits: at a quarter and at three quarters of each joint's
+    /// range. A joint without limits moves from -45° to 45°, or from -0.1 m to 0.1 m. If the range is more than a turn,
+    /// the turn in its middle is used.
     #[must_use]
     pub fn postures(robot: &Robot) -> [Vec<f64>; 2] {
         use std::f64::consts::{FRAC_PI_2, PI};
@@ -148,8 +149,8 @@ impl Trajectory {
         [from, to]
     }
 
-    /// The least duration, in seconds, in which a [quintic](Self::quintic) leads from one posture to another within
-    /// the speed limits of a robot; 0 if the robot has no limits.
+    /// Returns the shortest duration, s, of a [quintic](Self::quintic) from one posture to another within the speed
+    /// limits of a robot; 0 if the robot has no limits.
     #[must_use]
     pub fn least_duration(robot: &Robot, from: &[f64], to: &[f64]) -> f64 {
         // the quintic is fastest in its middle
@@ -162,7 +163,7 @@ impl Trajectory {
     }
 }
 
-/// First and second derivatives of the parabolas through each sample and its neighbours.
+/// Returns first and second derivatives of the parabolas through each sample and its neighbours.
 fn parabolas(time: &[f64], values: &[Vec<f64>]) -> (Samples, Samples) {
     let last = time.len() - 1;
     let at = |sample: usize| {
@@ -172,7 +173,7 @@ fn parabolas(time: &[f64], values: &[Vec<f64>]) -> (Samples, Samples) {
         let joints = values[middle - 1].iter().zip(&values[middle]).zip(&values[middle + 1]);
         joints
             .map(|((a, b), c)| {
-                // Newton's form: slopes, and how they change
+                // Newton's form of the parabola: two slopes, and their difference
                 let (left, right) = ((b - a) / (t1 - t0), (c - b) / (t2 - t1));
                 let curvature = (right - left) / (t2 - t0);
                 (left + curvature * ((t - t0) + (t - t1)), 2.0 * curvature)

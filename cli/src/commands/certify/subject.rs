@@ -250,7 +250,6 @@ fn named(program: &Program, robot: &Robot, name: Name, place: &str) -> (String, 
         Quantity::ContactMoment => "N m",
         Quantity::LinearMomentum => "N s",
         Quantity::ComPosition | Quantity::FrameOrigin => "m",
-        Quantity::Kinetic | Quantity::Potential => "J",
         Quantity::Momentum => match kind {
             JointKind::Revolute => "N m s",
             JointKind::Prismatic => "N s",

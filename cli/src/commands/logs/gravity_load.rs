@@ -58,7 +58,7 @@ struct Load {
     joint: usize,
     /// Torque or force that gravity needs, N m or N.
     needed: f64,
-    /// The same torque as a part of the joint's effort limit; above 1 it exceeds the limit.
+    /// The torque or force that gravity needs, as a part of the joint's effort limit; above 1 it exceeds the limit.
     part: f64,
 }
 

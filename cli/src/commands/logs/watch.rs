@@ -108,7 +108,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
 }
 
-/// A robot file and logs of the arm, with the remarks on them.
+/// The robot file and the logs of one call of the command, with the remarks on them.
 struct Task<'a> {
     arguments: &'a Arguments,
     /// Files that the command reads, so that no result may overwrite them.

@@ -157,7 +157,7 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
     ))
 }
 
-/// Explains a function by its name: what it computes, and the options of `rne eval` for its arguments.
+/// Explains a function by its name: its result, and the options of `rne eval` for its arguments.
 fn of_function(name: &str) -> Option<String> {
     let Some(function) = Function::named(name) else {
         return choice::composed(name).map(|text| wrap(&text, terminal::width(PAGE), "") + "\n");

@@ -45,8 +45,8 @@ pub(crate) fn unresisted(convention: Convention, joints: &[Joint]) -> Vec<Option
     all
 }
 
-/// Whether a floating base with this link moves in some direction, while all joints move freely, without any force or
-/// moment on it.
+/// Returns whether a floating base with this link moves in some direction without any force or moment on it, while all
+/// joints move freely.
 pub(crate) fn base_is_unresisted(convention: Convention, joints: &[Joint], base: &Link) -> bool {
     (1..=STATES).all(|state| in_state(convention, joints, Some(base), state)[..BASE].iter().any(Option::is_some))
 }

@@ -33,7 +33,7 @@ pub(crate) fn angle(cx: &Context, node: &Node, value: f64) {
     let shown = cx.shown(node, value);
     let raw = cx.raw(node);
     let literal = raw.parse::<f64>().is_ok();
-    // Rounding in 2*pi itself is no reason to warn.
+    // A full turn that was rounded, such as 6.2832, causes no warning.
     if value.abs() > TAU + NEARLY {
         cx.report(
             Diagnostic::lint(node.span.clone(), format!("the angle {shown} rad is more than a full turn"))

@@ -24,7 +24,7 @@ use crate::{FixedFrame, Robot};
 /// couplings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedLoop {
-    /// Its name.
+    /// The name of the loop.
     pub name: String,
     /// The kind of the joint at which the loop is cut.
     pub cut: Cut,

@@ -30,7 +30,7 @@ pub enum NoDependents {
         /// The positions of all joints, rad or m, at which the loops come nearest to closing.
         positions: Vec<f64>,
     },
-    /// The equations of this loop, counted from 0, follow from those of the loops before it.
+    /// The equations of this loop, counted from 0, follow from those of earlier loops.
     Repeats(usize),
     /// The joints that move this loop, counted from 0, cannot move at all.
     Rigid(usize),

@@ -20,7 +20,7 @@ pub(crate) enum Fault {
     /// No configuration closes this loop: where the loops come nearest to closing, its two places are `apart`, m and
     /// rad.
     Open { index: usize, apart: [f64; 2] },
-    /// Loops that share joints do not have as many dependent joints as their equations determine.
+    /// A group of loops that share joints has another number of dependent joints than its equations determine.
     Count(Box<Count>),
     /// The dependent joints `joints`, of the loop `index` first, can move while all other joints are at rest.
     Undetermined { index: usize, joints: Vec<usize>, singular_values: Vec<f64>, choice: Vec<usize> },

@@ -1,4 +1,4 @@
-//! Closed loops: their data, their equations and the joints that follow from them.
+//! Closed loops: their data, their equations, and the joints whose positions the equations determine.
 
 pub(crate) mod closed_loop;
 pub(crate) mod closure;

@@ -44,7 +44,7 @@ pub(crate) fn couplings(
         })
 }
 
-/// A loop of four axes, and the joints that turn about them.
+/// The quadrangle of a loop: its four axes, and the joints that turn about them.
 struct Quadrangle<'a> {
     joints: &'a [Joint],
     convention: Convention,
@@ -88,7 +88,7 @@ impl<'a> Quadrangle<'a> {
         })
     }
 
-    /// The joints of the first way and then those of the other.
+    /// Returns the joints of the first way, followed by those of the other way.
     fn all(&self) -> impl Iterator<Item = usize> + use<> {
         self.first.into_iter().chain(self.other.0).chain([self.other.1])
     }

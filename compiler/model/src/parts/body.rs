@@ -13,8 +13,8 @@ use crate::{FixedFrame, FloatingBase, Inertia, InertiaReference, Joint, Link, Ro
 pub struct Body {
     /// The name of the body, `[A-Za-z][A-Za-z0-9_]*`; no other body has it.
     pub name: String,
-    /// The link that carries it, and the place of its frame there. A body on a base that is fixed to the world has no
-    /// effect.
+    /// The link that carries the body, and the placement of the body's frame on this link. A body on a base that is
+    /// fixed to the world has no effect.
     pub fixed: FixedFrame,
     /// Mass, centre of mass and inertia about the centre of mass, in the frame of the body.
     pub matter: Link,

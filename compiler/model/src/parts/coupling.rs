@@ -6,8 +6,8 @@ use crate::{Limits, Robot};
 /// follows. Such a joint, a follower, is not a coordinate of the robot: q, q̇, q̈ and τ have no element for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coupling {
-    /// The joints that it follows, counted from 0, in the order of the rows, and the ratio of each: rad/rad, m/m, m/rad
-    /// or rad/m. None of them is a follower, and no ratio is zero.
+    /// The joints that the follower follows, counted from 0, in the order of the rows, and the ratio of each: rad/rad,
+    /// m/m, m/rad or rad/m. None of them is a follower, and no ratio is zero.
     pub follows: Vec<(usize, f64)>,
     /// The position of the follower where all joints that it follows are at 0, rad or m.
     pub offset: f64,

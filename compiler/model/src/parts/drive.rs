@@ -2,8 +2,8 @@
 
 use crate::Robot;
 
-/// A motor of the list `motors`: it turns with Σ n q̇ of some joints. Not to be confused with the
-/// [`Motor`](crate::Motor) of a joint, which has friction and turns with that joint alone.
+/// A motor of the list `motors`, whose speed is Σ n q̇ over some joints. It differs from the [`Motor`](crate::Motor) of
+/// a joint, which has friction and turns with only that joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
     /// The name of the motor; `motor1`, `motor2`, … when the file gives none.
@@ -11,7 +11,7 @@ pub struct Drive {
     /// The joints with which the motor turns, counted from 0, in the order of the rows, with the ratio n of each: motor
     /// turns per joint turn (rad/rad, rad/m for a prismatic joint). No n is zero.
     pub turns: Vec<(usize, f64)>,
-    /// The part that turns; `None` for a motor that only maps torques and speeds.
+    /// The part of the motor that turns; `None` for a motor that only maps torques and speeds.
     pub rotor: Option<Rotor>,
 }
 

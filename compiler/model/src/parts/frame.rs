@@ -38,7 +38,7 @@ pub struct UnknownFrame {
     pub frames: Vec<String>,
     /// The names of the joints of the robot, which are also the names of their link frames.
     pub joints: Vec<String>,
-    /// Whether the name is that of frame 0, which no joint moves.
+    /// Whether the name means frame 0, which no joint moves.
     pub is_base: bool,
 }
 

@@ -19,7 +19,7 @@ use crate::{Joint, Motor};
 /// Speed above which a joint is slipping at its first state, rad/s or m/s.
 const SLIPPING: f64 = 0.05;
 
-/// How Coulomb friction changes its sign.
+/// Whether Coulomb friction changes its sign about a speed or over a displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FrictionTransition {
     /// About a speed, rad/s or m/s.

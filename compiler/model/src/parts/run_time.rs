@@ -49,44 +49,45 @@ impl RunTime {
 /// A number of the table that may depend on run-time parameters. Joints count from 0; axes are 0, 1, 2 for x, y, z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Entry {
-    /// A component of [`Robot::gravity`]: the axis.
+    /// A component of [`Robot::gravity`], with the index of its axis.
     Gravity(usize),
-    /// A component of the translation of [`Robot::base`]: the axis.
+    /// A component of the translation of [`Robot::base`], with the index of its axis.
     BaseXyz(usize),
-    /// A component of the translation of [`Robot::tool`]: the axis.
+    /// A component of the translation of [`Robot::tool`], with the index of its axis.
     ToolXyz(usize),
-    /// A component of the translation of a named frame: the frame and the axis.
+    /// A component of the translation of a named frame, with the indices of the frame and the axis.
     FrameXyz(usize, usize),
-    /// The joint offset d: the joint.
+    /// The joint offset d, with the index of the joint.
     D(usize),
-    /// The length a of the common normal: the joint.
+    /// The length a of the common normal, with the index of the joint.
     A(usize),
-    /// The sine of the constant part of θ: the joint. This and the next three are in no file.
+    /// The sine of the constant part of θ, with the index of the joint. No file has this entry or the next three; only
+    /// programs add them.
     ThetaSine(usize),
-    /// The sine of the constant part of θ: the joint. No file has this entry or the next three; only programs add them.
+    /// The cosine of the constant part of θ, with the index of the joint.
     ThetaCosine(usize),
-    /// The sine of the twist α: the joint.
+    /// The sine of the twist α, with the index of the joint.
     AlphaSine(usize),
-    /// The cosine of the twist α: the joint.
+    /// The cosine of the twist α, with the index of the joint.
     AlphaCosine(usize),
-    /// The mass of a link: the joint that moves it.
+    /// The mass of a link, with the index of the joint that moves the link.
     Mass(usize),
-    /// A component of a link's centre of mass: the joint and the axis.
+    /// A component of a link's centre of mass, with the indices of the joint and the axis.
     Com(usize, usize),
-    /// A component of the first moment of a link without mass: the joint and the axis.
+    /// A component of the first moment of a link without mass, with the indices of the joint and the axis.
     FirstMoment(usize, usize),
-    /// An element of a link's inertia about the centre of mass, about whichever point the file gives it: the joint and
-    /// the element.
+    /// An element of a link's inertia about the centre of mass, about whichever point the file gives it, with the index
+    /// of the joint.
     Inertia(usize, InertiaElement),
-    /// The rotor inertia of a motor: the joint.
+    /// The rotor inertia of a motor, with the index of the joint.
     MotorInertia(usize),
-    /// The gear ratio of a motor, with its sign: the joint.
+    /// The gear ratio of a motor, with its sign, and with the index of the joint.
     GearRatio(usize),
-    /// The viscous friction of a motor: the joint.
+    /// The viscous friction of a motor, with the index of the joint.
     Viscous(usize),
-    /// The Coulomb friction of a motor for positive speed: the joint.
+    /// The Coulomb friction of a motor for positive speed, with the index of the joint.
     CoulombPositive(usize),
-    /// The Coulomb friction of a motor for negative speed: the joint.
+    /// The Coulomb friction of a motor for negative speed, with the index of the joint.
     CoulombNegative(usize),
 }
 

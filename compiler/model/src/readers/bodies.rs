@@ -15,7 +15,7 @@ use crate::{Bodies, Body, Entry, FixedFrame, Inertia, InertiaReference, Joint, T
 /// Largest number of bodies in a file.
 const MAX_BODIES: usize = 256;
 
-/// Reads the list `bodies` of a file whose root is `root`. [`Bodies::add_to`] makes them parts of their links.
+/// Reads the list `bodies` of a file whose root is `root`. [`Bodies::add_to`] adds the bodies to their links later.
 pub(crate) fn bodies(cx: &Context, root: &Node, format: u32, joints: &[Joint]) -> Option<Bodies> {
     let help = "begin each body with a dash, such as `- {name: camera, on: joint6, mass: 0.3}`";
     let items = items(cx, root, ("bodies", format), "bodies", help)?;

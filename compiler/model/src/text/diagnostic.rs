@@ -57,9 +57,9 @@ pub enum Severity {
 pub struct Diagnostic {
     /// Error, warning or note.
     pub severity: Severity,
-    /// A sentence: what is wrong, the value found, what is allowed.
+    /// A sentence that says what is wrong, which value was found, and what is allowed.
     pub message: String,
-    /// A few words beside the caret.
+    /// A few words that are printed beside the caret.
     pub label: Option<String>,
     /// The bytes of the text that the caret underlines.
     pub span: Range<usize>,

@@ -63,7 +63,7 @@ pub struct Scalar {
     pub style: Style,
 }
 
-/// How a scalar is written.
+/// How a scalar is written in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
     /// Without quotation marks.

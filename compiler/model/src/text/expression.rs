@@ -182,8 +182,8 @@ impl Expression {
     }
 }
 
-/// A number as a robot file has it: a decimal, or an expression over numbers, `pi`, `+ - * / ^`, parentheses and
-/// `sqrt sin cos tan deg mm g`. There are no parameters.
+/// Evaluates a number as a robot file may have it: a decimal, or an expression over numbers, `pi`, `+ - * / ^`,
+/// parentheses and `sqrt sin cos tan deg mm g`. Names of parameters are not allowed.
 ///
 /// ```
 /// assert_eq!(rne_model::number("-pi/2"), Ok(-std::f64::consts::FRAC_PI_2));

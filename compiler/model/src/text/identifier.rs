@@ -5,10 +5,10 @@ use crate::text::diagnostic::{Diagnostic, Problems, Report};
 use crate::text::document::Node;
 use crate::text::source::quoted;
 
-/// The identifiers of a joint in generated code.
+/// The names of a joint in generated code.
 ///
-/// They consist of the words of the joint's name: its runs of ASCII letters and digits. A name without such a run is
-/// replaced by the number of the joint, counted from 1.
+/// They are made from the words of the joint's name, which are its runs of ASCII letters and digits. For a name without
+/// any, the number of the joint is used, counted from 1.
 ///
 /// ```
 /// use rne_model::JointIdentifier;

@@ -11,7 +11,7 @@ use crate::{text::document, text::source};
 pub struct Mapping {
     /// The name of the mapping in messages.
     pub name: &'static str,
-    /// The keys that it may have, in the order in which they are read.
+    /// The keys that the mapping may have, in the order in which they are read.
     pub keys: &'static [Key],
 }
 

@@ -44,8 +44,8 @@ fn letters(word: &str) -> Vec<char> {
     letters
 }
 
-/// Returns the known name that another name probably means: it is a slip away, is longer, or lacks the maker's name at
-/// the beginning, as `kuka_iiwa` means `iiwa14`.
+/// Returns the known name that another name probably means: one that is a slip away, begins with the other name, or
+/// fits it without the maker's name, as `iiwa14` fits `kuka_iiwa`.
 #[must_use]
 pub fn nearest_name<'n>(name: &str, names: &[&'n str]) -> Option<&'n str> {
     let parts = name.match_indices(['_', '-', ' ']).map(|(at, _)| name.get(at + 1..).unwrap_or_default());

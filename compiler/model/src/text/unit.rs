@@ -1,6 +1,6 @@
 //! Help for units after numbers: numbers of a robot file have no unit, and a message gives the number to write instead.
 
-/// The help for a `number` with a `unit` after it; `None` where that is no unit.
+/// Returns the help for a `number` with a `unit` after it; `None` where the word is no unit.
 ///
 /// The units of a robot file are rad, m, kg, s and N. The functions `deg`, `mm` and `g` convert degrees, millimetres
 /// and grams.

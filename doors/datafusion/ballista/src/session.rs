@@ -58,7 +58,7 @@ impl Session {
     /// Plans a query, in which `{puma560}` is replaced by the key of this robot, its name with its hash.
     ///
     /// # Errors
-    /// Everything that is wrong with it.
+    /// With all errors in it.
     pub async fn sql(&self, sql: &str) -> Result<DataFrame> {
         let with_keys = self.robots.keys().fold(sql.to_owned(), |sql, key| {
             let name = key.split('@').next().unwrap_or_default();

@@ -5,7 +5,7 @@ use core::fmt::Debug;
 use super::BatchScalar;
 use crate::number::sin_cos::Lanes;
 
-/// The registers of a vector unit that hold numbers of one type.
+/// The registers of a vector unit for numbers of one type.
 ///
 /// Everything is `#[inline(always)]`, here and in what uses it: a function that is not part of the code for a vector
 /// unit is compiled without its instructions.

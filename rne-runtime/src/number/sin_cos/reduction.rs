@@ -24,7 +24,7 @@ pub struct Reduced<V> {
 /// The parts of π/2 are those of fdlibm's `__ieee754_rem_pio2` (`e_rem_pio2.c`): 33 + 33 + 53 bits.
 #[inline(always)]
 pub(super) fn double<V: Lanes<Element = f64>>(x: V) -> Reduced<V> {
-    // 1.5 · 2⁵²: to add it rounds to an integer, which then stands in the lowest bits of the sum.
+    // 1.5 · 2⁵²: adding it rounds to an integer, which is then in the lowest bits of the sum.
     const ROUNDER: f64 = 6_755_399_441_055_744.0;
     const PART_1: f64 = 1.570_796_326_734_125_6;
     const PART_2: f64 = 6.077_100_506_303_966e-11;

@@ -1,4 +1,4 @@
-//! Somebody else's values beside those of a worksheet.
+//! Compares given values with those of a worksheet.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,18 +8,18 @@ use rne_runtime::WrongLength;
 use super::{Computed, Line, Quantity, ROUNDING, Situation, Worksheet, followed, local, norm, other_axes, slipped};
 use crate::{Diagnosis, Observation, diagnose};
 
-/// A value that somebody found for a component of a line.
+/// A value that a person computed for a component of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GivenValue {
     /// The joint, from 1 at the base.
     pub joint: usize,
-    /// The quantity.
+    /// The quantity of the line.
     pub quantity: Quantity,
     /// The index of the component in [`Quantity::components`].
     pub component: usize,
     /// The value.
     pub value: f64,
-    /// Half of the last digit that is written; 0 where all digits are.
+    /// Half a unit of the last written digit; 0 if the value has all digits.
     pub resolution: f64,
 }
 
@@ -33,20 +33,20 @@ pub struct Comparison {
     pub differing: usize,
     /// The verdict on each given value, by the index of its line in [`Worksheet::lines`] and its own index.
     pub verdicts: BTreeMap<(usize, usize), Verdict>,
-    /// The steps, 1 to 7, of which no value is given.
+    /// The steps, 1 to 7, without a given value.
     pub steps_not_given: Vec<u8>,
-    /// The first that differs in the order of computation; `None` when all agree.
+    /// The first value that differs, in the order of computation; `None` if all agree.
     pub first: Option<Difference>,
 }
 
 /// A verdict on a given value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// It agrees.
+    /// The value agrees.
     Right,
     /// It differs, but the formula of its line gives it with the values that were given before. It is not zero.
     Followed,
-    /// It differs.
+    /// The value differs, and does not follow from the earlier ones.
     Wrong,
 }
 
@@ -54,27 +54,27 @@ pub enum Verdict {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Difference {
-    /// The index of its line in [`Worksheet::lines`].
+    /// The index of the line in [`Worksheet::lines`].
     pub line: usize,
-    /// The index of its component.
+    /// The index of the component.
     pub component: usize,
     /// The given value.
     pub theirs: f64,
     /// The right value.
     pub ours: f64,
-    /// The reasons that explain it, the likeliest first.
+    /// The reasons that explain the difference, the likeliest first.
     pub reasons: Vec<Reason>,
 }
 
-/// An explanation of a value.
+/// An explanation of a difference.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Reason {
     /// The mistake, in a clause.
     pub says: String,
-    /// The correction, where it is more than the formula of the line.
+    /// The correction, if it is more than the formula of the line.
     pub right: Option<String>,
-    /// The extent of what it explains.
+    /// How many of the values the reason explains.
     pub reach: Reach,
 }
 
@@ -82,28 +82,29 @@ pub struct Reason {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Reach {
-    /// Every value that is given.
+    /// Every given value.
     Everything,
-    /// All torques that are given.
+    /// All given torques.
     Torques,
-    /// All values that are given of this line.
+    /// All given values of this line.
     Line,
-    /// This component.
+    /// This component only.
     Component,
-    /// Every value up to this line, and not all after it.
+    /// Every given value up to this line, but not all after it.
     UpToHere,
 }
 
-/// Explanations that are kept.
+/// Largest number of explanations.
 const MOST: usize = 4;
 
-/// One digit alone would explain anything: digits count to this part of a line's size.
+/// Largest tolerance because of few written digits, as a part of a line's size. Otherwise a value with one digit would
+/// agree with almost anything.
 const COARSEST: f64 = 0.05;
 
 impl Worksheet {
-    /// Compares given values with those of the worksheet, which is that of `robot` at `at`. A value counts as the same
-    /// when it agrees to so many significant `digits` of the largest that goes into its line, or to the digits with
-    /// which it is written. Values of lines that the worksheet does not have are passed over.
+    /// Compares given values with those of this worksheet, which is that of `robot` at `at`. A value agrees if its
+    /// error is within `digits` significant digits of the largest number in its line, or within the digits with which
+    /// it is written. Values of lines that the worksheet does not have are ignored.
     ///
     /// # Errors
     /// When a list of the situation does not have one number per joint.
@@ -136,10 +137,10 @@ impl Worksheet {
     }
 }
 
-/// A line and a component of it, both by index.
+/// The indices of a line and of its component.
 pub(super) type Place = (usize, usize);
 
-/// Given values in the order of computation.
+/// The given values in the order of computation.
 struct Ordered<'a> {
     sheet: &'a Worksheet,
     robot: &'a Robot,
@@ -163,18 +164,18 @@ impl<'a> Ordered<'a> {
         Self { sheet, robot, at, values: given.iter().filter_map(place).collect(), digits, rounding }
     }
 
-    /// The tolerance for a calculation by hand that rounds each line to `digits` digits: two units of the last digit of
-    /// a number of this size, because rounding errors of earlier lines add up.
+    /// Returns the tolerance for a calculation by hand that rounds each line to `digits` digits: two units of the last
+    /// digit of a number of this size, because rounding errors of earlier lines add up.
     fn by_hand(&self, size: f64) -> f64 {
         2.0 * size * 10_f64.powi(1 - i32::from(self.digits))
     }
 
-    /// Largest deviation that is allowed of a value at a place.
+    /// Returns the tolerance of the value at a place.
     fn allowed(&self, place: Place) -> f64 {
         self.sheet.lines.get(place.0).map_or(0.0, |line| self.allowed_of(line, place))
     }
 
-    /// Largest deviation that is allowed of a value at a place, from a line with other values.
+    /// Returns the tolerance of the value at a place, computed from another version of its line.
     fn allowed_of(&self, line: &Line, place: Place) -> f64 {
         let size = line.size();
         let written = self.values.get(&place).map_or(0.0, |given| given.resolution.min(COARSEST * size));
@@ -183,20 +184,20 @@ impl<'a> Ordered<'a> {
         by_hand.max(written) + rounding
     }
 
-    /// Whether the given value at a place is this one; true if no value is given.
+    /// Whether the given value at a place agrees with `value`; true if none is given.
     fn agrees(&self, place: Place, value: f64) -> bool {
         let Some(given) = self.values.get(&place) else { return true };
         let difference = given.value - value;
         let off = match given.quantity {
-            // an angle and the same with full turns
+            // angles that differ by full turns are equal
             Quantity::Theta => difference - (difference / std::f64::consts::TAU).round() * std::f64::consts::TAU,
             _ => difference,
         };
         off.abs() <= self.allowed(place)
     }
 
-    /// The verdict on each given value. Line by line in the order of computation, the formula takes the values that are
-    /// given before it, and its own results where none is given.
+    /// Returns the verdict on each given value. Line by line in the order of computation, each formula is evaluated
+    /// with the given earlier values, or with the computed ones if none are given.
     fn verdicts(&self) -> Result<BTreeMap<Place, Verdict>, WrongLength> {
         let of_place = |(place, _): (&Place, _)| {
             (*place, if self.agrees(*place, self.sheet.value(*place)) { Verdict::Right } else { Verdict::Wrong })
@@ -238,7 +239,7 @@ impl<'a> Ordered<'a> {
     fn reasons(&self, line: usize, component: usize) -> Result<Vec<Reason>, WrongLength> {
         let slipped = slipped::all(self.robot, self.at, self.sheet)?;
         let explains = |values: &[Vec<f64>], up_to: usize| {
-            // somewhere it has to differ from what is right, or it says nothing
+            // all given values up to the line have to agree
             let here = |place: Place| values.get(place.0).and_then(|line| line.get(place.1)).copied();
             let mut places = self.values.keys().take_while(|place| place.0 <= up_to);
             places.all(|&place| here(place).is_some_and(|value| self.agrees(place, value)))
@@ -267,7 +268,7 @@ impl<'a> Ordered<'a> {
                 let explained = of(&|&place| self.agrees(place, slipped.values[place.0][place.1]));
                 (explained, of_slip(slipped, Reach::UpToHere))
             }));
-            // what explains most of the sheet is the likeliest
+            // the reason that explains most values is the likeliest
             found.sort_by_key(|(explained, _)| std::cmp::Reverse(*explained));
             for (_, reason) in found {
                 if reasons.iter().all(|known| known.says != reason.says) {
@@ -279,13 +280,13 @@ impl<'a> Ordered<'a> {
         Ok(reasons)
     }
 
-    /// The values that differ.
+    /// Returns the places of the values that differ.
     fn wrong(&self) -> Vec<Place> {
         self.values.keys().copied().filter(|&place| !self.agrees(place, self.sheet.value(place))).collect()
     }
 
-    /// The other axes in which somebody may have written all vectors: those that explain every value, or every value up
-    /// to a line and more than half of those that differ.
+    /// Returns other axes in which all vectors may have been written: those that explain every value, or every value up
+    /// to the line and more than half of the differing ones.
     fn of_other_axes(&self, line: usize) -> Result<Vec<Reason>, WrongLength> {
         let wrong = self.wrong();
         let mut found = Vec::new();
@@ -307,10 +308,10 @@ impl<'a> Ordered<'a> {
         Ok(found)
     }
 
-    /// The mistakes on the line alone that explain it.
+    /// Returns the mistakes within the line that explain it.
     fn of_the_line(&self, line: usize, component: usize) -> Vec<Reason> {
         let ways = local::ways(self.line(line), component);
-        // a way of one component explains no vector of which another component differs, too
+        // a mistake in one component does not explain a vector with another differing component
         let others_are_right = self.wrong().iter().all(|place| place.0 != line || place.1 == component);
         let is_whole = |way: &local::Way| way.values.len() > 1 && way.values.iter().all(Option::is_some);
         let zero_is_no_multiple = |way: &local::Way| {
@@ -324,7 +325,7 @@ impl<'a> Ordered<'a> {
         let mut found: Vec<Reason> = Vec::new();
         for way in ways.into_iter().filter(|way| fits(way) && zero_is_no_multiple(way)) {
             let reach = if is_whole(&way) { Reach::Line } else { Reach::Component };
-            // what explains the line needs no help from what explains a part of it
+            // if a reason explains the whole line, reasons for a part of it are dropped
             if reach == Reach::Line || found.iter().all(|other| other.reach != Reach::Line) {
                 found.push(Reason { says: way.says, right: None, reach });
             }
@@ -333,7 +334,7 @@ impl<'a> Ordered<'a> {
         found
     }
 
-    /// The reasons that `diagnose` finds for the torques, where all of them are given.
+    /// Returns the reasons that `diagnose` finds for the torques, if all torques are given.
     fn of_torques(&self) -> Result<Vec<Reason>, WrongLength> {
         let (robot, at) = (self.robot, self.at);
         let of_tau = |joint: usize| self.values.values().find(|v| v.quantity == Quantity::Tau && v.joint == joint);

@@ -1,4 +1,4 @@
-//! Values that are right for somebody's own earlier values, and values that are zero in every state.
+//! Finds values that follow from wrong earlier values, and values that are zero in every state.
 
 use std::collections::BTreeSet;
 
@@ -9,20 +9,20 @@ use super::comparison::Place;
 use super::formulas::Formulas;
 use super::{Line, Quantity, ROUNDING, Situation, Worksheet};
 
-/// States of which a value that is zero in all of them is zero in every state.
+/// Number of additional states in which a value must be zero to count as zero in every state.
 const STATES: usize = 3;
 
 impl Worksheet {
-    /// The components that are zero in every state of the arm, such as ω_x of a planar arm: each by the index of its
-    /// line in [`Worksheet::lines`] and its own index. The worksheet is that of `robot` at `at`. A component that is
-    /// zero at this state and at three others counts as zero in every state.
+    /// Returns the components that are zero in every state of the arm, such as ω_x of a planar arm: each by the index
+    /// of its line in [`Worksheet::lines`] and its own index. This worksheet must be that of `robot` at `at`. A
+    /// component that is zero at this state and at three others counts as zero in every state.
     ///
     /// # Errors
     /// When a list of the situation does not have one number per joint.
     pub fn always_zero(&self, robot: &Robot, at: &Situation) -> Result<BTreeSet<(usize, usize)>, WrongLength> {
         let mut zero = self.zeros();
         for state in 0..STATES {
-            // numbers without a relation that would make a sum of terms vanish
+            // numbers without relations by which a sum of terms could vanish by chance
             let list = |from: usize| {
                 let number = |joint: usize| u32::try_from(7 * state + from + 3 * joint).map_or(0.0, f64::from);
                 let angle = |joint: usize| (1.0 + 3.7 * number(joint)).sin();
@@ -35,7 +35,7 @@ impl Worksheet {
         Ok(zero)
     }
 
-    /// Components that are zero up to rounding.
+    /// Returns the components that are zero up to rounding.
     fn zeros(&self) -> BTreeSet<Place> {
         let places = self.lines.iter().enumerate().flat_map(|(index, line)| {
             let rounding = ROUNDING * self.largest(line.unit());
@@ -47,8 +47,8 @@ impl Worksheet {
 }
 
 impl Formulas<'_> {
-    /// The line of a quantity of a joint, counted from 1, by its formula: its inputs are the values of the links.
-    /// `None` where no formula of the seven steps gives it.
+    /// Computes the line of a quantity of a joint, counted from 1, by its formula from the values of `links`. `None` if
+    /// no formula of the seven steps gives the quantity.
     pub(super) fn by_formula(&self, joint: usize, quantity: Quantity) -> Option<Line> {
         let mut line = self.line(joint, quantity)?;
         let handed_on = matches!(quantity, Quantity::NextForce | Quantity::NextMoment);
@@ -64,7 +64,7 @@ impl Formulas<'_> {
     }
 }
 
-/// Writes a component of a result of the steps into the values of a link.
+/// Sets a component of a result of the steps in the values of a link.
 pub(super) fn set(link: &mut LinkTrace<f64>, quantity: Quantity, component: usize, value: f64) {
     let vector = vector(link, quantity).filter(|_| quantity.step() > 0);
     if let Some(own) = vector.and_then(|vector| vector.get_mut(component)) {
@@ -72,7 +72,7 @@ pub(super) fn set(link: &mut LinkTrace<f64>, quantity: Quantity, component: usiz
     }
 }
 
-/// A vector of a link.
+/// Returns the vector of a link for a quantity.
 pub(super) fn vector(link: &mut LinkTrace<f64>, quantity: Quantity) -> Option<&mut [f64; 3]> {
     Some(match quantity {
         Quantity::D => &mut link.d,

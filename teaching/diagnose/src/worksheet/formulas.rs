@@ -1,4 +1,4 @@
-//! The formulas of a worksheet, written out for one joint: text, terms, and what goes into them.
+//! Writes the formulas of a worksheet for each joint: text, terms and inputs.
 
 use std::collections::HashSet;
 
@@ -9,26 +9,27 @@ use rne_runtime::{BaseMotion, LinkTrace};
 use super::quantity::indexed;
 use super::{Axes, Input, Line, Quantity, Situation, Term, first_lever, followed, orientations};
 
-/// The data that the lines are made of.
+/// The data from which the lines are made.
 pub(super) struct Formulas<'a> {
     pub(super) robot: &'a Robot,
     pub(super) at: &'a Situation,
     pub(super) base: BaseMotion<f64>,
     pub(super) axes: Axes,
-    /// In these axes.
+    /// The vectors of the links in the axes of the worksheet.
     pub(super) links: &'a [LinkTrace<f64>],
-    /// In axes fixed to each link.
+    /// The vectors of the links in axes fixed to each link.
     pub(super) fixed: &'a [LinkTrace<f64>],
 }
 
 pub(super) type V = Vector3<f64>;
 
-/// The axis of a joint where it is (0, 0, 1).
+/// The symbol of the axis of a joint if it is (0, 0, 1).
 const AXIS: &str = "e";
 
-/// The sums that vectors of the steps are, with {i} for the joint, {p} and {n} for those before and after it: the terms
-/// of the link before, which are turned into these axes, those of the link itself, and what a joint adds that turns,
-/// and one that slides. A link without mass that has a first moment h adds the terms with h.
+/// The vectors of the steps as sums, with {i} for the joint, {p} for the previous and {n} for the next one. There are
+/// four parts: terms of the previous link, which are rotated into the axes of this joint, terms of the link itself, and
+/// additional terms of a revolute joint and of a prismatic one. A link without mass that has a first moment h has the
+/// terms with h.
 #[rustfmt::skip]
 const SUMS: [(Quantity, [&str; 4]); 9] = [
     (Quantity::Omega, ["ω{p}", "", "q̇{i} e{i}", ""]),
@@ -47,28 +48,28 @@ const SUMS: [(Quantity, [&str; 4]); 9] = [
     (Quantity::JointMoment, ["", "n{i} + n{i},{n} + d{i} × f{p},{i} + r{i} × f{i},{n} + -h{i} × g{i}", "", ""]),
 ];
 
-/// A joint whose lines are written.
+/// The data of the joint whose lines are written.
 pub(super) struct Here<'a> {
     pub(super) i: usize,
     pub(super) kind: JointKind,
     pub(super) row: &'a Row,
     pub(super) link: &'a LinkTrace<f64>,
-    /// The link before, or the base.
+    /// The previous link, or the base.
     before: LinkTrace<f64>,
-    /// From axes fixed to the link into these.
+    /// The rotation from axes fixed to the link to the axes of the worksheet.
     pub(super) turn: Matrix3<f64>,
     pub(super) e: V,
     pub(super) q: [f64; 3],
 }
 
-/// A vector in a formula, and what goes into it.
+/// A vector in a formula, and its inputs.
 struct Part {
     term: Term,
     inputs: Vec<Input>,
 }
 
 impl Formulas<'_> {
-    /// All lines, in the order of computation.
+    /// Returns all lines in the order of computation.
     pub(super) fn lines(&self) -> Vec<Line> {
         let orientations = orientations(self.fixed);
         let joints: Vec<Here<'_>> = (0..self.links.len()).map(|index| self.here(index, &orientations)).collect();
@@ -78,13 +79,13 @@ impl Formulas<'_> {
         outward.chain(inward).collect()
     }
 
-    /// Steps 1 to 5 of a joint, or 6 and 7.
+    /// Returns the lines of steps 1 to 5 of a joint or, with `inward`, of steps 6 and 7.
     fn steps(&self, here: &Here<'_>, inward: bool) -> Vec<Line> {
         let quantities = Quantity::ALL.into_iter().filter(|quantity| quantity.is_inward() == inward);
         quantities.filter_map(|quantity| self.of_step(here, quantity)).collect()
     }
 
-    /// The line of a quantity of steps 1 to 7; `None` for what goes into the steps.
+    /// Returns the line of a quantity of steps 1 to 7; `None` for inputs of the steps.
     fn of_step(&self, here: &Here<'_>, quantity: Quantity) -> Option<Line> {
         match quantity {
             Quantity::NextForce | Quantity::NextMoment => Some(self.handed_on(here, quantity)),
@@ -107,7 +108,7 @@ impl Formulas<'_> {
         Here { i: index + 1, kind, row, link, before, turn, e, q }
     }
 
-    /// The base, with its motion in the place of a link's.
+    /// Returns the base in the form of a link, with its motion.
     fn link_0(&self, mut link: LinkTrace<f64>) -> LinkTrace<f64> {
         let BaseMotion { omega, omega_dot, velocity, acceleration, gravity } = self.base;
         (link.omega, link.omega_dot, link.velocity, link.acceleration) = (omega, omega_dot, velocity, acceleration);
@@ -115,12 +116,12 @@ impl Formulas<'_> {
         link
     }
 
-    /// The line of a quantity of steps 1 to 7 of a joint, counted from 1.
+    /// Returns the line of a quantity of steps 1 to 7 for a joint, counted from 1.
     pub(super) fn line(&self, joint: usize, quantity: Quantity) -> Option<Line> {
         self.of_step(&self.here(joint.checked_sub(1)?, &orientations(self.fixed)), quantity)
     }
 
-    /// A vector in the axes of the joint after this one, in the axes of this one, counted from 1.
+    /// Rotates a vector from the axes of the next joint into the axes of this joint, counted from 1.
     pub(super) fn turned(&self, joint: usize, own: [f64; 3]) -> Vec<f64> {
         match self.links.get(joint).filter(|_| self.axes != Axes::Base) {
             Some(next) => list(&(next.rotation_matrix() * V::from(own))),
@@ -128,7 +129,7 @@ impl Formulas<'_> {
         }
     }
 
-    /// A part of a formula, with the numbers of the joints; an axis (0, 0, 1) has none.
+    /// Returns a part of a formula with the numbers of the joints; the symbol of an axis (0, 0, 1) has no number.
     fn written(&self, here: &Here<'_>, template: &str) -> String {
         match self.axes {
             Axes::Base => indexed(template, here.i),
@@ -136,7 +137,7 @@ impl Formulas<'_> {
         }
     }
 
-    /// The meaning of a symbol of a formula at this joint.
+    /// Returns the symbol and value of an input of a formula at this joint.
     fn input(&self, here: &Here<'_>, template: &str) -> Input {
         let of = |link, template: &str| {
             let quantity = Quantity::ALL.into_iter().find(|quantity| quantity.template() == template)?;
@@ -159,8 +160,8 @@ impl Formulas<'_> {
         input(self.written(here, template), &values, unit)
     }
 
-    /// A term of a sum, by its text: a product from right to left of numbers, matrices and vectors, with a sign or with
-    /// 2 before it.
+    /// Computes a term of a sum from its text: a product of numbers, matrices and vectors, evaluated from right to
+    /// left, with an optional sign or factor 2.
     fn part(&self, here: &Here<'_>, text: &str) -> Part {
         let (factor, product) = match (text.strip_prefix('-'), text.strip_prefix("2 ")) {
             (Some(product), _) => (-1.0, product),
@@ -186,7 +187,7 @@ impl Formulas<'_> {
         Part { term, inputs }
     }
 
-    /// Rᵀ of a vector of the link before.
+    /// Rotates a vector of the previous link into the axes of this joint, by Rᵀ.
     fn carried(&self, here: &Here<'_>, part: Part) -> Part {
         if self.axes == Axes::Base {
             return part;
@@ -201,7 +202,7 @@ impl Formulas<'_> {
         Part { term, inputs: [vec![self.input(here, Quantity::Rotation.template())], part.inputs].concat() }
     }
 
-    /// A line that is one of the [`SUMS`].
+    /// Returns the line of one of the [`SUMS`].
     fn sum(&self, here: &Here<'_>, quantity: Quantity, [before, own, turns, slides]: [&str; 4]) -> Line {
         let parts = |text: &str| -> Vec<Part> {
             let terms = text.split(" + ").filter(|term| !term.is_empty());
@@ -225,7 +226,7 @@ impl Formulas<'_> {
         here.of_terms(quantity, values, &formula.replace("+ -", "- "), terms, inputs.concat())
     }
 
-    /// Step 7.
+    /// Returns the line of step 7.
     fn torque(&self, here: &Here<'_>) -> Line {
         let Here { i, kind, link, .. } = here;
         let wrench = if *kind == JointKind::Revolute { Quantity::JointMoment } else { Quantity::JointForce };
@@ -245,7 +246,7 @@ impl Formulas<'_> {
         here.of_terms(Quantity::Tau, vec![link.tau], &formula, terms, inputs)
     }
 
-    /// A part of the wrench that the next link takes, turned into these axes.
+    /// Returns the line of the force or moment on the next link, rotated into the axes of this joint.
     fn handed_on(&self, here: &Here<'_>, quantity: Quantity) -> Line {
         let (i, n) = (here.i, here.i + 1);
         let values = vector(*here.link, quantity);
@@ -283,7 +284,7 @@ impl Here<'_> {
         Line { joint, kind, quantity, values, formula, terms: Vec::new(), inputs: Vec::new() }
     }
 
-    /// A line with terms. Each input is in the list once. An axis (0, 0, 1) is not an input.
+    /// Makes a line from terms. Each input is listed once. An axis (0, 0, 1) is not an input.
     fn of_terms(
         &self,
         quantity: Quantity,
@@ -298,12 +299,12 @@ impl Here<'_> {
     }
 }
 
-/// A vector of a link.
+/// Returns the vector of a link for a quantity.
 fn vector(mut link: LinkTrace<f64>, quantity: Quantity) -> Vec<f64> {
     followed::vector(&mut link, quantity).map_or_else(Vec::new, |vector| vector.to_vec())
 }
 
-/// Rᵀ of a term, or of a sum.
+/// Writes Rᵀ before a term or a sum.
 fn turned_back(i: usize, text: &str) -> String {
     if text.contains(' ') { format!("R{i}ᵀ ({text})") } else { format!("R{i}ᵀ {text}") }
 }
@@ -324,7 +325,7 @@ pub(super) fn list(value: &V) -> Vec<f64> {
     value.iter().copied().collect()
 }
 
-/// Rz of an angle.
+/// Returns the rotation Rz by an angle.
 #[rustfmt::skip]
 pub(super) fn about_z(sin: f64, cos: f64) -> Matrix3<f64> {
     Matrix3::new(

@@ -1,4 +1,4 @@
-//! The lines of a worksheet with the inputs of the steps: the state, and the link in the axes of the worksheet.
+//! Writes the lines of a worksheet with the inputs of the steps: the state, and the link in the axes of the worksheet.
 
 use nalgebra::Matrix3;
 use rne_model::{Convention, JointKind};
@@ -7,7 +7,7 @@ use super::formulas::{Formulas, Here, V, list, scalar, term};
 use super::{Axes, Line, Quantity, Term, symmetric};
 
 impl Formulas<'_> {
-    /// The lines of the inputs of the steps.
+    /// Returns the lines with the inputs of the steps.
     pub(super) fn given(&self, here: &Here<'_>, orientations: &[Matrix3<f64>]) -> Vec<Line> {
         let Here { i, row, link, turn, .. } = *here;
         let given = |(quantity, value)| here.line(quantity, vec![value], "given");
@@ -20,7 +20,7 @@ impl Formulas<'_> {
         if self.axes == Axes::Base {
             lines.push(here.line(Quantity::Axis, list(&here.e), &format!("A{i} (0, 0, 1), the z column")));
         }
-        // from the joint along the row's offset, then to the centre of mass
+        // the vector from the joint along the row's offset, then to the centre of mass
         let fixed = &self.fixed[i - 1];
         let is_standard = self.is_standard();
         let along = V::new(if is_standard { row.dh.a } else { 0.0 }, 0.0, along);
@@ -52,7 +52,8 @@ impl Formulas<'_> {
         self.robot.convention == Convention::Standard
     }
 
-    /// The way from the origin of a link to the next joint, or to the tip; `None` where both are one point.
+    /// Returns the formula of the vector from the origin of a link to the next joint, or to the tip; `None` if both are
+    /// the same point.
     fn lever(&self, i: usize) -> Option<String> {
         match (self.is_standard(), i == self.links.len()) {
             (true, true) => Some(format!("Rx(α{i}) tool")),
@@ -62,7 +63,7 @@ impl Formulas<'_> {
         }
     }
 
-    /// The inertia of the file, turned into these axes.
+    /// Returns the line of the inertia, rotated from the axes of the file into those of the worksheet.
     fn inertia_line(&self, here: &Here<'_>) -> Line {
         let left = self.lead(here.i) + &if self.is_standard() { format!("Rx(α{})", here.i) } else { String::new() };
         let right = match left.trim_end() {
@@ -76,7 +77,7 @@ impl Formulas<'_> {
         here.line(Quantity::Inertia, inertia, formula.trim_start())
     }
 
-    /// The turn of the link, from the link before or from frame 0.
+    /// Returns the line of the rotation from the previous link or from frame 0.
     fn rotation_line(&self, here: &Here<'_>, orientations: &[Matrix3<f64>]) -> Line {
         let (i, p) = (here.i, here.i - 1);
         let twist = match (self.is_standard(), i) {
@@ -94,7 +95,8 @@ impl Formulas<'_> {
         }
     }
 
-    /// The matrix from axes fixed to a link into these, as it is written before a vector.
+    /// Returns the symbol of the matrix from axes fixed to a link to the axes of the worksheet, for writing before a
+    /// vector.
     fn lead(&self, i: usize) -> String {
         match self.axes {
             Axes::Link => String::new(),
@@ -104,7 +106,7 @@ impl Formulas<'_> {
     }
 }
 
-/// The lines of θ and of the offset of a joint, of which one moves.
+/// Returns the lines of θ and of the offset of a joint, one of which is the joint variable.
 fn variables(here: &Here<'_>) -> [Line; 2] {
     let slides = here.kind == JointKind::Prismatic;
     let dh = &here.row.dh;
@@ -123,7 +125,7 @@ fn variables(here: &Here<'_>) -> [Line; 2] {
     )
 }
 
-/// A number in six digits.
+/// Formats a number with six digits.
 fn short(value: f64) -> String {
     let value: f64 = format!("{value:.5e}").parse().unwrap_or(value);
     value.to_string()

@@ -1,17 +1,17 @@
-//! Mistakes on one line alone: a term left out, a sign, axes exchanged, degrees.
+//! Tries mistakes within one line: a missing term, a wrong sign, exchanged axes, degrees.
 
 use std::f64::consts::PI;
 
 use super::{Line, Term};
 
-/// A way to another value on a line: its description, and all components by it; `None` for components that it does not
-/// describe.
+/// A mistake within a line: its description, and the resulting components; `None` for components that it does not
+/// concern.
 pub(super) struct Way {
     pub(super) says: String,
     pub(super) values: Vec<Option<f64>>,
 }
 
-/// All ways, those that explain a whole line first. `component` is the one that differs.
+/// Returns all mistakes, first those that explain a whole line. `component` is the one that differs.
 pub(super) fn ways(line: &Line, component: usize) -> Vec<Way> {
     let own = line.values[component];
     let mut ways = of_all_components(line);
@@ -20,12 +20,12 @@ pub(super) fn ways(line: &Line, component: usize) -> Vec<Way> {
         values[component] = Some(value);
         Way { says, values }
     }));
-    // what changes nothing explains nothing
+    // a mistake that does not change the component does not explain it
     ways.retain(|way| way.values[component].is_some_and(|value| (value - own).abs() > 1e-12 * own.abs()));
     ways
 }
 
-/// The terms of a line, if several of them are not zero.
+/// Returns the terms of a line, if several of them are not zero.
 fn several(line: &Line) -> impl Iterator<Item = &Term> {
     let are_several = line.terms.iter().filter(|term| super::norm(&term.values) > 0.0).count() > 1;
     line.terms.iter().filter(move |_| are_several)

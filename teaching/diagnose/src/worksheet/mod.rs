@@ -1,7 +1,7 @@
-//! The worksheet of the seven steps: every line that a hand fills in, in the order in which it does, with its formula,
-//! its terms and what goes into them; and the first line in which somebody else's values differ.
+//! The worksheet of the seven steps: every line of a calculation by hand, in order, with its formula, terms and inputs.
+//! It also finds the first line in which given values differ.
 //!
-//! The numbers are those of [`DynArm::trace`]. Numbers in, data out: nothing here reads a file or prints.
+//! The numbers are those of [`DynArm::trace`]. This module does not read files and does not print.
 
 mod comparison;
 mod followed;
@@ -19,22 +19,22 @@ pub use self::comparison::{Comparison, Difference, GivenValue, Reach, Reason, Ve
 use self::formulas::Formulas;
 pub use self::quantity::{Quantity, UnknownQuantity};
 
-/// The error of a double-precision computation, in parts of the largest value of that unit.
+/// Error of a computation in double precision, as a part of the largest value of the same unit.
 const ROUNDING: f64 = 1e-9;
 
-/// Axes in which the vectors of a joint's entry are written.
+/// Axes in which the vectors of a joint's lines are expressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Axes {
-    /// Fixed to link i, z along joint i: those of the generated code.
+    /// Axes fixed to link i, with z along joint i: those of the generated code.
     Link,
-    /// Fixed to link i-1, z along joint i: the lecture's, for both conventions.
+    /// Axes fixed to link i-1, with z along joint i: those of the lecture, for both conventions.
     Joint,
     /// The axes of frame 0.
     Base,
 }
 
 impl Axes {
-    /// The word for them in files.
+    /// Returns the name of the axes in files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -44,7 +44,7 @@ impl Axes {
         }
     }
 
-    /// The axes in words, for people who fill in a worksheet.
+    /// Describes the axes in words, for people who fill in a worksheet.
     #[must_use]
     pub const fn explained(self) -> &'static str {
         match self {
@@ -54,7 +54,7 @@ impl Axes {
         }
     }
 
-    /// The axes of a word; the lecture's are the joint's.
+    /// Returns the axes with this name; `lecture` also means [`Axes::Joint`].
     #[must_use]
     pub fn of_name(name: &str) -> Option<Self> {
         match name {
@@ -66,7 +66,8 @@ impl Axes {
     }
 }
 
-/// The motion of an arm, and the forces on it. Lists run from base to tip; rad or m, and per second.
+/// The motion of an arm, and the forces on it. Lists run from base to tip, in rad or m, rad/s or m/s, and rad/s² or
+/// m/s².
 #[derive(Clone, Debug, PartialEq)]
 pub struct Situation {
     /// Joint positions.
@@ -79,7 +80,7 @@ pub struct Situation {
     pub base: Option<BaseMotion<f64>>,
     /// The wrench that the last link exerts on its environment, at the tip, in tip axes.
     pub wrench: Option<Wrench<f64>>,
-    /// The payload that is fixed to the tip of an arm on a base at rest; then there is no other wrench.
+    /// The payload that is fixed to the tip of an arm with a fixed base; `wrench` is ignored then.
     pub payload: Option<Payload<f64>>,
 }
 
@@ -89,23 +90,24 @@ pub struct Situation {
 pub struct Worksheet {
     /// The axes of its vectors.
     pub axes: Axes,
-    /// Every line, in the order of computation: what is given and steps 1 to 5 from base to tip, steps 6 and 7 back.
+    /// Every line in the order of computation: inputs and steps 1 to 5 from base to tip, then steps 6 and 7 from tip to
+    /// base.
     pub lines: Vec<Line>,
 }
 
-/// A quantity of a joint.
+/// A line of a worksheet: a quantity of a joint.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Line {
     /// The joint, from 1 at the base.
     pub joint: usize,
-    /// Whether it turns or slides.
+    /// Whether the joint is revolute or prismatic.
     pub kind: JointKind,
     /// The quantity of the line.
     pub quantity: Quantity,
     /// A number for each of [`Quantity::components`].
     pub values: Vec<f64>,
-    /// Right side of its formula, or what it is.
+    /// Right side of the formula, or a description such as `given`.
     pub formula: String,
     /// The terms of the sum; empty if the value is given.
     pub terms: Vec<Term>,
@@ -117,19 +119,19 @@ pub struct Line {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Term {
-    /// As the formula has it: `ω2 × (ω2 × d2)`.
+    /// The term as in the formula, such as `ω2 × (ω2 × d2)`.
     pub text: String,
-    /// Its numbers, with its sign.
+    /// The components of the term, including its sign.
     pub values: Vec<f64>,
-    /// Slips in this term alone: the words for the slip, and the numbers that it gives.
+    /// Slips in this term only: a description, and the resulting components of the term.
     pub slips: Vec<(String, Vec<f64>)>,
 }
 
-/// Something that goes into a formula.
+/// An input of a formula.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Input {
-    /// `ω1`.
+    /// The symbol, such as `ω1`.
     pub symbol: String,
     /// The value: one number, a vector of three, or a matrix of nine, row by row.
     pub values: Vec<f64>,
@@ -138,20 +140,20 @@ pub struct Input {
 }
 
 impl Line {
-    /// Its symbol: `ω̇2`.
+    /// Returns the symbol of the quantity, such as `ω̇2`.
     #[must_use]
     pub fn symbol(&self) -> String {
         self.quantity.symbol(self.joint)
     }
 
-    /// The unit; 1 for a number without one.
+    /// Returns the unit; 1 for a number without one.
     #[must_use]
     pub fn unit(&self) -> &'static str {
         self.quantity.unit(self.kind)
     }
 
-    /// How large it is, its terms, and what goes into it in the same unit: in parts of this a hand that rounds each
-    /// number is off.
+    /// Returns the largest norm among the values, the terms, and the inputs with the same unit. Rounding errors of a
+    /// calculation by hand are relative to it.
     #[must_use]
     pub fn size(&self) -> f64 {
         let inputs = self.inputs.iter().filter(|input| input.unit == self.unit() && input.unit != "1");
@@ -161,7 +163,7 @@ impl Line {
 }
 
 impl Worksheet {
-    /// The worksheet of a robot.
+    /// Computes the worksheet of a robot.
     ///
     /// # Errors
     /// When a list of the situation does not have one number per joint.
@@ -171,18 +173,18 @@ impl Worksheet {
         Ok(Self { axes, lines })
     }
 
-    /// The line of a quantity of a joint, counted from 1.
+    /// Returns the line of a quantity for a joint, counted from 1.
     #[must_use]
     pub fn line(&self, joint: usize, quantity: Quantity) -> Option<&Line> {
         self.lines.iter().find(|line| line.joint == joint && line.quantity == quantity)
     }
 
-    /// The largest size of a line in a unit.
+    /// Returns the largest [`size`](Line::size) of the lines with a unit.
     fn largest(&self, unit: &str) -> f64 {
         self.lines.iter().filter(|line| line.unit() == unit).map(Line::size).fold(0.0, f64::max)
     }
 
-    /// The torques and forces of the actuators, base to tip.
+    /// Returns the torques and forces of the actuators, base to tip.
     #[must_use]
     pub fn tau(&self) -> Vec<f64> {
         let is_torque = |line: &&Line| line.quantity == Quantity::Tau;
@@ -192,13 +194,13 @@ impl Worksheet {
     }
 }
 
-/// The numbers that the lines are made of.
+/// The numbers from which the lines are made.
 struct Computed {
     base: BaseMotion<f64>,
     axes: Axes,
-    /// In these axes.
+    /// The vectors of the links in the axes of the worksheet.
     links: Vec<LinkTrace<f64>>,
-    /// In axes fixed to each link.
+    /// The vectors of the links in axes fixed to each link.
     fixed: Vec<LinkTrace<f64>>,
 }
 
@@ -218,13 +220,13 @@ impl Computed {
         Ok(Self { base, axes, links, fixed: trace.links })
     }
 
-    /// The formulas with the values of `links`.
+    /// Returns the formulas with the values of `links`.
     fn formulas<'a>(&'a self, robot: &'a Robot, at: &'a Situation, links: &'a [LinkTrace<f64>]) -> Formulas<'a> {
         Formulas { robot, at, base: self.base, axes: self.axes, links, fixed: &self.fixed }
     }
 }
 
-/// The vector from the origin of frame 0 to joint 1: r_0.
+/// Returns r_0, the vector from the origin of frame 0 to joint 1.
 fn first_lever(robot: &Robot) -> [f64; 3] {
     let a = robot.rows().next().map_or(0.0, |row| row.dh.a);
     match robot.convention {
@@ -233,7 +235,8 @@ fn first_lever(robot: &Robot) -> [f64; 3] {
     }
 }
 
-/// Orientations A_i = R_1 … R_i of the links of a trace in axes fixed to them.
+/// Returns the orientations of the links, products of their rotations A_i = R_1 R_2 ⋯ R_i, from a trace in axes fixed
+/// to the links.
 fn orientations(fixed: &[LinkTrace<f64>]) -> Vec<nalgebra::Matrix3<f64>> {
     let mut turn = nalgebra::Matrix3::identity();
     let next = |link: &LinkTrace<f64>| {
@@ -243,7 +246,7 @@ fn orientations(fixed: &[LinkTrace<f64>]) -> Vec<nalgebra::Matrix3<f64>> {
     fixed.iter().map(next).collect()
 }
 
-/// The components of a symmetric matrix.
+/// Returns the six components of a symmetric matrix.
 fn symmetric(matrix: &nalgebra::Matrix3<f64>) -> Vec<f64> {
     [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(|at| matrix[at]).to_vec()
 }

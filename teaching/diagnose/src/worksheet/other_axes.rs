@@ -1,4 +1,4 @@
-//! The worksheets of those who compute right, but write their vectors in other axes than those of the sheet.
+//! Computes correct worksheets whose vectors are in other axes than those of the sheet.
 
 use nalgebra::{Matrix3, Vector3};
 use rne_model::{Angle, Convention, Robot};
@@ -6,13 +6,13 @@ use rne_runtime::WrongLength;
 
 use super::{Axes, Line, Quantity, Situation, Worksheet, symmetric};
 
-/// Axes that somebody may take for those of a worksheet, and the values of each of its lines in them.
+/// Axes that may have been used instead of those of a worksheet, and the values of each line in them.
 pub(super) struct OtherAxes {
     pub(super) says: String,
     pub(super) values: Vec<Vec<f64>>,
 }
 
-/// All axes but those of the sheet.
+/// Returns all axes except those of the sheet.
 pub(super) fn all(robot: &Robot, at: &Situation, sheet: &Worksheet) -> Result<Vec<OtherAxes>, WrongLength> {
     let mut all = Vec::new();
     let linked = match sheet.axes {
@@ -37,13 +37,14 @@ pub(super) fn all(robot: &Robot, at: &Situation, sheet: &Worksheet) -> Result<Ve
     Ok(all)
 }
 
-/// The values of each line of a sheet by another one; its own where the other has no such line.
+/// Returns the values of each line of a sheet from another sheet; those of the sheet itself if the other has no such
+/// line.
 fn values_of(sheet: &Worksheet, other: &Worksheet, of: impl Fn(&Line) -> Vec<f64>) -> Vec<Vec<f64>> {
     let by_other = |line: &Line| other.line(line.joint, line.quantity).map_or_else(|| line.values.clone(), &of);
     sheet.lines.iter().map(by_other).collect()
 }
 
-/// A line in link axes, told in the axes of frame i of a standard table: link axes turned by α_i about x.
+/// Returns a line in link axes, expressed in frame i of a standard table: link axes rotated by α_i about x.
 fn in_table_frame(line: &Line, alphas: &[Angle]) -> Vec<f64> {
     let turn =
         |joint: usize| joint.checked_sub(1).and_then(|row| alphas.get(row)).map_or_else(Matrix3::identity, about_x);

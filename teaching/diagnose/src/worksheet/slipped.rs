@@ -1,4 +1,4 @@
-//! The worksheets of those who make one of the usual slips.
+//! Computes worksheets with one of the usual slips.
 
 use nalgebra::{Matrix3, Vector3};
 use rne_model::{JointKind, Robot};
@@ -10,15 +10,15 @@ use crate::computation::{Computation, Moved};
 use crate::lecture::{LinkVectors, Misprint, Placed};
 use crate::slip::Slip;
 
-/// A slip in words, what is right, and the values of each line of the worksheet with it.
+/// A slip in words, the correct way, and the values of each line of the worksheet with the slip.
 pub(super) struct Slipped {
     pub(super) says: String,
     pub(super) right: Option<String>,
     pub(super) values: Vec<Vec<f64>>,
 }
 
-/// Every slip that can be made at a situation: those of [`Slip::candidates`], and those that no torque shows. None of a
-/// base that moves or of a payload.
+/// Returns every slip that is possible in a situation: those of [`Slip::candidates`], and those that do not change
+/// torques. Empty with a moving base or a payload.
 pub(super) fn all(robot: &Robot, at: &Situation, sheet: &Worksheet) -> Result<Vec<Slipped>, WrongLength> {
     if at.base.is_some() || at.payload.is_some() {
         return Ok(Vec::new());
@@ -35,7 +35,7 @@ pub(super) fn all(robot: &Robot, at: &Situation, sheet: &Worksheet) -> Result<Ve
     Ok(all)
 }
 
-/// Joints at wrong positions: at the angle of a joint beside, at zero, or on the other side.
+/// Returns slips with a joint at a wrong position: the angle of a neighbouring joint, zero, or the other sign.
 fn of_positions(robot: &Robot, at: &Situation, sheet: &Worksheet) -> Result<Vec<Slipped>, WrongLength> {
     let mut all = Vec::new();
     let revolute = |joint: usize| robot.joints.get(joint).filter(|joint| joint.row.kind == JointKind::Revolute);
@@ -61,7 +61,7 @@ fn of_positions(robot: &Robot, at: &Situation, sheet: &Worksheet) -> Result<Vec<
     Ok(all)
 }
 
-/// Formulas that take a wrong vector or matrix in every line.
+/// Returns slips that use a wrong vector or matrix in every line.
 fn of_lines(robot: &Robot, at: &Situation, sheet: &Worksheet) -> Result<Vec<Slipped>, WrongLength> {
     type Taken = fn(&Line, &mut [LinkTrace<f64>]);
     fn transposed(links: &mut [LinkTrace<f64>]) {
@@ -127,7 +127,7 @@ fn values(
     let tau = computation.printed(&arm, tau, &moved)?;
     for (line, values) in sheet.lines.iter().zip(&mut values) {
         match line.quantity {
-            // the state is what was asked about, whatever somebody makes of it
+            // the lines of the given state do not change
             Quantity::Q | Quantity::Qd | Quantity::Qdd => values.clone_from(&line.values),
             Quantity::Tau => *values = vec![tau[line.joint - 1]],
             _ => {}
@@ -136,7 +136,7 @@ fn values(
     Ok(values)
 }
 
-/// From the lecture's axes of each joint into those of a worksheet.
+/// Returns for each joint the rotation from the lecture's axes to those of a worksheet.
 fn from_the_lecture(robot: &Robot, at: &Situation, axes: Axes) -> Result<Vec<Matrix3<f64>>, WrongLength> {
     let arm = DynArm::from_robot(robot);
     let fixed = arm.trace(&at.q, &at.qd, &at.qdd, &arm.fixed_base(), None)?.links;
@@ -148,7 +148,7 @@ fn from_the_lecture(robot: &Robot, at: &Situation, axes: Axes) -> Result<Vec<Mat
     })
 }
 
-/// A line by the lecture's formulas with a misprint; `None` where they say nothing of it.
+/// Returns the values of a line by the lecture's formulas with a misprint; `None` if they do not give the quantity.
 fn misprinted(
     line: &Line,
     computation: &Computation,

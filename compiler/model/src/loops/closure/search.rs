@@ -72,7 +72,7 @@ impl Equations<'_> {
         (size(&residual), positions)
     }
 
-    /// Whether all joints are within their limits.
+    /// Returns whether all joints are within their position limits, up to rounding.
     pub(crate) fn is_within(&self, positions: &[f64]) -> bool {
         let is_within = |(joint, position): (&Joint, &f64)| {
             joint.limits.position.is_none_or(|(lower, upper)| (lower - ROUNDING..=upper + ROUNDING).contains(position))

@@ -24,7 +24,7 @@ pub(crate) struct Context<'t> {
     pub(crate) settings: &'t [(&'t str, f64)],
     /// The kinds of mappings that were read in this file, each once.
     pub(crate) mappings: RefCell<Vec<Mapping>>,
-    /// The name of the floating base, if the file has one: it means the same as `base`.
+    /// The name of the floating base, if the file has one; references may use it instead of `base`.
     pub(crate) base_name: RefCell<Option<String>>,
     /// How many unknown words have been compared with known ones.
     suggestions: Cell<usize>,
