@@ -101,7 +101,7 @@ pub(crate) struct ChainJoint {
     pub(crate) coulomb_displacement: Option<f64>,
 }
 
-/// What happened on the way from a tree to a chain.
+/// Events on the way from a tree to a chain.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Extracted {
     pub(crate) base: String,

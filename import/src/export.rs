@@ -25,7 +25,7 @@ pub struct Exported {
     pub text: String,
     /// The acceleration of gravity in the axes of the root link, m/s², which a URDF cannot contain.
     pub gravity: [f64; 3],
-    /// What the URDF cannot express of the robot, in sentences.
+    /// Properties of the robot that the URDF cannot express, in sentences.
     pub remarks: Vec<String>,
 }
 

@@ -14,7 +14,7 @@ use crate::geometry::Pose;
 use crate::source::{file_name, names, quoted};
 use crate::urdf::Urdf;
 
-/// The key by which this file is told from other YAML files.
+/// The key that distinguishes this file from other YAML files.
 const LOOPS: &str = "closed_loop";
 
 /// The keys that are read; others are for viewers and solvers.
@@ -225,7 +225,7 @@ impl Urdf {
     }
 }
 
-/// Returns the place of the first of some words, or `other` if there is none.
+/// Returns the place of the first of some words, or `other` without words.
 fn span_of(words: &[Word], other: &Range<usize>) -> Range<usize> {
     words.first().map_or(other.clone(), |word| word.span.clone())
 }

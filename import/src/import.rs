@@ -24,7 +24,7 @@ use crate::urdf::Urdf;
 /// Options of the conversion from a URDF to a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// Which chain is taken out of the tree.
+    /// The chain that is taken out of the tree.
     pub selection: Selection,
     /// Further links of a whole robot on which wrenches act, in addition to the tip. They become frames, and the robot
     /// file lists the tip and them in `tips`.

@@ -11,7 +11,7 @@ use crate::urdf::{Joint, Kind, Urdf};
 /// Largest number of end links that a message lists when the caller must name the tip.
 const LISTED: usize = 60;
 
-/// Which chain is taken out of a tree.
+/// The chain that is taken out of a tree.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Selection {
     /// The fixed link at the base [default: the root].

@@ -105,7 +105,7 @@ fn by_seed(robot: &Robot, seed: u64, student: &str) -> Situation {
 /// Largest size of a file of states for a class, in bytes.
 const LONGEST: usize = 4 << 20;
 
-/// What a column of the file contains.
+/// Contents of a column of the file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Column {
     Name,

@@ -14,7 +14,7 @@ use crate::outcome::{Failure, Outcome};
 use crate::palette::{GOOD, TYPED};
 use crate::render::layout::shortened;
 
-/// What is at the path of a file that will be written.
+/// The present contents of the path at which a file will be written.
 pub(crate) enum Existing {
     Nothing,
     Text(String),
@@ -119,7 +119,7 @@ pub(crate) struct Replacement {
     /// The registration by which a signal also removes the temporary file.
     registered: Registered,
     path: PathBuf,
-    /// The permissions of the existing file; `None` if there is none.
+    /// The permissions of the existing file; `None` for a new file.
     permissions: Option<fs::Permissions>,
 }
 
@@ -258,7 +258,7 @@ pub(crate) fn check_file(path: Option<&Path>, option: &str, example: &str) -> Re
 }
 
 /// Checks that a file may be written: it does not exist, already has this text, or `force` allows to overwrite it; and
-/// it is none of `sources`.
+/// it is not one of `sources`.
 pub(crate) fn check_new(path: &Path, text: Option<&str>, sources: &[&Path], force: bool) -> Result<(), Failure> {
     // signals must be caught before the command starts threads
     interruption::catch();

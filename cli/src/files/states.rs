@@ -197,7 +197,7 @@ impl Job<'_> {
 #[derive(Default)]
 struct Seen {
     count: usize,
-    /// The number of the first such state, counted from 1; 0 if there is none.
+    /// The number of the first such state, counted from 1; 0 without such a state.
     first: usize,
 }
 

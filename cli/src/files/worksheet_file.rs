@@ -58,7 +58,7 @@ impl Filled {
     }
 }
 
-/// What the first line of a worksheet says.
+/// Contents of the first line of a worksheet.
 #[derive(Default)]
 struct Head {
     student: Option<String>,

@@ -84,8 +84,8 @@ fn has_far_frames(robot: &Robot) -> bool {
     near_origins(robot).is_some()
 }
 
-/// Whether code without a proof may lose so many digits in single precision that users must be told: frames of the
-/// table are far from the arm, or a length is very long.
+/// Whether code without a proof loses more digits in single precision than users expect, and they must be told: frames
+/// of the table are far from the arm, or a length is very long.
 #[must_use]
 pub fn loses_digits(robot: &Robot) -> bool {
     /// A length above this, in m, occurs only if the frames are far from the arm.

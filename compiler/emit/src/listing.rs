@@ -24,7 +24,7 @@ use super::wrap::{TIED, WIDTH, fill};
 pub use self::explanations::reason;
 pub(super) use self::headings::recursion;
 
-/// Which part of a program to list, and with how many explanations.
+/// The part of a program to list, and the number of explanations.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Selection {
     /// List one joint only, counted from 1.
@@ -78,11 +78,11 @@ pub enum Line<'a> {
     SineCosine(&'a SineCosine, Expression<'a>),
     /// A statement and its expression.
     Statement(&'a Statement, Expression<'a>),
-    /// What became of components that have no statement.
+    /// The fate of components that have no statement.
     Resolution {
         /// The components.
         names: Vec<Name>,
-        /// What they became, with the sign or word before it.
+        /// The value that they have, with the sign or word before it.
         became: Annotated,
     },
     /// The number of operations that are left, and why the others were removed.

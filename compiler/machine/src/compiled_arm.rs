@@ -99,7 +99,7 @@ impl RobotFiles {
         &self.robot
     }
 
-    /// Returns the bytes of the plan file; `None` if there is none.
+    /// Returns the bytes of the plan file; `None` without such a file.
     #[must_use]
     pub fn plan(&self) -> Option<&[u8]> {
         self.plan.as_deref()

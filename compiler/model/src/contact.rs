@@ -5,11 +5,11 @@
 pub struct Contact {
     /// The tip, as an index into the list `tips`.
     pub tip: usize,
-    /// Which motion of the tip is held.
+    /// The motion of the tip that is held.
     pub kind: ContactKind,
 }
 
-/// Which motion of a tip is held.
+/// The motion of a tip that is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactKind {
     /// The origin of the tip is held; the tip can turn about this point.

@@ -1,4 +1,4 @@
-//! Functions of known length: what a measured call costs besides the function.
+//! Functions of known length, which show the overhead of a measured call.
 
 use core::hint::black_box;
 
@@ -10,7 +10,7 @@ fn echo<const DOF: usize>(q: &[f32; DOF], _: &[f32; DOF], _: &[f32; DOF]) -> [f3
     *q
 }
 
-/// For every number of joints, the time of a call.
+/// Passes the time of a call, for every number of joints, to `act`.
 pub(crate) fn each(mut act: impl FnMut(usize, u32)) {
     macro_rules! each {
         ($($dof:literal)*) => {$(

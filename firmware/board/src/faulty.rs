@@ -1,26 +1,26 @@
-//! Functions that no certificate may be given: each proves that the gate closes. They are linked, never called.
+//! Faulty functions, which prove that the certification refuses them. They are linked but never called.
 
 use core::hint::black_box;
 
-/// An index that can be out of bounds: a branch, and a call of the panic.
+/// Faulty: an index may be out of bounds, which needs a branch and a call of the panic.
 #[inline(never)]
 fn panics(q: &[f32; 6], joint: usize) -> f32 {
     q[joint]
 }
 
-/// A loop whose length is data.
+/// Faulty: the number of iterations of a loop depends on data.
 #[inline(never)]
 fn branches(q: &[f32; 6], joints: usize) -> f32 {
     q.iter().take(joints).fold(1.0, |product, q| product * q)
 }
 
-/// A constant in double precision in an expression of single precision.
+/// Faulty: a constant in double precision in an expression of single precision.
 #[inline(never)]
 fn doubles(q: &[f32; 6]) -> f32 {
     (f64::from(q[0]) * 0.1) as f32
 }
 
-/// A function of a library.
+/// Faulty: calls another function.
 #[inline(never)]
 fn calls(q: &[f32; 6]) -> f32 {
     black_box(callee as fn(f32) -> f32)(q[0])

@@ -1,4 +1,4 @@
-//! Runs the certified functions and prints, a line each, what the certificate reads:
+//! Runs the certified functions and prints for each a line that the program of the certificate reads:
 //!
 //! ```text
 //! torques ROBOT FORM STATE BITS…         results, each number as its bits in hexadecimal
@@ -57,7 +57,7 @@ fn main() -> ! {
     loop {}
 }
 
-/// SysTick counts down from its largest value, once per clock of the processor.
+/// Starts SysTick, which counts down from its largest value, once per clock cycle of the processor.
 fn start(mut timer: SYST) {
     timer.set_clock_source(SystClkSource::Core);
     timer.set_reload(0x00ff_ffff);
@@ -69,7 +69,7 @@ const fn elapsed(start: u32, end: u32) -> u32 {
     start.wrapping_sub(end) & 0x00ff_ffff
 }
 
-/// The time of one call.
+/// Measures the time of one call, in ticks.
 #[inline(never)]
 fn ticks<const DOF: usize>(function: Torques<DOF>, state: &State<DOF>) -> u32 {
     let start = SYST::get_current();
@@ -79,7 +79,7 @@ fn ticks<const DOF: usize>(function: Torques<DOF>, state: &State<DOF>) -> u32 {
     elapsed(start, end)
 }
 
-/// The rest of a line.
+/// Prints the numbers of a result, and ends the line.
 fn print(numbers: &impl Numbers<f32>) {
     numbers.each(&mut |number| hprint!(" {:08x}", number.to_bits()));
     hprintln!();

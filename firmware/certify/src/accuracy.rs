@@ -1,8 +1,8 @@
-//! The error of a function in single precision over the limits of an arm, with a rigorous bound at each state.
+//! Bounds the error of a function in single precision rigorously, at random states within the limits of an arm.
 //!
 //! At each state of a sample, the program runs in `f32`, as the emitted code does. It also runs on intervals of `f64`
 //! ([`Interval`]), which enclose the exact result. The distance of the `f32` result from the farthest number of the
-//! interval is at least the error. So the bound holds at the states of the sample. It says nothing of other states.
+//! interval is an upper bound of the error. It is valid at the states of the sample only.
 
 use rne_codegen::{Argument, Arguments, Interpreter, Output, Program, Real, Value};
 use rne_model::{JointKind, Limits, Robot};
@@ -13,7 +13,7 @@ use crate::interval::Interval;
 /// The states at which the error is bounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
-    /// How many states.
+    /// Number of states.
     pub states: usize,
     /// The seed of the random numbers.
     pub seed: u64,
@@ -28,7 +28,7 @@ pub struct Range {
     pub velocity: f64,
     /// Largest acceleration, rad/s² or m/s².
     pub acceleration: f64,
-    /// Largest torque, N m or N, of a function that takes torques.
+    /// Largest torque, N m or N, for functions that take torques.
     pub torque: f64,
 }
 
@@ -43,16 +43,16 @@ pub struct Error {
     pub state: usize,
 }
 
-/// Speed, acceleration and torque of a joint without limits.
+/// Largest speed, acceleration and torque of a joint without limits.
 const SPEED: f64 = 2.0;
 const ACCELERATION: f64 = 4.0;
 const TORQUE: f64 = 10.0;
-/// Positions of a sliding joint without limits, m.
+/// Largest position of a prismatic joint without limits, in both directions, m.
 const SLIDE: f64 = 1.0;
 
 /// Force, N, and moment, N m, at a tip.
 static WRENCH: [f32; 6] = [5.0, -3.0, 20.0, 0.4, -0.6, 0.25];
-/// Mass, kg; centre of mass, m; inertia about it xx, yy, zz, xy, xz, yz, kg m².
+/// Mass, kg; centre of mass, m; inertia about the centre of mass, xx, yy, zz, xy, xz, yz, kg m².
 static PAYLOAD: [f32; 10] = [1.5, 0.01, -0.02, 0.06, 0.003, 0.004, 0.002, 2e-4, -1e-4, 3e-4];
 /// Angular velocity, rad/s; angular acceleration, rad/s²; acceleration, m/s²; gravity, m/s², in the axes of frame 0.
 static BASE: [[f32; 3]; 4] = [[0.5, -0.3, 0.7], [1.2, -0.8, 0.6], [0.4, 1.1, -0.9], [0.6, -0.4, -9.78]];
@@ -68,8 +68,8 @@ static POSE: [f32; 12] = {
     [xx, xy, xz, yx, yy, yz, zx, zy, zz, 0.3, -0.2, 0.5]
 };
 
-/// The arrays that are the same at each state: the name, the numbers of the state or of a tip, and a clause about them,
-/// with `{}` in the place of the numbers.
+/// The arrays that are the same at each state: the name, the numbers (of one tip, if there are several), and a clause
+/// about them, with `{}` instead of the numbers.
 static SAME: [(&str, &[f32], &str); 13] = [
     ("payload", &PAYLOAD, "the payload is {}: mass (kg), centre of mass (m), inertia (kg m²)"),
     ("base_omega", &BASE[0], "the base has the angular velocity {} (rad/s)"),
@@ -86,8 +86,8 @@ static SAME: [(&str, &[f32], &str); 13] = [
     ("step", &STEP, "the step takes {} s"),
 ];
 
-/// The numbers of an array of an argument that is the same at each state, those of one tip if it has a row for each,
-/// and a clause that tells them. `None` for an array that differs from state to state.
+/// Returns the numbers of an array that is the same at each state, those of one tip if it has a row for each, and a
+/// clause that describes them. `None` for an array that differs from state to state.
 #[must_use]
 pub fn same(array: &str) -> Option<(&'static [f32], String)> {
     let (_, numbers, clause) = SAME.into_iter().find(|(name, ..)| *name == array)?;
@@ -95,7 +95,7 @@ pub fn same(array: &str) -> Option<(&'static [f32], String)> {
     Some((numbers, clause.replace("{}", &list)))
 }
 
-/// The ranges of the joints: the limits of the robot file, and defaults where it has none.
+/// Returns the ranges of the joints: the limits of the robot file, or defaults.
 #[must_use]
 pub fn ranges(robot: &Robot) -> Vec<Range> {
     let range = |(joint, limits): (&rne_model::Joint, Limits)| Range {
@@ -110,7 +110,7 @@ pub fn ranges(robot: &Robot) -> Vec<Range> {
     robot.independent_joints().zip(robot.coordinate_limits()).map(range).collect()
 }
 
-/// Positions that close the loops of a robot: of the coordinates, and of the dependent joints.
+/// Returns positions that close the loops of a robot: of the coordinates, and of the dependent joints.
 fn closures(robot: &Robot) -> Vec<(Vec<f32>, Vec<f32>)> {
     let of = |closure: &[f64], joints: &mut dyn Iterator<Item = usize>| joints.map(|at| single(closure[at])).collect();
     let passive = || robot.closed.passive.iter().copied();
@@ -118,15 +118,15 @@ fn closures(robot: &Robot) -> Vec<(Vec<f32>, Vec<f32>)> {
     closures.map(|closure| (of(closure, &mut robot.coordinates()), of(closure, &mut passive()))).collect()
 }
 
-/// Positions of the dependent joints of closed loops, for states of the other joints that need not close them: those of
-/// the first closure that the robot file has. Empty for a robot without closed loops.
+/// Returns positions of the dependent joints of closed loops: those of the first closure in the robot file, even if the
+/// other joints have positions that do not close the loops. Empty for a robot without closed loops.
 #[must_use]
 pub fn passive(robot: &Robot) -> Vec<f32> {
     closures(robot).into_iter().next().map(|(_, passive)| passive).unwrap_or_default()
 }
 
-/// The errors of the numbers that a program returns; `None` if the interpreter cannot run it with the arguments of
-/// joints alone. `sin_cos` is that of the emitted code.
+/// Returns the errors of the numbers that a program returns; `None` if the interpreter cannot run it with the arguments
+/// that are available here. `sin_cos` must be that of the emitted code.
 #[must_use]
 pub fn errors(
     robot: &Robot,
@@ -150,14 +150,14 @@ pub fn errors(
         let found = single_precision(robot, &interpreter, [&q, &passive, &qd, &last], &sin_cos)?;
         Some((found, enclosed(robot, &interpreter, [&q, &passive, &qd, &last])?))
     });
-    // the constant 0 is exact, and has no name
+    // an output that is the constant 0, which has no name, is exact
     let is_zero = |id| program.values.name(id).is_none() && matches!(program.values.get(id), Value::Constant(_));
     let exact = |(error, output): (Error, &Output)| if is_zero(output.value) { Error::default() } else { error };
     Some(errors?.into_iter().zip(&program.outputs).map(exact).collect())
 }
 
-/// The largest errors of `length` numbers over the states of a sample. `at` gives the numbers of a state in single
-/// precision, and intervals that enclose the exact ones; the states come in their order.
+/// Returns the largest errors of `length` numbers over the states of a sample. `at` is called for each state in order,
+/// and returns the numbers in single precision, and intervals that enclose the exact ones.
 pub(crate) fn largest_errors(
     sample: Sample,
     length: usize,
@@ -179,13 +179,14 @@ pub(crate) fn largest_errors(
     Some(errors)
 }
 
-/// Intervals that enclose the exact numbers that a program returns; the last array are accelerations or torques.
+/// Returns intervals that enclose the exact numbers that a program returns; the last array has accelerations or
+/// torques.
 pub(crate) fn enclosed(robot: &Robot, interpreter: &Interpreter, arrays: [&[f32]; 4]) -> Option<Vec<Interval>> {
     let exactly = |x: f32| Interval::exactly(f64::from(x));
     run(robot, interpreter, arrays, exactly, Interval::rounded, Interval::sin_cos)
 }
 
-/// The numbers that a program returns in single precision for joint positions, those of the dependent joints,
+/// Returns the numbers that a program returns in single precision for joint positions, those of the dependent joints,
 /// velocities, and accelerations or torques.
 #[must_use]
 pub fn single_precision(
@@ -197,8 +198,7 @@ pub fn single_precision(
     run(robot, interpreter, arrays, |x| x, single, sin_cos)
 }
 
-/// The numbers that a program returns in the arithmetic of `T`: `exactly` has the numbers of the arguments in it,
-/// `rounded` the constants.
+/// Runs a program in the arithmetic of `T`: `exactly` converts the numbers of the arguments, `rounded` the constants.
 fn run<T: Real>(
     robot: &Robot,
     interpreter: &Interpreter,
@@ -242,7 +242,7 @@ mod tests {
 
     use super::{Error, Sample, errors, same};
 
-    /// A function with an argument that no state of the board has could not be certified.
+    /// A function with another argument could not be certified.
     #[test]
     fn each_argument_is_that_of_a_joint_or_the_same_at_each_state() {
         const OF_JOINTS: [&str; 8] = ["q", "qd", "qdd", "tau", "multipliers", "sin", "cos", "passive"];
@@ -253,7 +253,7 @@ mod tests {
         }
     }
 
-    /// A pendulum: τ = (I + m c²) q̈ + m g c cos q, by hand.
+    /// A pendulum, whose torque is τ = (I + m c²) q̈ + m g c cos q.
     const PENDULUM: &str = "{format: 1, name: one, source: doc, convention: standard, gravity: [0, -9.81, 0], joints: [
         {type: revolute, dh: {theta: 0, d: 0, a: 0.7, alpha: 0}, link: {mass: 1.3, com: [-0.3, 0, 0]}}]}";
 
@@ -265,13 +265,13 @@ mod tests {
         let error = errors(&robot, &program, sample, f32::sin_cos).expect("errors")[0];
         // 1.3 (9.81 0.4 + 0.4² 4)
         assert!(error.largest > 5.0 && error.largest < 5.94, "{error:?}");
-        // some roundings of 2⁻²⁴ of the largest torque, and no fewer than half of one
+        // several rounding errors of 2⁻²⁴ of the largest torque, and at least half of one
         assert!(error.bound < 8.0 * 5.94 / f64::from(1 << 24) && error.bound > 1e-7, "{error:?}");
-        // without gravity nothing holds it, so that its torque is exactly zero
+        // without gravity, the torque that holds it is exactly zero
         let robot = Robot::from_yaml(&PENDULUM.replace("-9.81", "0")).expect("a robot");
         let none = Compiler::new(&robot).compile(Function::GravityTorques, Form::Reduced).expect("it compiles");
         assert_eq!(errors(&robot, &none, sample, f32::sin_cos), Some(vec![Error::default()]));
-        // a sine that is wrong by 1e-3 is found
+        // a cosine with an error of 1e-3 is detected
         let wrong = errors(&robot, &program, sample, |x| (x.sin(), x.cos() + 1e-3)).expect("errors")[0];
         assert!(wrong.bound > 4e-3, "{wrong:?}");
     }

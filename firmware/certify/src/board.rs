@@ -1,12 +1,12 @@
-//! A program in C that calls a function on the boards that QEMU emulates, and what it prints.
+//! Makes a program in C that calls a function on the boards that QEMU emulates, and reads its output.
 
-/// The file that starts the processor, reads the timer and prints; it includes [`HEADER`] as `board.h`.
+/// The C file that starts the processor, reads the timer and prints; it includes [`HEADER`] as `board.h`.
 pub const SOURCE: &str = include_str!("../board/board.c");
-/// Its header.
+/// The header of [`SOURCE`].
 pub const HEADER: &str = include_str!("../board/board.h");
-/// The script of the linker.
+/// The linker script.
 pub const LINKER_SCRIPT: &str = include_str!("../board/board.ld");
-/// Options of a C compiler that is as strict as a project may be, and that rounds sums and products as written.
+/// Options of the C compiler: strict warnings, and rounding of each sum and product as written.
 pub const OPTIONS: [&str; 10] = [
     "-std=c99",
     "-pedantic",
@@ -21,15 +21,15 @@ pub const OPTIONS: [&str; 10] = [
 ];
 /// The states at which [`SOURCE`] calls the functions.
 pub const STATES: u32 = 32;
-/// The largest number of joints that `struct state` holds.
+/// The largest number of joints of `struct state`.
 pub const MOST_JOINTS: usize = 32;
-/// Ticks of the timer (25 MHz) while QEMU executes an instruction, which takes 1024 ns there.
+/// Ticks of the timer (25 MHz) during an instruction, which takes 1024 ns in QEMU.
 const TICKS: f64 = 25.6;
 
-/// Positions, velocities and accelerations between -3 and 3, as `state_of` in C computes them: row by row.
+/// Returns positions, velocities and accelerations between -3 and 3, equal to those of `state_of` in C.
 #[must_use]
 pub fn state(number: u32, dof: usize) -> [Vec<f32>; 3] {
-    // G. Marsaglia's generator, Journal of Statistical Software 8 (2003)
+    // xorshift generator: G. Marsaglia, Journal of Statistical Software 8 (2003)
     let mut x = number.wrapping_mul(747_796_405).wrapping_add(2_891_336_453) | 1;
     let mut next = || {
         x ^= x << 13;
@@ -42,33 +42,32 @@ pub fn state(number: u32, dof: usize) -> [Vec<f32>; 3] {
     [(); 3].map(|()| (0..dof).map(|_| next()).collect())
 }
 
-/// A call of a function of C that writes its numbers to its last argument, or returns its only number.
+/// A call of a C function that writes its numbers to its last argument, or returns its only number.
 #[derive(Clone, Debug)]
 pub struct Call {
     /// The name of the function.
     pub function: String,
-    /// The types of the arguments, and the arguments as C; `s` points to the `struct state`. The result is not among
-    /// them.
+    /// The types and the C expressions of the arguments, without the result; `s` points to the `struct state`.
     pub arguments: Vec<(String, String)>,
-    /// How many numbers it writes.
+    /// How many numbers the function writes.
     pub length: usize,
-    /// Lines before the call; `out` is the place of the result.
+    /// Lines of C before the call; `out` is the result.
     pub before: Vec<String>,
     /// The type of an element of the result, `float` or a struct of numbers.
     pub element: String,
-    /// The lengths of the arrays of such elements; none where the result is one struct or one number.
+    /// The lengths of the dimensions of the result; empty if it is one struct or one number.
     pub lengths: Vec<usize>,
 }
 
 impl Call {
-    /// The call of a function that takes no arguments and writes `length` numbers.
+    /// Makes the call of a function that takes no arguments and writes `length` numbers.
     #[must_use]
     pub fn new(function: String, length: usize) -> Self {
         let (arguments, before) = (Vec::new(), Vec::new());
         Self { function, arguments, length, before, element: "float".to_owned(), lengths: vec![length] }
     }
 
-    /// The call of a function that takes the given members of the state.
+    /// Makes the call of a function that takes the given members of the state.
     #[must_use]
     pub fn of_arrays(function: &str, arrays: &[&str], length: usize) -> Self {
         let argument = |array: &&str| ("const float *".to_owned(), format!("s->{array}"));
@@ -76,8 +75,8 @@ impl Call {
     }
 }
 
-/// The program that calls a function of C at [`STATES`] states of an arm with `dof` joints, prints its results and,
-/// once, its time and that of a function that does nothing.
+/// Returns the program that calls a C function at [`STATES`] states of an arm with `dof` joints and prints its results.
+/// It also prints the time of one call, and that of an empty function.
 #[must_use]
 pub fn cases(header: &str, dof: usize, call: &Call) -> String {
     let Call { function, arguments, length, before, element, lengths } = call;
@@ -93,7 +92,7 @@ pub fn cases(header: &str, dof: usize, call: &Call) -> String {
         arguments.iter().enumerate().map(|(index, argument)| each(index, argument)).collect()
     };
     let types = list(&|_, (kind, _)| format!("{kind}, "));
-    // the name of a pointer to arrays stands in its parentheses
+    // in C, the name of a pointer to arrays is within the parentheses
     let parameters = list(&|index, (kind, _)| match kind.split_once("(*)") {
         Some((element, lengths)) => format!("{element}(*a{index}){lengths}, "),
         None => format!("{kind} a{index}, "),
@@ -103,12 +102,12 @@ pub fn cases(header: &str, dof: usize, call: &Call) -> String {
     let values = list(&|_, (_, value)| format!("{value}, "));
     let before: String = before.iter().flat_map(|line| ["    ", line, "\n"]).collect();
     let out = pointer("out");
-    // the arguments of the function itself, what it does to `out`, and its last statement
+    // arguments of a function, with `out` if the result is not returned
     let of_function = |list: &str, out: &str| {
         if is_returned { list.trim_end_matches(", ").to_owned() } else { format!("{list}{out}") }
     };
     let (returned, into, into_pointer, end) = if is_returned {
-        // any number of a register of the FPU: no instruction loads it
+        // returns any value of an FPU register, without an instruction that loads it
         ("float", "out = ", "*out = ", "float out;\n    __asm__(\"\" : \"=t\"(out));\n    return out;")
     } else {
         ("void", "", "", "(void)out;")
@@ -135,14 +134,14 @@ pub fn cases(header: &str, dof: usize, call: &Call) -> String {
 /// The results that the program prints.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Printed {
-    /// The instructions of the call of the function at the first state.
+    /// Number of instructions of the call at the first state.
     pub instructions: u64,
-    /// The bits of the results, by states.
+    /// The bits of the results, for each state.
     pub results: Vec<Vec<u32>>,
 }
 
 impl Printed {
-    /// Reads the lines; `None` where they are not as [`cases`] prints them.
+    /// Reads the output of the program; `None` if it does not have the form that the program of [`cases`] prints.
     #[must_use]
     pub fn read(text: &str) -> Option<Self> {
         let mut printed = Self::default();
@@ -158,7 +157,7 @@ impl Printed {
                 _ => return None,
             }
         }
-        // a function that does nothing is one instruction: bx lr
+        // an empty function has one instruction: bx lr
         let instructions = (function? - nothing?) / TICKS + 1.0;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a timer of 24 bits
         let rounded = instructions.round().max(0.0) as u64;
@@ -174,7 +173,7 @@ mod tests {
 
     #[test]
     fn states_are_those_of_the_board() {
-        // by hand: x = 2891336453 | 1 for the first state
+        // calculated by hand: x = 2891336453 | 1 for the first state
         let [q, ..] = state(0, 1);
         assert!(q[0].abs() <= 3.0 && state(0, 2)[0][0] == q[0] && state(1, 1)[0] != q);
     }

@@ -1,4 +1,4 @@
-//! The certificate of functions of one arm: its data, and the page.
+//! The certificate of functions of one arm: its data, and its page.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -9,7 +9,7 @@ use crate::accuracy::Error;
 use crate::cycles::Class;
 use crate::misra;
 
-/// Everything that the page says.
+/// The data of a certificate.
 #[derive(Clone, Debug, Serialize)]
 pub struct Certificate {
     /// The command that makes this certificate.
@@ -20,58 +20,58 @@ pub struct Certificate {
     pub language: &'static str,
     /// The form of the code.
     pub form: String,
-    /// The core, as `-mcpu` names it.
+    /// The core, by its name for `-mcpu`.
     pub core: String,
     /// Versions of the tools, by their names.
     pub tools: BTreeMap<String, String>,
     /// Options of the compiler.
     pub options: Vec<String>,
-    /// The command that writes the code that is certified.
+    /// The command that writes the certified code.
     pub emit: String,
-    /// SHA-256, by what it is of.
+    /// SHA-256 hashes, by the names of the hashed data.
     pub hashes: BTreeMap<String, String>,
-    /// The function that is certified, the first one where there are several.
+    /// The certified function, or the first of several.
     #[serde(flatten)]
     pub first: Certified,
     /// The other functions.
     pub more: Vec<Certified>,
-    /// Whether the file of the code also contains tests, behind `RNE_TEST`.
+    /// Whether the file of the code also contains tests, which `RNE_TEST` enables.
     pub tests: bool,
-    /// Rules of MISRA C:2012 and how often the code violates them; absent where cppcheck is not installed.
+    /// Violated rules of MISRA C:2012, with the number of violations; absent if cppcheck is not installed.
     pub misra: Option<BTreeMap<String, usize>>,
-    /// The lines of the code and where they come from.
+    /// The lines of the code with the equations from which they come.
     pub trace: Vec<Traced>,
 }
 
-/// A function and what is known of it.
+/// A certified function with its results.
 #[derive(Clone, Debug, Serialize)]
 pub struct Certified {
-    /// The function, by its name in the code without the prefix.
+    /// The name of the function in the code, without the prefix.
     pub function: String,
-    /// The cost of a call.
+    /// The cost of a call of the function.
     pub cost: Cost,
-    /// The measurement in QEMU; absent where it is not installed.
+    /// The measurement in QEMU; absent if it is not installed.
     pub emulation: Option<Emulation>,
     /// The error of the results.
     pub accuracy: Accuracy,
-    /// How the code was compared with the recursive Newton-Euler algorithm, a sentence each.
+    /// Sentences on the comparison of the code with the recursive Newton-Euler algorithm.
     pub proof: Vec<String>,
 }
 
 /// The cost of a call.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Cost {
-    /// Instructions of a call, those of the functions that it calls included.
+    /// Instructions of a call, including those of the functions that it calls.
     pub instructions: u64,
     /// Cycles of a call in the worst case, by the table of the core.
     pub cycles: u64,
     /// The meaning of the cycles in words: a worst case, or an estimate of it.
     pub bound: &'static str,
-    /// Cycles of it in which an instruction waits for the result of the one before.
+    /// Number of these cycles in which an instruction waits for the result of the previous one.
     pub waits: u64,
     /// The kinds of instructions.
     pub classes: Vec<Class>,
-    /// Instructions that the table of the core does not know.
+    /// Instructions that are not in the table of the core.
     pub unknown: Vec<String>,
     /// The assumptions of the table.
     pub assumptions: Vec<String>,
@@ -79,30 +79,30 @@ pub struct Cost {
     pub code: u64,
     /// Bytes of constants.
     pub constants: u64,
-    /// Bytes of stack of the deepest chain of calls, as the compiler records frames; as the instructions show them for
-    /// a compiler that records none.
+    /// Bytes of stack of the deepest chain of calls, from the frames that the compiler records or, without these, from
+    /// the instructions.
     pub stack: u64,
-    /// The bytes of stack that the instructions show.
+    /// Bytes of stack of the deepest chain of calls, from the instructions.
     pub stack_of_listing: u64,
-    /// The functions that are called, and how often.
+    /// The functions that are called, with the numbers of calls.
     pub calls: BTreeMap<String, usize>,
 }
 
 /// The measurement in QEMU.
 #[derive(Clone, Debug, Serialize)]
 pub struct Emulation {
-    /// The board.
+    /// QEMU's name of the board.
     pub machine: String,
-    /// Instructions of a call by the timer.
+    /// Instructions of a call, measured by the timer.
     pub instructions: u64,
-    /// States at which the results have the bits of the host.
+    /// Number of states at which the results have the same bits as on the host.
     pub states: usize,
 }
 
 /// The error of the results.
 #[derive(Clone, Debug, Serialize)]
 pub struct Accuracy {
-    /// How the states are chosen, in words.
+    /// The choice of the states, in words.
     pub how: String,
     /// Number of states.
     pub states: usize,
@@ -110,7 +110,7 @@ pub struct Accuracy {
     pub seed: u64,
     /// The ranges of the joints, in words.
     pub ranges: Vec<String>,
-    /// The numbers of the result.
+    /// The errors of the numbers of the result.
     pub results: Vec<NamedError>,
 }
 
@@ -121,9 +121,9 @@ pub struct NamedError {
     pub name: String,
     /// The name of its joint; `None` for a number of the base.
     pub joint: Option<String>,
-    /// Its unit.
+    /// The unit of the number.
     pub unit: &'static str,
-    /// Its error.
+    /// The error of the number.
     #[serde(flatten)]
     pub error: Error,
 }
@@ -131,17 +131,18 @@ pub struct NamedError {
 /// A line of the code.
 #[derive(Clone, Debug, Serialize, PartialEq, Eq)]
 pub struct Traced {
-    /// Its number in the source.
+    /// The number of the line in the source.
     pub line: usize,
-    /// The name that it computes.
+    /// The name of the value that the line computes.
     pub name: String,
-    /// The step, as the code says it.
+    /// The step, from the comment in the code.
     pub step: String,
     /// The equations of the step.
     pub equations: String,
 }
 
-/// The statements of a function in emitted C or Rust, with the comments above them: the step, and its equations.
+/// Returns the statements of a function in emitted C or Rust, with the step and its equations from the comments above
+/// them.
 ///
 /// `head` is the beginning of the function: `arm_inverse_dynamics(` in C, `fn inverse_dynamics<` in Rust. `joints` are
 /// the names of the joints in the order of the elements of q.
@@ -170,10 +171,10 @@ pub fn trace(source: &str, head: &str, joints: &[&str]) -> Vec<Traced> {
         }
         is_comment = false;
         let is_statement = words.contains(" = ") || words.ends_with(" =");
-        // a long expression begins on the next line
+        // a long expression may begin on the next line
         let left = words.split(" =").next().unwrap_or_default();
         if let Some(name) = left.split_whitespace().last().filter(|_| is_statement) {
-            // what is returned is stored after all steps, and belongs to none
+            // results are stored after all steps, and do not belong to a step
             let (step, equations) = match result(left, joints).filter(|_| step.contains(", step ")) {
                 Some(result) => (result, String::new()),
                 None if step.is_empty() => ("argument".to_owned(), String::new()),
@@ -189,7 +190,7 @@ pub fn trace(source: &str, head: &str, joints: &[&str]) -> Vec<Traced> {
     traced
 }
 
-/// An element of the result, such as `tau[1]` or `torques->wrench.force[0]`, in words; `None` for a variable.
+/// Describes an element of the result, such as `tau[1]` or `torques->wrench.force[0]`, in words; `None` for a variable.
 fn result(place: &str, joints: &[&str]) -> Option<String> {
     let (array, index) = place.strip_suffix(']')?.rsplit_once('[')?;
     let is_of_base = ["force", "moment"].iter().any(|part| array.ends_with(&format!(".{part}")));
@@ -198,7 +199,7 @@ fn result(place: &str, joints: &[&str]) -> Option<String> {
 }
 
 impl Certificate {
-    /// The page in Markdown.
+    /// Returns the page in Markdown.
     #[must_use]
     pub fn page(&self) -> String {
         let functions: Vec<String> = self.functions().map(|of| format!("`{}`", of.function)).collect();
@@ -211,7 +212,7 @@ impl Certificate {
         );
         self.tools_and_files(&mut text);
         for certified in self.functions() {
-            // a page about one function names it in the title alone
+            // a page about one function names it only in the title
             let of = if self.more.is_empty() { String::new() } else { format!(" of `{}`", certified.function) };
             certified.costs(&mut text, &self.form, &of);
             certified.emulated(&mut text, &of);

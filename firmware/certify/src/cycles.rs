@@ -1,7 +1,8 @@
-//! The worst case of straight code in cycles of a processor.
+//! Computes the worst case of straight-line code in cycles of a processor.
 //!
-//! A table gives the cycles of each instruction, and a rule adds a cycle where the next instruction waits for a result.
-//! Straight code executes each instruction once, so the sum is the worst case of a processor for which the table holds.
+//! A table gives the cycles of each instruction, and a rule adds a cycle if the next instruction waits for a result.
+//! Straight-line code executes each instruction once, so the sum is the worst case for a processor for which the table
+//! is correct.
 
 use serde::Serialize;
 
@@ -41,9 +42,9 @@ enum Kind {
 pub struct Class {
     /// The kind in words.
     pub what: &'static str,
-    /// Their mnemonics that occur.
+    /// The mnemonics of this kind that occur.
     pub mnemonics: Vec<String>,
-    /// How many there are.
+    /// Number of instructions.
     pub instructions: u64,
     /// The cycles of all of them.
     pub cycles: u64,
@@ -52,17 +53,17 @@ pub struct Class {
 /// The cycles of a call.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Cycles {
-    /// The sum.
+    /// The sum of the cycles.
     pub total: u64,
-    /// Cycles of it in which the next instruction waits for a result.
+    /// Number of these cycles in which the next instruction waits for a result.
     pub waits: u64,
     /// The kinds of instructions.
     pub classes: Vec<Class>,
-    /// Mnemonics that the table does not know: they count as the slowest instruction.
+    /// Mnemonics that are not in the table; they count as the slowest instruction.
     pub unknown: Vec<String>,
 }
 
-/// The sum of the cycles of several straight functions, one after another.
+/// Adds the cycles of several straight-line functions.
 #[derive(Clone, Debug, Default)]
 pub struct Counter {
     waits: u64,
@@ -71,11 +72,11 @@ pub struct Counter {
     unknown_cycles: u64,
 }
 
-/// The cycles of an instruction that no table knows.
+/// The cycles of an instruction that is not in the table.
 const SLOWEST: u64 = 16;
 
 impl Core {
-    /// Its name for `-mcpu`.
+    /// Returns the name of the core for `-mcpu`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -84,13 +85,13 @@ impl Core {
         }
     }
 
-    /// The core of a name for `-mcpu`.
+    /// Returns the core with this name for `-mcpu`.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         [Self::M4, Self::M7].into_iter().find(|core| core.name() == name)
     }
 
-    /// Options of a compiler of C for it.
+    /// Returns the options of a C compiler for the core.
     #[must_use]
     pub const fn flags(self) -> [&'static str; 4] {
         match self {
@@ -99,7 +100,7 @@ impl Core {
         }
     }
 
-    /// QEMU's name of a board with it.
+    /// Returns QEMU's name of a board with the core.
     #[must_use]
     pub const fn machine(self) -> &'static str {
         match self {
@@ -108,7 +109,7 @@ impl Core {
         }
     }
 
-    /// The meaning of the cycles in words: a worst case, or an estimate of it.
+    /// Returns the meaning of the cycles in words: a worst case, or an estimate of it.
     #[must_use]
     pub const fn bound(self) -> &'static str {
         match self {
@@ -117,7 +118,7 @@ impl Core {
         }
     }
 
-    /// The assumptions under which the cycles hold, a sentence each.
+    /// Returns the assumptions under which the cycles are correct, a sentence each.
     #[must_use]
     pub fn assumptions(self) -> Vec<&'static str> {
         let mut assumptions = vec![
@@ -187,10 +188,10 @@ impl Kind {
         }
     }
 
-    /// The kind of an instruction, and how many registers it moves.
+    /// Returns the kind of an instruction, and how many registers it moves.
     fn of(line: &Line) -> Option<(Self, u64)> {
         let name = line.name();
-        // vmul.f32, vmul.f32.n
+        // removes suffixes, as of vmul.f32 and vmul.f32.n
         let stem = name.split('.').next().unwrap_or(name);
         let registers = registers(line.operands());
         Some(match stem {
@@ -226,7 +227,7 @@ impl Kind {
 }
 
 impl Counter {
-    /// Adds the instructions of a straight function.
+    /// Adds the instructions of a straight-line function.
     pub fn add(&mut self, core: Core, lines: &[Line]) {
         let last = lines.iter().rposition(|line| line.data() == 0 && !line.is_padding());
         let mut code = lines.iter().take(last.map_or(0, |last| last + 1)).filter(|line| line.data() == 0).peekable();
@@ -250,7 +251,7 @@ impl Counter {
         }
     }
 
-    /// The sum.
+    /// Returns the sum of all functions.
     #[must_use]
     pub fn cycles(&self) -> Cycles {
         let classes: Vec<Class> = self
@@ -268,7 +269,8 @@ impl Counter {
     }
 }
 
-/// Whether the next instruction reads the first operand of one: the destination is read, too, where it is accumulated.
+/// Whether the next instruction reads the result, which is the first operand, of an instruction. An instruction that
+/// accumulates also reads its destination.
 fn is_read(line: &Line, next: &Line) -> bool {
     let result = line.operands().split(',').next().unwrap_or_default().trim();
     let mut operands = next.operands().split([',', '{', '}', '-', ' ']).map(str::trim).filter(|word| !word.is_empty());
@@ -283,7 +285,7 @@ fn is_read(line: &Line, next: &Line) -> bool {
         operands.next();
     }
     let in_range = || {
-        // vpush {s16-s31} and the like
+        // a range of registers, as in vpush {s16-s31}
         let number = |word: &str| word.trim().strip_prefix('s')?.parse::<u32>().ok();
         let range = next.operands().split(['{', '}']).nth(1).and_then(|list| list.split_once('-'));
         range.is_some_and(|(low, high)| {
@@ -301,7 +303,7 @@ fn is_core_register(operand: &str) -> bool {
     !is_of_fpu && !operand.starts_with('#')
 }
 
-/// The number of registers in a list such as `{r4, r5, pc}` or `{s16-s31}`.
+/// Returns the number of registers in a list such as `{r4, r5, pc}` or `{s16-s31}`.
 fn registers(operands: &str) -> u64 {
     let Some(list) = operands.split(['{', '}']).nth(1) else { return 1 };
     let number = |word: &str| word.trim().get(1..).and_then(|digits| digits.parse::<u64>().ok());
@@ -318,8 +320,8 @@ fn registers(operands: &str) -> u64 {
         .sum()
 }
 
-/// The bytes that a straight function takes from the stack, as its instructions say it: what it pushes and what it
-/// subtracts from the stack pointer.
+/// Returns the bytes of stack of a straight-line function from its instructions: the registers that it pushes, and what
+/// it subtracts from the stack pointer.
 #[must_use]
 pub fn stack(lines: &[Line]) -> u64 {
     let bytes = |text: &str| text.trim().trim_start_matches('#').parse::<u64>().unwrap_or(0);
@@ -357,7 +359,7 @@ mod tests {
 
     #[test]
     fn cycles_are_those_of_the_manual() {
-        // 2 + 1 + 1 + 3 + 14 + 2 + 4, and a wait of vdiv for vmla, of vstr for vdiv
+        // 2 + 1 + 1 + 3 + 14 + 2 + 4 cycles; vdiv waits for vmla, and vstr for vdiv
         let listing = "     100:\tvldr\ts0, [r0]\n     104:\tvmul.f32\ts1, s0, s0\n     108:\tvadd.f32\ts2, s0, s0\n   \
                          10c:\tvmla.f32\ts3, s0, s0\n     110:\tvdiv.f32\ts4, s3, s1\n     114:\tvstr\ts4, [r1]\n     \
                        118:\tbx\tlr\n";
@@ -365,7 +367,7 @@ mod tests {
         assert_eq!(cycles(Core::M7, listing), 3 + 3 + 3 + 6 + 16 + 1 + 9);
     }
 
-    /// The manual has two cycles for a float between the core and the FPU, and three for a load of a double.
+    /// By the manual, moving a float between the core and the FPU takes two cycles, and loading a double takes three.
     #[test]
     fn moves_between_the_core_and_the_fpu_take_two_cycles() {
         for (instruction, [m4, m7]) in [

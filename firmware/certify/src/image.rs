@@ -1,4 +1,4 @@
-//! The functions of an image: their instructions, sizes and stack frames.
+//! The functions of a binary image: their instructions, sizes and stack frames.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -14,7 +14,7 @@ pub struct Figures {
     pub code: u64,
     /// Bytes of constants.
     pub constants: u64,
-    /// Bytes of stack, of what is saved and of what is spilled.
+    /// Bytes of stack, for saved registers and spilled values.
     pub stack: u64,
 }
 
@@ -29,36 +29,36 @@ pub struct Image {
 pub struct Function {
     /// The size of its symbol, bytes.
     pub size: u64,
-    /// Its stack frame, bytes, where something says it.
+    /// The stack frame, bytes, if it is known.
     pub stack: Option<u64>,
-    /// Its instructions and constants.
+    /// The instructions and constants.
     pub lines: Vec<Line>,
 }
 
 /// A function in a chain of calls, with its name.
 type Called<'a> = (&'a str, &'a Function);
 
-/// Why a function has no figures.
+/// The reason why a function has no figures.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NoFigures {
     /// The image has no such function.
     Absent(String),
-    /// Nothing says how much stack it uses.
+    /// The stack frame of the function is unknown.
     NoFrame(String),
-    /// It calls itself, or is called by one that it calls.
+    /// The function calls itself, directly or indirectly.
     Recursive(String),
-    /// It has more than one path, calls, or computes in double precision.
+    /// The function has branches or calls, or computes in double precision.
     NotStraight(String, Vec<Fault>),
 }
 
 impl Image {
-    /// An image with these functions, by their names.
+    /// Makes an image with these functions, by their names.
     #[must_use]
     pub const fn new(functions: BTreeMap<String, Function>) -> Self {
         Self { functions }
     }
 
-    /// Adds the stack frames of functions that the image says nothing about.
+    /// Adds the stack frames of functions that have none in the image.
     #[must_use]
     pub fn with_frames(mut self, frame: impl Fn(&str) -> Option<u64>) -> Self {
         for (name, function) in &mut self.functions {
@@ -67,26 +67,27 @@ impl Image {
         self
     }
 
-    /// The faults that keep a function from being straight.
+    /// Returns the faults because of which a function is not straight-line code.
     ///
     /// # Errors
-    /// When there is no such function.
+    /// When the image has no function with this name.
     pub fn faults(&self, name: &str) -> Result<Vec<Fault>, NoFigures> {
         Ok(listing::judge(&self.function(name)?.lines).1)
     }
 
-    /// The figures of a function that must be straight; an error lists its faults.
+    /// Returns the figures of a function that must be straight-line code; an error lists its faults.
     ///
     /// # Errors
-    /// When it is not straight, or nothing says how much stack it uses.
+    /// When it is not straight-line code, or its stack frame is unknown.
     pub fn straight(&self, name: &str) -> Result<Figures, NoFigures> {
         self.straight_but_for(name, |_| false)
     }
 
-    /// The figures of a function that may call some others, which must be straight; theirs are included.
+    /// Returns the figures of a function that may call some others. All must be straight-line code except for these
+    /// calls, and their figures are included.
     ///
     /// # Errors
-    /// When it or one that it calls is not straight, or nothing says how much stack they use.
+    /// When one of them is not straight-line code, or its stack frame is unknown.
     pub fn straight_but_for(&self, name: &str, may_be_called: impl Fn(&str) -> bool) -> Result<Figures, NoFigures> {
         let executed = self.executed(name, &may_be_called)?;
         let mut figures = Figures::default();
@@ -105,11 +106,11 @@ impl Image {
         Ok(figures)
     }
 
-    /// The functions that a call executes: the function itself, those that it calls and those that these call, once
-    /// for each call. All must be straight but for these calls.
+    /// Returns the functions that a call executes: the function itself, and those that it calls directly or indirectly,
+    /// once for each call. All must be straight-line code except for these calls.
     ///
     /// # Errors
-    /// When one has another fault, or calls itself.
+    /// When a function has another fault, or calls itself.
     pub fn executed(&self, name: &str, may_be_called: &dyn Fn(&str) -> bool) -> Result<Vec<String>, NoFigures> {
         let mut executed = Vec::new();
         self.walk(name, may_be_called, &mut Vec::new(), &mut |path| {
@@ -118,10 +119,10 @@ impl Image {
         Ok(executed)
     }
 
-    /// The sum of the frames of the deepest chain of calls, bytes.
+    /// Returns the sum of the frames of the deepest chain of calls, bytes.
     ///
     /// # Errors
-    /// As [`executed`](Self::executed).
+    /// The errors of [`executed`](Self::executed).
     pub fn deepest(
         &self,
         name: &str,
@@ -158,10 +159,11 @@ impl Image {
         Ok(())
     }
 
-    /// The functions that a function calls, once for each call; it must be straight but for these calls.
+    /// Returns the functions that a function calls, once for each call. It must be straight-line code except for these
+    /// calls.
     ///
     /// # Errors
-    /// When it has another fault than a call of a function that may be called.
+    /// When the function has another fault than the calls that are allowed.
     pub fn calls(&self, name: &str, may_be_called: impl Fn(&str) -> bool) -> Result<Vec<String>, NoFigures> {
         let (calls, faults): (Vec<Fault>, Vec<Fault>) =
             self.faults(name)?.into_iter().partition(|fault| fault.callee().is_some_and(&may_be_called));
@@ -171,7 +173,7 @@ impl Image {
         Ok(calls.iter().filter_map(Fault::callee).map(str::to_owned).collect())
     }
 
-    /// A function by its name.
+    /// Returns a function by its name.
     ///
     /// # Errors
     /// When the image has no function with this name.
@@ -179,7 +181,7 @@ impl Image {
         self.functions.get(name).ok_or_else(|| NoFigures::Absent(name.to_owned()))
     }
 
-    /// The one function whose name begins and ends so.
+    /// Returns the name of the only function with this beginning and end; `None` if there are several or none.
     #[must_use]
     pub fn find(&self, start: &str, end: &str) -> Option<&str> {
         let mut found = self.functions.keys().filter(|name| name.starts_with(start) && name.ends_with(end));
@@ -211,7 +213,7 @@ mod tests {
     use super::{Figures, Function, Image, NoFigures};
     use crate::listing;
 
-    /// a calls b twice and c once; b calls c.
+    /// Returns an image in which `a` calls `b` twice and `c` once, and `b` calls `c`.
     fn image(of_c: &str) -> Image {
         let text = format!(
             "00000000 <a>:\n   0:\tbl\t40 <b>\n   4:\tbl\t40 <b>\n   8:\tbl\t80 <c>\n   c:\tbx\tlr\n\n\

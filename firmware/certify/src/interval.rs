@@ -1,10 +1,10 @@
-//! Numbers between two bounds, in double precision rounded outwards.
+//! Interval arithmetic in double precision, rounded outwards.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use rne_codegen::Real;
 
-/// All numbers between two bounds. Each operation encloses every result that numbers of its operands have.
+/// All numbers between two bounds. The result of each operation encloses all results for numbers in its operands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// The lower bound.
@@ -14,13 +14,13 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// One number.
+    /// Makes the interval of exactly one number.
     #[must_use]
     pub const fn exactly(x: f64) -> Self {
         Self { low: x, high: x }
     }
 
-    /// A number that was rounded to the nearest `f64`.
+    /// Makes an interval that encloses a number that was rounded to the nearest `f64`.
     #[must_use]
     pub const fn rounded(x: f64) -> Self {
         Self { low: x.next_down(), high: x.next_up() }
@@ -35,8 +35,9 @@ impl Interval {
         Self { low: low.next_down(), high: high.next_up() }
     }
 
-    /// Sine and cosine of all angles of the interval. The crate `libm` (a port of musl's) errs by less than 1 ulp;
-    /// 2^-51 covers this where results are at most 1. Neither function has a slope above 1.
+    /// Returns intervals of sine and cosine of all angles in the interval. The error of the crate `libm` (a port of
+    /// musl's) is less than 1 ulp, which is below 2^-51 because results are at most 1. The slope of both functions is
+    /// at most 1.
     #[must_use]
     pub fn sin_cos(self) -> (Self, Self) {
         const ERROR: f64 = 2.0 * f64::EPSILON; // 2^-51
@@ -46,7 +47,8 @@ impl Interval {
         (around(libm::sin(middle)), around(libm::cos(middle)))
     }
 
-    /// 1/√x of all numbers x of the interval, which are above 0. The root of an `f64` is rounded to the nearest.
+    /// Returns the interval of 1/√x of all numbers x in the interval, which must be above 0. The square root of an
+    /// `f64` is rounded to the nearest.
     #[must_use]
     pub fn inverse_root(self) -> Self {
         Self {
@@ -55,17 +57,17 @@ impl Interval {
         }
     }
 
-    /// All numbers of the interval, kept between -limit and limit.
+    /// Clamps all numbers of the interval between -limit and limit.
     #[must_use]
     pub fn limited(self, limit: f64) -> Self {
         Self { low: self.low.clamp(-limit, limit), high: self.high.clamp(-limit, limit) }
     }
 
-    /// The largest distance of a number from one of the interval.
+    /// Returns the largest distance of a number from the numbers of the interval.
     #[must_use]
     pub fn farthest(self, x: f64) -> f64 {
         let distance = (x - self.low).abs().max((self.high - x).abs());
-        // the difference of two numbers is zero only if they are the same
+        // a floating-point difference is zero only if both numbers are equal
         if distance == 0.0 { 0.0 } else { distance.next_up() }
     }
 }
@@ -133,7 +135,7 @@ mod tests {
     fn results_are_enclosed() {
         let mut rng = fastrand::Rng::with_seed(3);
         for _ in 0..10_000 {
-            // whole numbers of 51 bits: their sums and products are exact in i128
+            // whole numbers below 2^50, whose sums and products are exact in i128
             let [a, b] = [0, 1].map(|_| rng.i64(-(1 << 50)..1 << 50));
             let [x, y] = [a, b].map(|n| Interval::exactly(n as f64));
             let exact = i128::from(a) * i128::from(b);
@@ -151,7 +153,7 @@ mod tests {
 
     #[test]
     fn turns_are_enclosed() {
-        // 30° to twice the digits: sin = 1/2
+        // sin 30° = 1/2
         let sixth =
             Interval { low: std::f64::consts::FRAC_PI_6.next_down(), high: std::f64::consts::FRAC_PI_6.next_up() };
         let (sine, cosine) = sixth.sin_cos();

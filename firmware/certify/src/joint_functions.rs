@@ -1,5 +1,5 @@
-//! Friction of the joints and limits of their torques, which emitted C has on request: their numbers in single
-//! precision, as the code computes them, and exactly.
+//! Computes the optional functions of emitted C for friction of the joints and limits of their torques: in single
+//! precision, as the code does, and exactly.
 
 use rne_emit::JointFriction;
 use rne_model::{JointKind, Robot};
@@ -8,28 +8,28 @@ use crate::accuracy::{self, Error, Sample, largest_errors, single};
 use crate::board::{self, Call};
 use crate::interval::Interval;
 
-/// A function beside the programs.
+/// An optional function of emitted C.
 #[derive(Clone, Debug, PartialEq)]
 pub enum JointFunction {
-    /// `friction_torques`, of the speeds.
+    /// `friction_torques`, a function of the speeds.
     Friction(Vec<JointFriction>),
-    /// `friction_derivatives`, of the speeds.
+    /// `friction_derivatives`, a function of the speeds.
     FrictionDerivatives(Vec<JointFriction>),
-    /// `limit_torques`, of torques; the effort limits of the joints, N m or N.
+    /// `limit_torques`, a function of torques, with the effort limits of the joints, N m or N.
     Limits(Vec<Option<f64>>),
 }
 
-/// The torques that are tried, as a multiple of the effort limit.
+/// Largest torque that is tried, as a multiple of the effort limit.
 pub const BEYOND: f64 = 2.0;
 
 impl JointFunction {
-    /// The limits of an arm.
+    /// Makes `limit_torques` of an arm.
     #[must_use]
     pub fn limits(robot: &Robot) -> Self {
         Self::Limits(robot.independent_joints().map(|joint| joint.limits.effort).collect())
     }
 
-    /// Its name in the code, without the prefix.
+    /// Returns the name in the code, without the prefix.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -39,7 +39,7 @@ impl JointFunction {
         }
     }
 
-    /// The name of its result in the code.
+    /// Returns the name of the result in the code.
     #[must_use]
     pub const fn result(&self) -> &'static str {
         match self {
@@ -49,7 +49,7 @@ impl JointFunction {
         }
     }
 
-    /// The unit of its result at a joint.
+    /// Returns the unit of the result for a kind of joint.
     #[must_use]
     pub const fn unit(&self, kind: JointKind) -> &'static str {
         match (self, kind) {
@@ -59,7 +59,7 @@ impl JointFunction {
         }
     }
 
-    /// The static function of the file that it may call, without the prefix.
+    /// Returns the static function of the C file that this function may call, without the prefix.
     #[must_use]
     pub const fn helper(&self) -> &'static str {
         match self {
@@ -68,7 +68,8 @@ impl JointFunction {
         }
     }
 
-    /// The call at a state of the board: friction at its speeds; limits at its accelerations, times the limits.
+    /// Returns the call at a state of the board. Friction takes the speeds of the state; limits take its accelerations,
+    /// multiplied by the limits, as torques.
     #[must_use]
     pub fn call(&self, prefix: &str, dof: usize) -> Call {
         let function = format!("{prefix}_{}", self.name());
@@ -82,7 +83,7 @@ impl JointFunction {
         Call { arguments, before, ..Call::new(function, dof) }
     }
 
-    /// The numbers that [`call`](Self::call) writes at a state.
+    /// Returns the numbers that [`call`](Self::call) must write at a state.
     #[must_use]
     pub fn result_at(&self, number: u32, dof: usize) -> Vec<f32> {
         let [_, qd, qdd] = board::state(number, dof);
@@ -95,7 +96,7 @@ impl JointFunction {
         }
     }
 
-    /// The errors at random speeds within the limits, or at random torques up to [`BEYOND`] times the limits.
+    /// Returns the errors at random speeds within the limits, or at random torques up to [`BEYOND`] times the limits.
     #[must_use]
     pub fn errors(&self, robot: &Robot, sample: Sample) -> Option<Vec<Error>> {
         let ranges = accuracy::ranges(robot);
@@ -120,7 +121,7 @@ impl JointFunction {
                 frictions.iter().zip(arguments).map(derivative).collect()
             }
             Self::Limits(limits) => {
-                // a limit that is infinite in single precision limits nothing
+                // a limit that is infinite in single precision has no effect
                 let limited = |(limit, tau): (&Option<f64>, &f32)| {
                     limit.map_or(*tau, |limit| tau.clamp(-single(limit), single(limit)))
                 };
@@ -151,7 +152,7 @@ impl JointFunction {
     }
 }
 
-/// 1/√x with the operations of the code in single precision.
+/// Returns 1/√x with the operations of the code in single precision.
 fn inverse_root(x: f32) -> f32 {
     let h = 0.5 * x;
     let mut y = f32::from_bits(0x5f37_5a86_u32.wrapping_sub(x.to_bits() >> 1));
@@ -168,7 +169,8 @@ mod tests {
     use super::{JointFriction, JointFunction};
     use crate::accuracy::{Sample, single};
 
-    /// A slider whose friction is 0.5 N per m/s, 3 N forward and 2 N backward, and which can give 7.3 N.
+    /// A prismatic joint with a viscous friction of 0.5 N s/m, Coulomb friction of 3 N forward and 2 N backward, and an
+    /// effort limit of 7.3 N.
     const SLIDER: &str = "{format: 1, name: one, source: doc, convention: standard, gravity: [0, 0, 0], joints: [
         {type: prismatic, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 1}, limits: {effort: 7.3, velocity: 4},
          motor: {viscous: 0.5, coulomb: [3, -2], coulomb_width: 0.01}}]}";
@@ -179,7 +181,7 @@ mod tests {
     fn friction_is_that_of_the_law_and_its_bound_that_of_single_precision() {
         let robot = Robot::from_yaml(SLIDER).expect("a robot");
         let friction = JointFunction::Friction(JointFriction::of(&robot).expect("friction"));
-        // by hand, far from rest: 0.5 4 + 3 forward, and -0.5 4 - 2 backward
+        // calculated by hand, far from rest: 0.5 4 + 3 forward, and -0.5 4 - 2 backward
         for (qd, expected) in [(4.0, 5.0), (-4.0, -4.0), (0.0, 0.0)] {
             let found = f64::from(friction.in_single_precision(&[qd])[0]);
             assert!((found - expected).abs() < 3e-5, "{found} at {qd}");
@@ -188,7 +190,7 @@ mod tests {
         }
         let error = friction.errors(&robot, SAMPLE).expect("errors")[0];
         assert!(error.largest > 4.9 && error.largest < 5.0, "{error:?}");
-        // some roundings of the largest friction, and no fewer than half of one
+        // several rounding errors of the largest friction, and more than two
         assert!(error.bound > 2.0 * ROUNDING && error.bound < 8.0 * 5.0 * ROUNDING, "{error:?}");
     }
 
@@ -197,7 +199,7 @@ mod tests {
         let robot = Robot::from_yaml(SLIDER).expect("a robot");
         let law = JointFriction::of(&robot).expect("friction");
         let derivatives = JointFunction::FrictionDerivatives(law.clone());
-        // by hand: at rest, 0.5 + (3 + 2) / 2 / 0.01; far from rest, the viscous friction and (2.5 ± 1) 0.01² / |4|³
+        // calculated by hand: at rest, 0.5 + (3 + 2) / 2 / 0.01; far from rest, 0.5 + (2.5 ± 1) 0.01² / |4|³
         for (qd, expected) in [(0.0, 250.5), (4.0, 0.5 + 3.5e-4 / 64.0), (-4.0, 0.5 + 1.5e-4 / 64.0)] {
             let found = f64::from(derivatives.in_single_precision(&[qd])[0]);
             assert!((found - expected).abs() < 1e-6 * expected, "{found} at {qd}");

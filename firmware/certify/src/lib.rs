@@ -1,9 +1,9 @@
 //! Certificates of generated code on microcontrollers.
 //!
-//! The parts are: the instructions of a function as `objdump` lists them ([`listing`], [`image`]), their cycles on a
-//! processor ([`cycles`]), and the error of its numbers in single precision ([`accuracy`], [`observer`],
-//! [`joint_functions`]). [`certificate`] puts them on one page. Nothing here starts a program or opens a file: callers
-//! run compilers and pass what these print.
+//! The parts are: the instructions of a function in the output of `objdump` ([`listing`], [`image`]), their cycles on a
+//! processor ([`cycles`]), and the error of results in single precision ([`accuracy`], [`observer`],
+//! [`joint_functions`]). [`certificate`] puts them on one page. This crate does not start programs and does not open
+//! files: callers run the tools and pass their output.
 #![forbid(unsafe_code)]
 
 pub mod accuracy;
@@ -21,7 +21,7 @@ use std::fmt::Write as _;
 
 use sha2::{Digest, Sha256};
 
-/// The SHA-256 of bytes in hexadecimal, as `sha256sum` prints it.
+/// Returns the SHA-256 hash of bytes in hexadecimal, as `sha256sum` prints it.
 ///
 /// ```
 /// let empty = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855";

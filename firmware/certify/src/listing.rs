@@ -1,5 +1,5 @@
-//! Machine code as `objdump` lists it, and whether a function is straight: one path, from its first instruction to its
-//! return.
+//! Reads machine code from the output of `objdump`, and checks whether a function is straight-line code: one path from
+//! its first instruction to its return.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -12,31 +12,31 @@ pub struct Line {
     operands: String,
 }
 
-/// Why a function is not straight.
+/// The reason why a function is not straight-line code.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// It calls a function.
+    /// It calls a function; the text is the instruction.
     Calls(String),
-    /// It branches.
+    /// It branches; the text is the instruction.
     Branches(String),
-    /// It computes in double precision.
+    /// It computes in double precision; the text is the instruction.
     Doubles(String),
-    /// It traps.
+    /// It traps; the text is the instruction.
     Traps(String),
-    /// It returns elsewhere than at its end.
+    /// It returns before its end.
     ReturnsElsewhere,
 }
 
-/// The instructions and constants of a straight function.
+/// The numbers of instructions and constants of a straight-line function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Count {
-    /// In a straight function every one is executed, once.
+    /// Number of instructions. Each is executed exactly once.
     pub instructions: u64,
-    /// Bytes of constants between them; what aligns those is code.
+    /// Bytes of constants between the instructions; padding before constants counts as code.
     pub constants: u64,
 }
 
-/// A line that is not as `objdump` writes lines.
+/// The error for a line that does not have the form of `objdump`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NoListing(String);
 
@@ -48,7 +48,7 @@ impl fmt::Display for NoListing {
 
 impl std::error::Error for NoListing {}
 
-/// The functions of an image, by their symbols.
+/// Reads the functions of an image, by their symbols.
 ///
 /// # Errors
 /// When a line has no address.
@@ -70,7 +70,8 @@ pub fn functions(objdump: &str) -> Result<BTreeMap<String, Vec<Line>>, NoListing
     Ok(functions)
 }
 
-/// The instructions and constants of a function, and all that keeps it from being straight.
+/// Returns the numbers of instructions and constants of a function, and all faults because of which it is not
+/// straight-line code.
 #[must_use]
 pub fn judge(function: &[Line]) -> (Count, Vec<Fault>) {
     let mut count = Count::default();
@@ -115,7 +116,7 @@ impl Line {
         self.mnemonic.strip_suffix(".n").or_else(|| self.mnemonic.strip_suffix(".w")).unwrap_or(&self.mnemonic)
     }
 
-    /// Bytes of data; none in an instruction.
+    /// Returns the number of bytes of data; 0 for an instruction.
     #[must_use]
     pub fn data(&self) -> u64 {
         match self.mnemonic.as_str() {
@@ -126,7 +127,7 @@ impl Line {
         }
     }
 
-    /// Whether the line fills up to the next function.
+    /// Whether the line is padding before the next function.
     #[must_use]
     pub fn is_padding(&self) -> bool {
         self.name() == "nop" || self.mnemonic == "..." || self.mnemonic == "movs" && self.operands == "r0, r0"
@@ -141,7 +142,7 @@ impl Line {
         }
     }
 
-    /// The fault of an instruction, which `next` follows.
+    /// Returns the fault of an instruction, if any; `next` are the lines after it.
     fn fault(&self, next: &[Self]) -> Option<Fault> {
         let name = self.name();
         let text = || format!("{} {}", self.mnemonic, self.operands);
@@ -165,20 +166,20 @@ impl Line {
         (writes_pc && !self.is_return()).then(|| Fault::Branches(text()))
     }
 
-    /// Its address.
+    /// Returns the address of the line.
     #[must_use]
     pub const fn address(&self) -> u64 {
         self.address
     }
 
-    /// Where a jump leads.
+    /// Returns the target of a jump.
     #[must_use]
     pub fn target(&self) -> Option<u64> {
         let target = self.operands.split(' ').next().filter(|_| self.name() == "b")?;
         u64::from_str_radix(target, 16).ok()
     }
 
-    /// Whether a jump leads over nothing but data, and what aligns it, to the next instruction.
+    /// Whether a jump only skips data and padding before the next instruction.
     fn skips_data(&self, next: &[Self]) -> bool {
         let is_skipped = |line: &Self| line.data() > 0 || line.is_padding();
         let target = self.target();
@@ -190,7 +191,7 @@ impl Line {
 }
 
 impl Fault {
-    /// The function that is called, if that is what is wrong.
+    /// Returns the called function, if the fault is a call.
     #[must_use]
     pub fn callee(&self) -> Option<&str> {
         let Self::Calls(line) = self else { return None };
@@ -224,7 +225,7 @@ mod tests {
     fn a_jump_over_constants_is_no_branch() {
         let listing = "     100:\tvldr\ts0, [pc, #4]\t@ 108 <f+0x8>\n     104:\tb.n\t10c <f+0xc>\n     106:\tnop\n     \
                        108:\t.word\t0x3f800000\n     10c:\tnop\n     10e:\tbx\tlr\n";
-        // of the two that do nothing, the first is skipped
+        // of the two `nop`, the first is skipped
         assert_eq!(judged(listing), Ok(Count { instructions: 4, constants: 4 }));
     }
 

@@ -1,6 +1,6 @@
 //! Violations of MISRA C:2012 that the addon of cppcheck reports.
 //!
-//! The texts of the rules are not free, so only their numbers occur here.
+//! The texts of the rules are not freely available, so only their numbers occur here.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ pub const NOT_DECIDED: [&str; 28] = [
     "18.2", "18.3", "18.6", "19.1", "20.6", "21.13", "21.17", "21.18", "22.1", "22.2", "22.3", "22.4", "22.6",
 ];
 
-/// Rules that emitted code violates, and why.
+/// Rules that emitted code violates, with the reasons.
 pub const DEVIATIONS: [(&str, &str); 5] = [
     ("2.4", "advisory; enumerations without a tag: the indices of the joints and of the tips, for the caller"),
     ("2.5", "advisory; macros that the source does not use: the limits of the joints, for the caller"),
@@ -27,8 +27,8 @@ pub const DEVIATIONS: [(&str, &str); 5] = [
     ),
 ];
 
-/// The rules that are violated, each with the places, from the lines that cppcheck prints with
-/// `--template={file}:{line}: {id}`.
+/// Reads the violated rules, each with the places, from the lines that cppcheck prints with `--template={file}:{line}:
+/// {id}`.
 #[must_use]
 pub fn violations(printed: &str) -> BTreeMap<String, Vec<String>> {
     let mut violations = BTreeMap::<String, Vec<String>>::new();
@@ -40,7 +40,7 @@ pub fn violations(printed: &str) -> BTreeMap<String, Vec<String>> {
     violations
 }
 
-/// Why a rule may be violated; `None` where nothing says so.
+/// Returns the reason why a rule may be violated; `None` if it may not.
 #[must_use]
 pub fn deviation(rule: &str) -> Option<&'static str> {
     DEVIATIONS.iter().find(|(of, _)| *of == rule).map(|(_, why)| *why)

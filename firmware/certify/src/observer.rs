@@ -1,4 +1,4 @@
-//! The momentum observer of emitted C: its updates in single precision, as the code computes them, and exactly.
+//! Computes the updates of the momentum observer of emitted C: in single precision, as the code does, and exactly.
 
 use rne_codegen::{Interpreter, Program};
 use rne_model::Robot;
@@ -7,32 +7,33 @@ use crate::accuracy::{self, Error, Range, Sample, enclosed, largest_errors, sing
 use crate::board::{self, Call};
 use crate::interval::Interval;
 
-/// The low-pass of an observer.
+/// The low-pass filter of an observer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LowPass {
-    /// Its gain, Hz.
+    /// The gain of the observer, Hz.
     pub gain: f64,
     /// The time between two updates, s.
     pub period: f64,
 }
 
-/// Updates of a motion at which the error is bounded.
+/// Number of updates in a motion; the error is bounded at each.
 pub const UPDATES: usize = 100;
 
 impl LowPass {
-    /// The weight of an update, 1 - e^(-2π gain period), as the observer stores it.
+    /// Returns the weight of an update, 1 - e^(-2π gain period), as the observer stores it.
     #[must_use]
     pub fn weight(self) -> f32 {
         single(-libm::expm1(-std::f64::consts::TAU * self.gain * self.period))
     }
 
-    /// 1 / period, Hz, as the observer stores it.
+    /// Returns 1 / period, Hz, as the observer stores it.
     #[must_use]
     pub fn frequency(self) -> f32 {
         single(1.0 / self.period)
     }
 
-    /// The second update of an observer in C: the first one is at the state [`board::STATES`] further on.
+    /// Returns the call of the second update of an observer in C. The first update is at the state with the number of
+    /// this state plus [`board::STATES`].
     #[must_use]
     pub fn call(self, prefix: &str, dof: usize) -> Call {
         let (weight, frequency) = (self.weight(), self.frequency());
@@ -41,7 +42,7 @@ impl LowPass {
             format!("const struct state before = state_of(number + {}u, {dof}u);", board::STATES),
             format!("{prefix}_observer observer;"),
             format!("{prefix}_observer_begin(&observer, {:?}f, {:?}f);", single(self.gain), single(self.period)),
-            // as double precision gives them
+            // computed in double precision and rounded
             format!("observer.weight = {weight:?}f;"),
             format!("observer.frequency = {frequency:?}f;"),
             format!("{update}(&observer, before.q, before.qd, before.qdd, out);"),
@@ -51,7 +52,8 @@ impl LowPass {
         Call { arguments, before, ..Call::new(update, dof) }
     }
 
-    /// The numbers that [`call`](Self::call) writes at a state; `None` if the interpreter cannot run the program.
+    /// Returns the numbers that [`call`](Self::call) must write at a state; `None` if the interpreter cannot run the
+    /// program.
     #[must_use]
     pub fn result(
         self,
@@ -68,7 +70,7 @@ impl LowPass {
         Some(observer.external)
     }
 
-    /// The errors of the external torques; `None` if the interpreter cannot run `program`, which must be
+    /// Returns the errors of the external torques; `None` if the interpreter cannot run `program`, which must be
     /// `momentum_and_rate`.
     ///
     /// The states of the sample are updates in motions of [`UPDATES`] updates: each joint follows a sine within its
@@ -109,13 +111,13 @@ impl LowPass {
 struct Wave {
     middle: f64,
     amplitude: f64,
-    /// rad/s
+    /// Angular frequency, rad/s.
     frequency: f64,
     phase: f64,
 }
 
 impl Wave {
-    /// A sine within the range, at whose middle the joint has the largest speed of the range.
+    /// Makes a sine within the range of positions; in its middle, the joint has the largest speed of the range.
     fn random(range: &Range, rng: &mut fastrand::Rng) -> Self {
         let (low, high) = range.position;
         let amplitude = 0.5 * (high - low) * rng.f64();
@@ -133,7 +135,7 @@ impl Wave {
     }
 }
 
-/// The struct of the code, and its update with the operations of the code in their order.
+/// The observer with the data and the operations of the code, in the same order.
 struct Observer {
     momentum: Vec<f32>,
     rate: Vec<f32>,
@@ -150,7 +152,7 @@ impl Observer {
         Self { momentum: zeros.clone(), rate: zeros.clone(), external: zeros, next: 0.0, weight, frequency }
     }
 
-    /// Takes what `momentum_and_rate` returns: the momenta, then their rates.
+    /// Updates the observer with the results of `momentum_and_rate`: the momenta, then their rates.
     fn update(&mut self, now: &[f32]) {
         let (momentum, rate) = now.split_at(self.external.len());
         for i in 0..self.external.len() {
@@ -184,7 +186,7 @@ impl Enclosure {
             for i in 0..self.external.len() {
                 let change = (momentum[i] - momentum_before[i]) * self.frequency;
                 let mean = change - (rate[i] + rate_before[i]) * Interval::exactly(0.5);
-                // (1 - w) r + w t = r + w (t - r): in this form, the intervals do not grow from update to update
+                // (1 - w) r + w t instead of r + w (t - r), so that the intervals do not grow from update to update
                 self.external[i] = keep * self.external[i] + self.weight * mean;
             }
         }
@@ -209,7 +211,8 @@ mod tests {
 
     #[test]
     fn a_constant_torque_comes_through_the_low_pass() {
-        // the momentum grows by 3 N m, of which the actuator gives 1: 2 N m (1 - e^(-2π 20 t)) from outside
+        // the rate of the momentum is 3 N m, of which the actuator gives 1: the external torque is 2 N m (1 - e^(-2π 20
+        // t))
         let mut observer = Observer::new(1, LOW_PASS);
         let mut exact = Enclosure::new(1, LOW_PASS);
         for k in 0..50_u8 {
@@ -220,7 +223,7 @@ mod tests {
             let expected = 2.0 * (1.0 - (-std::f64::consts::TAU * 20.0 * time).exp());
             assert!((f64::from(observer.external[0]) - expected).abs() < 2e-4, "{k}: {expected}");
             let Interval { low, high } = exact.external[0];
-            // the weight is that of single precision
+            // the difference is that of the weight in single precision
             assert!(high - low < 1e-12 && (low - expected).abs() < 1e-6, "{k}: {low} {high} {expected}");
         }
     }
@@ -233,9 +236,9 @@ mod tests {
         let error = LOW_PASS.errors(&robot, &program, sample, f32::sin_cos).expect("errors")[0];
         // torques up to 10 N m, and I times accelerations
         assert!(error.largest > 1.0 && error.largest < 12.0, "{error:?}");
-        // roundings of 2⁻²⁴ of the momentum, up to 0.208 2, by 1000 Hz; two of them, and none lost
+        // rounding errors of 2⁻²⁴ of the momentum, up to 0.208 2, times 1000 Hz; up to two of them
         assert!(error.bound < 4.0 * 0.416 * 1e3 / f64::from(1 << 24) && error.bound > 1e-6, "{error:?}");
-        // a gain of twice the size lets more of them through
+        // a larger gain passes more of the rounding errors
         let faster = LowPass { gain: 200.0, ..LOW_PASS };
         let faster = faster.errors(&robot, &program, sample, f32::sin_cos).expect("errors")[0];
         assert!(faster.bound > error.bound, "{faster:?}");

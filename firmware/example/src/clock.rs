@@ -9,15 +9,15 @@ use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::exception;
 
-/// Of the processor of the MPS2 boards; for another board, this is the line to change.
+/// Clock rate of the processor of the MPS2 boards, Hz; change this line for another board.
 const HERTZ: u32 = 25_000_000;
-/// Of the control loop.
+/// Rate of the control loop, Hz.
 const PERIODS_PER_SECOND: u32 = 1000;
 const TICKS_PER_PERIOD: u32 = HERTZ / PERIODS_PER_SECOND;
-/// One period, in s.
+/// Duration of a period, s.
 pub const PERIOD: f32 = 1.0 / PERIODS_PER_SECOND as f32;
 
-/// Periods that have begun.
+/// Number of periods that have begun.
 static PERIODS: AtomicU32 = AtomicU32::new(0);
 
 #[exception]
@@ -25,7 +25,7 @@ fn SysTick() {
     PERIODS.fetch_add(1, Ordering::Relaxed);
 }
 
-/// The timer.
+/// The timer, with its calibration and the number of the current period.
 pub struct Clock {
     timer: SYST,
     instructions_per_tick: f32,
@@ -33,11 +33,11 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// Takes the timer and finds out how many instructions a tick is.
+    /// Takes the timer and measures how many instructions a tick lasts.
     ///
-    /// QEMU's `-icount` gives every instruction the same time, so its timers count instructions. There is no pipeline
-    /// and no flash with wait states: these are not cycles. `DWT_CYCCNT`, which counts those on your board, reads 0
-    /// here.
+    /// QEMU's `-icount` gives every instruction the same time, so its timers count instructions. QEMU has no pipeline
+    /// and no flash with wait states, so these are not cycles. `DWT_CYCCNT`, which counts cycles on a real board, is 0
+    /// in QEMU.
     pub fn new(mut timer: SYST) -> Self {
         timer.set_clock_source(SystClkSource::Core);
         let mut clock = Self { timer, instructions_per_tick: 0.0, period: 0 };
@@ -47,13 +47,13 @@ impl Clock {
         clock
     }
 
-    /// Instructions that fit into one period.
+    /// Number of instructions in one period.
     pub fn instructions_per_period(&self) -> f32 {
         self.instructions_per_tick * TICKS_PER_PERIOD as f32
     }
 
-    /// Instructions of one call, `bl` and what passes the arguments included. A mean: a tick can be several
-    /// instructions.
+    /// Measures the instructions of one call, including `bl` and the passing of arguments. The result is a mean over
+    /// several calls, because a tick can last several instructions.
     pub fn instructions(&mut self, mut call: impl FnMut()) -> f32 {
         const CALLS: u8 = 100;
         let calls = self.ticks(|| (0..CALLS).for_each(|_| call()));
@@ -73,7 +73,7 @@ impl Clock {
         ticks
     }
 
-    /// Begins the first period, and from then on a new one every `PERIOD`.
+    /// Begins the first period; from then on, a new one begins every `PERIOD`.
     pub fn start(&mut self) {
         self.timer.set_reload(TICKS_PER_PERIOD - 1);
         self.timer.clear_current();
@@ -82,16 +82,17 @@ impl Clock {
         self.period = PERIODS.load(Ordering::Relaxed);
     }
 
-    /// No further periods.
+    /// Stops the timer, so that no further periods begin.
     pub fn stop(&mut self) {
         self.timer.disable_counter();
         self.timer.disable_interrupt();
     }
 
-    /// Sleeps until the next period begins; how many have gone by unseen.
+    /// Sleeps until the next period begins; returns how many periods were missed.
     pub fn wait(&mut self) -> u32 {
         loop {
-            // An interrupt between the look and `wfi` would be slept through; held back, it still ends `wfi`.
+            // An interrupt between the check and `wfi` would be missed; while interrupts are disabled, it still ends
+            // `wfi`.
             let begun = interrupt::free(|_| {
                 let begun = PERIODS.load(Ordering::Relaxed).wrapping_sub(self.period);
                 if begun == 0 {
@@ -107,7 +108,7 @@ impl Clock {
     }
 }
 
-/// The share of the running period that is over.
+/// Returns the elapsed share of the current period, 0 to 1.
 pub fn used() -> f32 {
     1.0 - SYST::get_current() as f32 / TICKS_PER_PERIOD as f32
 }

@@ -1,7 +1,8 @@
 //! Computed-torque control of two robot arms at 1 kHz, in `f32`, on a Cortex-M without an operating system: `./run`
 //!
-//! There is no arm on QEMU's board, so the same processor simulates one after the other. Each starts 0.2 rad off its
-//! trajectory, and has to find it. Somebody pushes its second joint for a while, and the observer has to see it.
+//! QEMU's board has no arm, so the same processor also simulates the arms, one after the other. Each starts with an
+//! error of 0.2 rad and has to reach its trajectory. Its second joint is pushed for some time, which the observer has
+//! to detect.
 #![no_std]
 #![no_main]
 
@@ -25,20 +26,21 @@ struct Puma560;
 #[robot(path = "../../../robots/panda.yaml", form = "reduced")]
 struct Panda;
 
-/// The error e of every joint, whatever the arm, obeys ë + DAMPING ė + STIFFNESS e = 0: it vanishes without a swing.
+/// The error e of every joint of any arm satisfies ë + DAMPING ė + STIFFNESS e = 0, so that it vanishes without
+/// overshoot.
 const STIFFNESS: f32 = 256.0; // 1/s²
 const DAMPING: f32 = 32.0; // 1/s
 
 /// The gain of the observer, which is the cut-off of its low-pass filter in Hz.
 const OBSERVER_GAIN: f64 = 20.0;
 
-/// What the encoders say.
+/// The positions and velocities that the encoders measure.
 struct State<const DOF: usize> {
     q: [f32; DOF],
     qd: [f32; DOF],
 }
 
-/// Every joint swings about its home position, once in two seconds.
+/// Returns the desired motion: every joint moves along a sine about its home position, once in two seconds.
 fn reference<const DOF: usize>(home: &[f32; DOF], time: f32) -> Desired<DOF, f32> {
     const AMPLITUDE: f32 = 0.3; // rad
     const OMEGA: f32 = core::f32::consts::PI; // rad/s
@@ -50,7 +52,7 @@ fn reference<const DOF: usize>(home: &[f32; DOF], time: f32) -> Desired<DOF, f32
     }
 }
 
-/// What an arm does in one period: semi-implicit Euler. Your arm does this by itself.
+/// Simulates the arm for one period, by the semi-implicit Euler method. A real arm replaces this function.
 fn simulate<R: ForwardDynamics<DOF>, const DOF: usize>(arm: &R, state: &mut State<DOF>, torques: &[f32; DOF]) {
     let qdd = arm.forward_dynamics(&state.q, &state.qd, torques);
     for (i, qdd) in qdd.into_iter().enumerate() {
@@ -64,7 +66,8 @@ fn controller<const DOF: usize>() -> ComputedTorque<DOF, f32> {
     ComputedTorque { stiffness: [STIFFNESS; DOF], damping: [DAMPING; DOF], observer }
 }
 
-/// The torques for the next period. A function of its own, so that torques and observer share sines and velocities.
+/// Returns the torques for the next period. It is a separate function, so that torques and observer share sines and
+/// velocities.
 #[inline(never)]
 fn tick<R: InverseDynamics<DOF> + MomentumObserver<DOF>, const DOF: usize>(
     controller: &mut ComputedTorque<DOF, f32>,
@@ -77,7 +80,7 @@ fn tick<R: InverseDynamics<DOF> + MomentumObserver<DOF>, const DOF: usize>(
     controller.tick(arm, q, qd, desired, applied)
 }
 
-/// The control loop, for one second.
+/// Runs the control loop for one second.
 fn control<R, const DOF: usize>(clock: &mut Clock, arm: &R, home: &[f32; DOF]) -> Report<DOF>
 where
     R: InverseDynamics<DOF> + ForwardDynamics<DOF> + MomentumObserver<DOF>,
@@ -99,7 +102,7 @@ where
         let error = (0..DOF).map(|i| (wanted.q[i] - state.q[i]).abs()).fold(0.0, f32::max);
         let mut pushed = torques;
         pushed[report::PUSHED] += report::push(period);
-        simulate(arm, black_box(&mut state), &pushed); // the black boxes keep it behind the clock
+        simulate(arm, black_box(&mut state), &pushed); // the black boxes prevent reordering with the clock
         report.add(period, Row { error, observed, torques }, control, clock::used());
     }
     clock.stop();
@@ -107,7 +110,7 @@ where
     report
 }
 
-/// Whether one arm was tracked, and everything there is to say about it.
+/// Controls one arm and prints the report; returns whether the result was good.
 fn demonstrate<R, const DOF: usize>(clock: &mut Clock, name: &str, arm: &R, home: &[f32; DOF]) -> bool
 where
     R: InverseDynamics<DOF> + ForwardDynamics<DOF> + MomentumObserver<DOF>,

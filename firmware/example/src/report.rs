@@ -1,45 +1,45 @@
-//! What happened, kept while the loop runs and printed afterwards: printing takes longer than a period.
+//! Records the results while the loop runs, and prints them afterwards, because printing takes longer than a period.
 
 use cortex_m_semihosting::{hprint, hprintln};
 
-/// Periods of a run, and those after which the table has a row.
+/// Number of periods of a run, and the periods with a row in the table.
 pub const PERIODS: u16 = 1000;
 const ROWS: [u16; 6] = [0, 50, 100, 200, 400, PERIODS - 1];
 
-/// The joint that is pushed, counted from 0, and how hard: N m. What the observer says at the end of the push may
-/// differ by a part of it.
+/// The joint that is pushed, counted from 0, and the external torque of the push, N m. At the end of the push, the
+/// observed torque may differ from it by the part `DEVIATION`.
 pub const PUSHED: usize = 1;
 const PUSH: f32 = 10.0;
 const DEVIATION: f32 = 0.05;
 
-/// What pushes the joint in a period.
+/// Returns the external torque on the joint in a period, N m.
 pub const fn push(period: u16) -> f32 {
     if period >= ROWS[3] && period < ROWS[4] { PUSH } else { 0.0 }
 }
 
-/// How far off its trajectory every joint starts, and what may be left at the end, in rad.
+/// Error of every joint at the start, and the largest error at the end, rad.
 pub const INITIAL_ERROR: f32 = 0.2;
 const FINAL_ERROR: f32 = INITIAL_ERROR / 1000.0;
 
-/// What the loop saw in one period.
+/// The results of one period.
 #[derive(Clone, Copy)]
 pub struct Row<const DOF: usize> {
-    /// The largest of the joints, in rad.
+    /// The largest error of the joints, rad.
     pub error: f32,
-    /// The external torque of the pushed joint as the observer has it, in N m.
+    /// The external torque of the pushed joint from the observer, N m.
     pub observed: f32,
     pub torques: [f32; DOF],
 }
 
-/// A run.
+/// The results of a run.
 pub struct Report<const DOF: usize> {
     rows: [Row<DOF>; ROWS.len()],
-    /// The largest shares of a period that were over when the torques were there, and when the arm was simulated.
+    /// The largest shares of a period that had elapsed when the torques were computed, and when the arm was simulated.
     control: f32,
     simulation: f32,
-    /// Periods that went by unseen.
+    /// Number of periods that were missed.
     pub missed: u32,
-    /// Bytes at most.
+    /// Largest size of the stack, bytes.
     pub stack: u32,
 }
 
@@ -57,18 +57,18 @@ impl<const DOF: usize> Report<DOF> {
         self.simulation = self.simulation.max(simulation);
     }
 
-    /// In time, and on the trajectory.
+    /// Whether no period was missed and the arm reached the trajectory.
     fn is_tracked(&self) -> bool {
         self.missed == 0 && self.rows.last().is_some_and(|row| row.error < FINAL_ERROR)
     }
 
-    /// The push is seen at its end, and neither before nor long afterwards.
+    /// Whether the observer shows the push at its end, and no push before it and long after it.
     fn is_observed(&self) -> bool {
         let differs = |row: usize, push: f32| (self.rows[row].observed - push).abs() < DEVIATION * PUSH;
         differs(3, 0.0) && differs(4, PUSH) && differs(5, 0.0)
     }
 
-    /// Everything is as it should be.
+    /// Whether tracking and observation are good.
     pub fn is_good(&self) -> bool {
         self.is_tracked() && self.is_observed()
     }

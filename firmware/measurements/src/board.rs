@@ -1,4 +1,4 @@
-//! A board: its image is built, read, run and judged.
+//! Builds, reads, runs and judges the image for a board.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::table::Row;
 use crate::tools::{self, Build};
 use rne_certify::listing::Fault;
 
-/// A processor and how code for it is compiled.
+/// A processor and the options for compiling code for it.
 pub(crate) struct Board<'a> {
     /// QEMU's name of a board with this processor.
     pub(crate) machine: &'static str,
@@ -21,22 +21,22 @@ pub(crate) struct Board<'a> {
     pub(crate) features: &'a [&'a str],
 }
 
-/// What was found out about a board.
+/// The results for a board.
 pub(crate) struct Examined {
     image: Image,
     log: Log,
 }
 
-/// How far results may be apart that are rounded otherwise: the terms of a torque cancel.
+/// Largest difference of results with another rounding; it is large because the terms of a torque cancel.
 pub(crate) const ROUNDING: Agreement = Agreement::Within(32.0);
 
-/// Ticks of the timer (25 MHz) while an instruction is executed, which takes 1024 ns.
+/// Ticks of the timer (25 MHz) during an instruction, which takes 1024 ns in QEMU.
 const TICKS: f64 = 25.6;
 
 impl Board<'_> {
     /// Builds, lists and runs the image. Fails if a function that is faulty on purpose passes.
     pub(crate) fn examine(&self, workspace: &Path) -> Result<Examined> {
-        // No function stands in for another that is the same, so each has figures of its own.
+        // Identical functions are not merged, so that each has its own figures.
         let mut flags = vec!["-Zemit-stack-sizes", "-Zmerge-functions=disabled"];
         flags.extend(self.flags);
         let arguments: Vec<&str> = self.features.iter().flat_map(|feature| ["--features", *feature]).collect();
@@ -57,7 +57,7 @@ impl Board<'_> {
 }
 
 impl Examined {
-    /// Every function that is faulty on purpose must be refused, for its reason.
+    /// Fails unless every function that is faulty on purpose is refused for the expected reason.
     fn gate_closes(&self) -> Result<()> {
         type Reason = fn(&Fault) -> bool;
         let reasons: [(&str, Reason); 4] = [
@@ -70,15 +70,15 @@ impl Examined {
             let faults = self.image.faults(&format!("board::faulty::{name}"))?;
             ensure!(faults.iter().any(is_reason), "the gate is open: the faulty function `{name}` passes");
         }
-        // of the same torques, rounded otherwise
+        // the same torques with another rounding
         let other_form = self.log.renamed("torques puma560 seven_steps 0", "torques puma560 reduced 0");
         let agreement = self.log.agreement_at(&other_form, "torques puma560 reduced", [0])?;
         ensure!(agreement != Agreement::Identical, "the gate is open: results of one form pass for those of another");
         Ok(())
     }
 
-    /// `inverse_dynamics` of every robot in both forms, whose results may differ from the expected ones by so much.
-    /// Fails if an instruction count that the timer measures is not the one that is read in the image.
+    /// Returns the figures of `inverse_dynamics` of every robot in both forms; its results may differ from the expected
+    /// ones by at most `most`. Fails if the instruction count that the timer measures differs from that in the image.
     pub(crate) fn robots(&self, expected: &Log, most: Agreement) -> Result<Vec<Row>> {
         let row = |robot: Robot| {
             let Robot { name, form, dof } = robot;
@@ -97,18 +97,19 @@ impl Examined {
         functions::robots().into_iter().map(row).collect()
     }
 
-    /// How far results are from the expected ones; an error if that is too far.
+    /// Returns the difference of results from the expected ones; fails if it is larger than `most`.
     fn results(&self, expected: &Log, function: &str, most: Agreement) -> Result<Agreement> {
         let agreement = self.log.agreement(expected, function)?;
         ensure!(agreement <= most, "{function}: the results are {agreement} with the host's, not {most}");
         Ok(agreement)
     }
 
-    /// All that the PUMA 560 can compute besides; its results must be identical to the expected ones.
+    /// Returns the figures of all other functions of the PUMA 560, whose results must be identical to the expected
+    /// ones.
     pub(crate) fn methods(&self, expected: &Log) -> Result<Vec<Row>> {
         let mut rows = Vec::new();
         for Method { name, form } in functions::methods() {
-            // a long method is not inlined into the function that calls it
+            // the compiler does not inline a long method into the function that calls it
             let [start, end] = [format!("<robots::puma560::{form}::Robot as "), format!(">::{name}::<f32>")];
             let function = format!("robots::puma560::{form}::{name}");
             let function = self.image.find(&start, &end).unwrap_or(&function);
@@ -122,8 +123,8 @@ impl Examined {
         Ok(rows)
     }
 
-    /// A tick of the controller of every robot; its torques and its external torques must be identical to the expected
-    /// ones.
+    /// Returns the figures of a tick of the controller of every robot, whose torques and external torques must be
+    /// identical to the expected ones.
     pub(crate) fn controllers(&self, expected: &Log) -> Result<Vec<Row>> {
         let mut rows = Vec::new();
         for Robot { name, form, .. } in functions::controllers() {
@@ -137,15 +138,16 @@ impl Examined {
         Ok(rows)
     }
 
-    /// Whether all that keeps a function from being straight are calls that clear or copy a known number of bytes: so
-    /// the compiler writes large arrays of zeros.
+    /// Whether the only faults of a function are calls that clear or copy a known number of bytes, which the compiler
+    /// uses to initialize large arrays.
     fn only_moves_memory(&self, function: &str) -> Result<bool> {
         let faults = self.image.faults(function)?;
         let moves = |fault: &Fault| fault.callee().is_some_and(|callee| callee.starts_with("__aeabi_mem"));
         Ok(!faults.is_empty() && faults.iter().all(moves))
     }
 
-    /// Instructions of one call, by the timer. What a call costs besides, a function of known length tells.
+    /// Returns the instructions of one call, measured by the timer. The overhead of a call is subtracted; it is
+    /// measured with a function of known length.
     pub(crate) fn measured(&self, function: &str, dof: usize) -> Result<f64> {
         let Figures { instructions, .. } = self.image.straight(&format!("board::echo::echo::<{dof}>"))?;
         let ticks = |function: &str| Ok::<_, anyhow::Error>(f64::from(self.log.ticks(function)?));
@@ -154,8 +156,9 @@ impl Examined {
         Ok((ticks(function)? - ticks(&format!("echo {dof}"))?) / TICKS + known)
     }
 
-    /// Instructions of the loop over a baked-in table, and how far its results are from those of the seven steps:
-    /// constants of the links, which it computes in single precision, were rounded once in the generated code.
+    /// Returns the instructions of the loop over a table in the image, and the difference of its results from those of
+    /// the seven steps. They differ because the loop computes constants of the links in single precision, which are
+    /// rounded only once in the generated code.
     pub(crate) fn runtime(&self) -> Result<(f64, Agreement)> {
         let expected = self.log.renamed("torques puma560 seven_steps 0", "torques puma560 runtime 0");
         let agreement = self.log.agreement_at(&expected, "torques puma560 runtime", [0])?;

@@ -1,4 +1,4 @@
-//! Generated C: compiled for the board by GCC, read, run and compared with Rust.
+//! Compiles generated C for the board with GCC, reads and runs it, and compares it with Rust.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -22,16 +22,17 @@ use crate::log::{Agreement, Log};
 use crate::table::Row;
 use crate::tools;
 
-/// A robot's C code in a form.
+/// The C code of a robot in a form.
 struct Source {
     prefix: String,
     dof: usize,
     functions: Vec<Function>,
 }
 
-/// The figures of `inverse_dynamics` of every robot in both forms; fails if a result of a function differs from Rust's
-/// in a bit: of these and of every function of the PUMA 560. A sample has every third robot and the PUMA 560, and of
-/// this one the other functions in the reduced form alone: GCC takes minutes for their seven steps.
+/// Returns the figures of `inverse_dynamics` of every robot in both forms. Fails if a result of it, or of any function
+/// of the PUMA 560, differs from that of Rust in a bit. With `sample`, only every third robot and the PUMA 560 are
+/// examined, and the other functions of the PUMA 560 only in the reduced form, because GCC takes minutes for their
+/// seven steps.
 pub(crate) fn examine(workspace: &Path, sample: bool, expected: &Log) -> Result<Vec<Row>> {
     let folder = tools::target_folder(workspace).join("c");
     fs::create_dir_all(&folder)?;
@@ -57,7 +58,7 @@ pub(crate) fn examine(workspace: &Path, sample: bool, expected: &Log) -> Result<
     tools::gcc(&folder, arguments.clone().chain(["-fstack-usage".to_owned(), "-c".to_owned(), include]).chain(files))?;
     let mut objects: Vec<String> = sources.iter().map(|source| format!("{}.o", source.prefix)).collect();
     objects.push("cases.o".to_owned());
-    // the board's own file is GNU C
+    // the file `board.c` is GNU C
     let link = ["-std=gnu99", "-nostartfiles", "-Wl,--gc-sections", "-T", "board.ld", "board.c", "-o"];
     let link = link.map(|word| {
         if word.starts_with("board") { board_folder.join(word).display().to_string() } else { word.to_owned() }
@@ -80,14 +81,14 @@ pub(crate) fn examine(workspace: &Path, sample: bool, expected: &Log) -> Result<
     robots.into_iter().map(row).collect()
 }
 
-/// All bits must be the same.
+/// Fails unless all bits of the results are the same.
 fn agrees(log: &Log, expected: &Log, function: &str) -> Result<String> {
     let agreement = log.agreement(expected, function)?;
     ensure!(agreement == Agreement::Identical, "{function}: the results of C are {agreement}, not those of Rust");
     Ok(agreement.to_string())
 }
 
-/// The bytes of stack of a function, which GCC writes beside the object file.
+/// Reads the bytes of stack of a function, which GCC writes to a file next to the object file.
 fn frame(folder: &Path, function: &str) -> Option<u64> {
     let robot = functions::robots().into_iter().map(|robot| format!("{}_{}", robot.name, robot.form));
     let prefix = robot.filter(|prefix| function.starts_with(&format!("{prefix}_"))).max_by_key(String::len)?;
@@ -99,7 +100,7 @@ fn frame(folder: &Path, function: &str) -> Option<u64> {
     })
 }
 
-/// Writes header and source of a robot in a form: `inverse_dynamics`, or all that it has.
+/// Writes header and source of a robot in a form: with `inverse_dynamics` only, or with all functions.
 fn write_source(workspace: &Path, folder: &Path, robot: functions::Robot, has_all: bool) -> Result<Source> {
     let functions::Robot { name, form, dof } = robot;
     let file = workspace.join(format!("../robots/{name}.yaml"));
@@ -117,7 +118,8 @@ fn write_source(workspace: &Path, folder: &Path, robot: functions::Robot, has_al
     Ok(Source { prefix, dof, functions: all.to_vec() })
 }
 
-/// The choices of the plan beside a robot file; where there is none, those that the derive takes as well.
+/// Returns the choices of the plan file next to a robot file; without one, the default choices, which the derive macro
+/// uses, too.
 fn choice_of(file: &Path, robot: &Robot) -> Result<PlanSet> {
     let file = file.with_extension("plan.yaml");
     let shown = file.display().to_string();
@@ -131,13 +133,13 @@ fn choice_of(file: &Path, robot: &Robot) -> Result<PlanSet> {
     }
 }
 
-/// A C file that calls every function and prints what it returns.
+/// Returns a C file that calls every function and prints the results.
 fn cases(sources: &[Source]) -> Result<String> {
     let mut text = "#include \"board.h\"\n".to_owned();
     for Source { prefix, .. } in sources {
         let _ = writeln!(text, "#include \"{prefix}.h\"");
     }
-    // of the PUMA 560, as Rust computes them
+    // sines and cosines for the PUMA 560, computed by Rust
     let arguments: Vec<Arguments> = (0..STATES).map(|number| Arguments::at(State::new(number))).collect();
     text.push_str(&constant("sines", arguments.iter().map(|arguments| arguments.sin)));
     text.push_str(&constant("cosines", arguments.iter().map(|arguments| arguments.cos)));
@@ -156,7 +158,8 @@ fn cases(sources: &[Source]) -> Result<String> {
     Ok(text)
 }
 
-/// An argument of every name, as in ../robots/src/puma560.rs. Their names begin with `a_`: `sin` is a function of C.
+/// C declarations of all arguments, as in ../robots/src/puma560.rs. The names begin with `a_`, because `sin` is a C
+/// function.
 const ARGUMENTS: &str = "\
     const float *const a_q = s.q, *const a_qd = s.qd, *const a_qdd = s.qdd, *const a_tau = s.qdd;
     const float *const a_multipliers = s.qdd, *const a_sin = sines[number], *const a_cos = cosines[number];
@@ -171,8 +174,8 @@ const ARGUMENTS: &str = "\
     const float a_wrenches[1][6] = {{1.0f, -2.0f, 3.0f, 0.5f, 0.25f, -0.125f}};
 ";
 
-/// As `Arguments::observed` of ../robots/src/puma560.rs: the third tick of an observer. Its weight and its frequency
-/// are Rust's, which are computed in double precision and rounded.
+/// Returns C code for the third tick of an observer, as `Arguments::observed` of ../robots/src/puma560.rs computes it.
+/// Its weight and frequency are those of Rust, which are computed in double precision and rounded.
 fn observed(prefix: &str) -> Result<String> {
     let form = ["seven_steps", "reduced"].into_iter().find(|form| prefix.ends_with(form)).context("a form")?;
     let weight = -(-std::f64::consts::TAU * 20.0 * 1e-3).exp_m1();
@@ -189,7 +192,7 @@ fn observed(prefix: &str) -> Result<String> {
     ))
 }
 
-/// The call of a function and the line that it prints.
+/// Returns C code that calls a function and prints a line.
 fn case(prefix: &str, dof: usize, function: Function) -> Result<String> {
     let (robot, form) = ["seven_steps", "reduced"]
         .into_iter()
@@ -221,7 +224,7 @@ fn case(prefix: &str, dof: usize, function: Function) -> Result<String> {
     })
 }
 
-/// Six numbers for each state.
+/// Returns a C constant with six numbers for each state.
 fn constant(name: &str, rows: impl Iterator<Item = [f32; 6]>) -> String {
     let mut text = format!("\nstatic const float {name}[{STATES}][6] = {{\n");
     for row in rows {
@@ -231,7 +234,7 @@ fn constant(name: &str, rows: impl Iterator<Item = [f32; 6]>) -> String {
     text + "};\n"
 }
 
-/// The type of a result, and the lengths of its arrays.
+/// Returns the C type of a result, and the lengths of its arrays.
 fn declaration(prefix: &str, layout: &Layout) -> (String, String) {
     match layout {
         Layout::Number => ("float".to_owned(), String::new()),
@@ -255,7 +258,7 @@ mod tests {
 
     use super::choice_of;
 
-    /// A robot of which nobody has searched a plan yet is certified as it is derived: with the default choices.
+    /// A robot without a plan file is certified with the default choices, which the derive macro uses.
     #[test]
     fn a_robot_without_a_plan_file_has_the_default_choices() {
         let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots");
@@ -272,13 +275,13 @@ mod tests {
         let plans = choice_of(&file, &robot).expect("no plan is no error");
         assert_eq!(source(&plans), source(&PlanSet::default_of(&robot)));
 
-        // a plan that is there is read, and a mistake in it is told with its place
+        // a plan file is read, and an error in it is reported with its position
         fs::copy(shipped.join("planar2.plan.yaml"), file.with_extension("plan.yaml")).expect("a plan");
         choice_of(&file, &robot).expect("the shipped plan");
         fs::write(file.with_extension("plan.yaml"), "format: 1\nplans: none\n").expect("written");
         let error = choice_of(&file, &robot).err().expect("no plan").to_string();
         assert!(error.contains("planar2.plan.yaml:"), "{error}");
-        // what cannot be read has a name
+        // a plan file that cannot be read is named in the error
         fs::remove_file(file.with_extension("plan.yaml")).expect("it is there");
         fs::create_dir(file.with_extension("plan.yaml")).expect("a folder in its place");
         let error = format!("{:#}", choice_of(&file, &robot).err().expect("a folder is no plan"));

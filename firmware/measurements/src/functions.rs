@@ -26,21 +26,21 @@ impl robots::Visitor for Names {
     }
 }
 
-/// All robots in both forms.
+/// Returns all robots in both forms.
 pub(crate) fn robots() -> Vec<Robot> {
     let mut names = Names(Vec::new());
     robots::each(&mut names);
     names.0
 }
 
-/// All robots, each with what is compared of its controller in the place of a form.
+/// Returns all robots; instead of a form, each entry has the part of its controller that is compared.
 pub(crate) fn controllers() -> Vec<Robot> {
     let mut names = Names(Vec::new());
     robots::each_controller(&mut names);
     names.0
 }
 
-/// All functions of the PUMA 560 but `inverse_dynamics`, in both forms.
+/// Returns all functions of the PUMA 560 except `inverse_dynamics`, in both forms.
 pub(crate) fn methods() -> Vec<Method> {
     struct Names(Vec<Method>);
     impl puma560::Visitor for Names {

@@ -1,4 +1,4 @@
-//! An image for a board, read from an ELF file.
+//! Reads an image for a board from an ELF file.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -24,7 +24,7 @@ pub(crate) fn read(elf: &Path) -> Result<Image> {
     let symbols = file.symbols().filter(|symbol| symbol.kind() == SymbolKind::Text && symbol.size() > 0);
     let mut functions = BTreeMap::new();
     for symbol in symbols {
-        // the lowest bit says that it is Thumb code
+        // the lowest bit of an address marks Thumb code
         let stack = frames.get(&(symbol.address() & !1)).copied();
         let name = symbol.name()?;
         if let Some(lines) = listed.remove(name) {
@@ -35,7 +35,7 @@ pub(crate) fn read(elf: &Path) -> Result<Image> {
     Ok(Image::new(functions))
 }
 
-/// The section `.stack_sizes`: addresses of four bytes, each followed by a size in LEB128.
+/// Reads the section `.stack_sizes`: addresses of four bytes, each followed by a size in LEB128.
 fn frames(section: &[u8]) -> Result<BTreeMap<u64, u64>> {
     let mut frames = BTreeMap::new();
     let mut rest = section;

@@ -1,4 +1,4 @@
-//! What code prints on its target, and what it should print.
+//! Reads the output of code on its target, and computes the expected output.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail, ensure};
 use robots::puma560::{self, Arguments};
 use robots::{Numbers, STATES, State, Torques};
 
-/// Results and times, by what they are of: `torques puma560 reduced 3`, `ticks puma560 reduced`.
+/// Results and times by their keys, such as `torques puma560 reduced 3` or `ticks puma560 reduced`.
 #[derive(Debug, Default)]
 pub(crate) struct Log {
     results: BTreeMap<String, Vec<Number>>,
@@ -20,7 +20,7 @@ enum Number {
     Double(f64),
 }
 
-/// How far results are from those of the host; the farther, the greater.
+/// The difference of results from those of the host, ordered by size.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub(crate) enum Agreement {
     /// All bits are the same.
@@ -30,7 +30,7 @@ pub(crate) enum Agreement {
 }
 
 impl Log {
-    /// Reads what is printed:
+    /// Reads the output of a target:
     ///
     /// ```text
     /// torques ROBOT FORM STATE BITS…      results in hexadecimal, eight digits for `f32`, sixteen for `f64`
@@ -57,7 +57,7 @@ impl Log {
         Ok(log)
     }
 
-    /// The results on this machine.
+    /// Computes the results on the host.
     pub(crate) fn of_host() -> Self {
         let mut log = Self::default();
         robots::each(&mut log);
@@ -67,17 +67,18 @@ impl Log {
         log
     }
 
-    /// The ticks of a call.
+    /// Returns the ticks of a call.
     pub(crate) fn ticks(&self, function: &str) -> Result<u32> {
         self.ticks.get(function).copied().with_context(|| format!("no time of {function} was printed"))
     }
 
-    /// How far the results of a function, such as `torques puma560 reduced`, are from those of another log.
+    /// Returns the difference of the results of a function, such as `torques puma560 reduced`, from those of another
+    /// log.
     pub(crate) fn agreement(&self, expected: &Self, function: &str) -> Result<Agreement> {
         self.agreement_at(expected, function, 0..STATES)
     }
 
-    /// The same at some states alone.
+    /// Returns the difference of the results of a function from those of another log, at some states.
     pub(crate) fn agreement_at(
         &self,
         expected: &Self,
@@ -103,7 +104,7 @@ impl Log {
         Ok(agreement)
     }
 
-    /// The results of a function under another name, alone.
+    /// Returns a log with only the results of one function, under another name.
     pub(crate) fn renamed(&self, from: &str, to: &str) -> Self {
         let results = self.results.get(from).map(|results| (to.to_owned(), results.clone()));
         Self { results: results.into_iter().collect(), ticks: BTreeMap::new() }
@@ -132,7 +133,7 @@ impl Number {
         }
     }
 
-    /// The unit in its last place.
+    /// Returns the unit in the last place of the number.
     fn unit(self) -> f64 {
         match self {
             Self::Single(number) => f64::from(number.abs().next_up()) - f64::from(number.abs()),
@@ -153,7 +154,7 @@ impl fmt::Display for Agreement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Identical => f.write_str("bit-identical"),
-            // rounded up
+            // rounded up to a tenth
             Self::Within(units) => write!(f, "within {:.1} ulp", (10.0 * units).ceil() / 10.0),
         }
     }

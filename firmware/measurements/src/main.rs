@@ -1,4 +1,4 @@
-//! The certificate of the generated code on microcontrollers. Started by `cargo xtask certificate`.
+//! Measures the generated code on microcontrollers. `cargo xtask certificate` starts this program.
 
 mod board;
 mod c_code;
@@ -93,10 +93,11 @@ fn run(arguments: &Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// A scheduler of LLVM that counts registers; see firmware/example/.cargo/config.toml.
+/// Option for an LLVM scheduler that takes the number of registers into account; see
+/// firmware/example/.cargo/config.toml.
 const SCHEDULER: &str = "-Cllvm-args=-pre-RA-sched=list-ilp";
 
-/// Examines the C code on one processor while the compiler of Rust uses another one.
+/// Examines the C code in one thread while the Rust code is examined in another one.
 fn examine(workspace: &Path, sample: bool) -> Result<Report> {
     let expected = Log::of_host();
     thread::scope(|scope| {
@@ -106,7 +107,7 @@ fn examine(workspace: &Path, sample: bool) -> Result<Report> {
     })
 }
 
-/// Examines the code in Rust, and adds the table of the C code; `of_c` waits for the rows of that table.
+/// Examines the Rust code, and adds the table of the C code; `of_c` waits for the rows of that table.
 fn examine_beside(
     workspace: &Path,
     sample: bool,
@@ -155,7 +156,7 @@ fn examine_beside(
     Ok(Report { qemu, tables, runtime, riscv, wasm })
 }
 
-/// Does something that takes a while, and says how long it took.
+/// Runs a long step, and prints how long it took.
 fn step<T>(name: &str, act: impl FnOnce() -> Result<T>) -> Result<T> {
     let start = Instant::now();
     let result = act().with_context(|| name.to_owned())?;
@@ -163,13 +164,13 @@ fn step<T>(name: &str, act: impl FnOnce() -> Result<T>) -> Result<T> {
     Ok(result)
 }
 
-/// What the PUMA 560 may cost at most on the M4F: [seven steps, reduced].
+/// Largest figures of the PUMA 560 on the M4F that are accepted: [seven steps, reduced].
 const LIMITS: [Figures; 2] = [
     Figures { instructions: 1000, code: 4096, constants: 0, stack: 256 },
     Figures { instructions: 700, code: 3072, constants: 0, stack: 256 },
 ];
 
-/// The figures that everybody asks for, which have bounds of their own.
+/// Prints the most important figures, and checks their bounds.
 fn summary(report: &Report) -> Result<()> {
     let puma560 = report.puma560(report::M4F).context("the PUMA 560 is among the robots")?;
     for ((form, figures), limit) in ["seven_steps", "reduced"].iter().zip(puma560).zip(LIMITS) {
@@ -206,12 +207,12 @@ fn summary(report: &Report) -> Result<()> {
     Ok(())
 }
 
-/// Instructions that a tick of a controller with an observer may take at most, in the reduced form: of the PUMA, and of
-/// each shipped arm with six joints.
+/// Largest number of instructions of a tick of a controller with an observer, in the reduced form: for the PUMA 560,
+/// and for each shipped arm with six joints.
 const TICK: u64 = 1300;
 const TICK_OF_SIX: u64 = 2500;
 
-/// Instructions that a tick of the PUMA's momentum observer may take at most, in the reduced form.
+/// Largest number of instructions of a tick of the momentum observer of the PUMA 560, in the reduced form.
 const OBSERVER: u64 = 1000;
 
 const M4F: &str = "\

@@ -1,4 +1,4 @@
-//! The object file of the certified functions for a target on which no board is at hand.
+//! Compiles the certified functions to an object file, for a target without an emulated board.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,16 +8,16 @@ use anyhow::{Context, Result};
 
 use crate::tools::Build;
 
-/// Compiles the robots for a target; nothing is linked.
+/// Compiles the robots for a target without linking.
 pub(crate) fn build(workspace: &Path, target: &str, flags: &[&str], features: &[&str]) -> Result<PathBuf> {
-    // with link-time optimisation the file would hold no machine code
+    // with link-time optimisation, the file would not contain machine code
     let arguments = [features, &["--config=profile.release.lto=\"off\"", "--", "--emit=obj"]].concat();
     let build = Build { target, linker: "false", flags, package: "robots", arguments: &arguments };
     let folder = build.run(workspace)?.join("deps");
     newest(&folder)?.with_context(|| format!("cargo left no object file in {}", folder.display()))
 }
 
-/// The object file that was written last; older ones are of other flags.
+/// Returns the newest object file; older ones were compiled with other flags.
 fn newest(folder: &Path) -> Result<Option<PathBuf>> {
     let mut newest: Option<(SystemTime, PathBuf)> = None;
     for entry in fs::read_dir(folder).with_context(|| folder.display().to_string())? {

@@ -1,4 +1,4 @@
-//! `docs/measured/embedded.md`: what was found out, and what it means.
+//! Writes the document `docs/measured/embedded.md` with the results and their meaning.
 
 use std::fmt::Write as _;
 
@@ -7,26 +7,26 @@ use crate::log::Agreement;
 use crate::riscv;
 use crate::table::{Row, Table};
 
-/// Everything that was found out.
+/// All results.
 pub(crate) struct Report {
     /// The version of QEMU.
     pub(crate) qemu: String,
     /// The tables: robots on the boards, functions of the PUMA 560, C.
     pub(crate) tables: Vec<Table>,
-    /// Instructions of the loop over a baked-in table, and its agreement.
+    /// Instructions of the loop over a table in the image, and its agreement with the seven steps.
     pub(crate) runtime: (f64, Agreement),
-    /// What was counted for RISC-V; `None` in a sample, of which no document is made.
+    /// The counts for RISC-V; `None` in a sample, for which no document is written.
     pub(crate) riscv: Option<riscv::Counts>,
-    /// Numbers that WebAssembly and the host computed alike; `None` where it was left out.
+    /// How many numbers WebAssembly and the host computed with equal bits; `None` if WebAssembly was left out.
     pub(crate) wasm: Option<usize>,
 }
 
-/// What the rows of a table are of, if they are of robots.
+/// Heading of the first column of a table whose rows are robots.
 pub(crate) const ROBOT: &str = "robot";
-/// The robots on the page.
+/// The robots that the document shows.
 const SHOWN: [&str; 5] = ["panda", "puma560", "scara_cobra600", "stanford", "ur5e"];
 
-/// The headings of the tables, by which they are found again.
+/// The headings of tables, by which they are found.
 pub(crate) const M4F: &str = "Cortex-M4F";
 pub(crate) const M7F: &str = "Cortex-M7F";
 pub(crate) const FUSED: &str = "Cortex-M4F with fused multiply-add";
@@ -35,7 +35,7 @@ pub(crate) const CONTROLLERS: &str = "Computed torque with an observer on the Co
 pub(crate) const C: &str = "C on the Cortex-M4F";
 
 impl Report {
-    /// The document.
+    /// Returns the document.
     pub(crate) fn document(&self) -> String {
         let mut text = HEAD.replace("{qemu}", &self.qemu).replace("{states}", &robots::STATES.to_string());
         for table in &self.tables {
@@ -47,19 +47,19 @@ impl Report {
         text
     }
 
-    /// The figures of all robots and functions.
+    /// Returns the figures of all robots and functions.
     pub(crate) fn figures_of_all(&self) -> String {
         self.tables.iter().map(|table| table.markdown(|_| true) + "\n").collect()
     }
 
-    /// The rows of the PUMA 560, seven steps and reduced.
+    /// Returns the figures of the PUMA 560 in a table: seven steps and reduced.
     pub(crate) fn puma560(&self, title: &str) -> Option<[Figures; 2]> {
         let table = self.tables.iter().find(|table| table.title == title)?;
         let row = |form: &str| table.rows.iter().find(|row: &&Row| row.name == "puma560" && row.form == form);
         Some([row("seven_steps")?.figures, row("reduced")?.figures])
     }
 
-    /// The figures of a row.
+    /// Returns the figures of a row.
     pub(crate) fn figures(&self, title: &str, name: &str, form: &str) -> Option<Figures> {
         let table = self.tables.iter().find(|table| table.title == title)?;
         table.rows.iter().find(|row| row.name == name && row.form == form).map(|row| row.figures)
@@ -100,7 +100,7 @@ impl Report {
     }
 }
 
-/// Whether two documents have the same figures. One that was written without Node says so in a line.
+/// Whether two documents have the same figures. A document that was written without Node has a line that says so.
 pub(crate) fn is_same(committed: &str, document: &str) -> bool {
     let is_left_out = document.contains(WITHOUT_NODE);
     let lines = |text: &'_ str| -> Vec<String> {

@@ -1,4 +1,4 @@
-//! The generated code for RISC-V: built and read, not run.
+//! Builds and reads the generated code for RISC-V, without running it.
 
 use std::path::Path;
 
@@ -6,12 +6,12 @@ use anyhow::{Context, Result, ensure};
 
 use crate::{functions, object_file, tools};
 
-/// Instructions with single-precision registers, compressed where possible.
+/// Target with single-precision registers and compressed instructions.
 const TARGET: &str = "riscv32imafc-unknown-none-elf";
 
-/// What was read.
+/// The counts from the listing.
 pub(crate) struct Counts {
-    /// Functions, all of them straight.
+    /// Number of functions, which all are straight-line code.
     pub(crate) functions: usize,
     /// Instructions of the PUMA 560, seven steps and reduced.
     pub(crate) puma560: [usize; 2],
@@ -38,7 +38,7 @@ pub(crate) fn examine(workspace: &Path) -> Result<Counts> {
     Ok(counts)
 }
 
-/// The instructions of a function, mnemonic and operands.
+/// Returns the instructions of a function, with mnemonics and operands.
 fn lines(listing: &str, path: &str) -> Option<Vec<String>> {
     let mut lines = listing.lines().skip_while(|line| {
         let symbol = line.strip_suffix(">:").and_then(|line| line.split_once(" <"));
@@ -49,7 +49,7 @@ fn lines(listing: &str, path: &str) -> Option<Vec<String>> {
     Some(function.filter_map(|line| Some(line.split_once(":\t")?.1.replace('\t', " "))).collect())
 }
 
-/// No jump, branch, call or trap, and nothing in double precision.
+/// Whether an instruction is no jump, branch, call or trap, and does not compute in double precision.
 fn is_straight(line: &str) -> bool {
     let name = line.split(' ').next().unwrap_or_default();
     let jumps = ["b", "j", "c.b", "c.j", "call", "tail", "ret", "e", "unimp"].iter().any(|stem| name.starts_with(stem));

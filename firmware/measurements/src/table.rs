@@ -1,36 +1,36 @@
-//! Tables of figures: written to the document, read from the committed one, compared.
+//! Tables of figures: writes them to the document, reads them from the committed one, and compares them.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use crate::image::Figures;
 
-/// Growth of a figure that is an error.
+/// Largest relative growth of a figure that is accepted.
 const TOLERANCE: f64 = 0.02;
 
 /// A section of the document.
 pub(crate) struct Table {
-    /// Its heading.
+    /// The heading.
     pub(crate) title: &'static str,
-    /// What it is about.
+    /// Text about the table.
     pub(crate) about: String,
-    /// The compiler whose code it is.
+    /// The compiler that compiled the code.
     pub(crate) compiler: String,
-    /// What the rows are of: robots or functions.
+    /// Heading of the first column: robot or function.
     pub(crate) of: &'static str,
-    /// Its rows.
+    /// The rows.
     pub(crate) rows: Vec<Row>,
 }
 
 /// The figures of a function.
 pub(crate) struct Row {
-    /// Robot or function.
+    /// Name of the robot or function.
     pub(crate) name: String,
-    /// The form.
+    /// The form of the code.
     pub(crate) form: String,
-    /// What it costs.
+    /// The cost of the function.
     pub(crate) figures: Figures,
-    /// How far its results are from those of the host.
+    /// The difference of the results from those of the host, in words.
     pub(crate) results: String,
 }
 
@@ -42,7 +42,7 @@ pub(crate) struct Baseline {
 }
 
 impl Table {
-    /// As a section in Markdown, with the rows that are shown.
+    /// Returns the section in Markdown, with the rows for which `is_shown` is true.
     pub(crate) fn markdown(&self, is_shown: impl Fn(&Row) -> bool) -> String {
         let mut text = format!("## {}\n\n{}\n\nCompiler: {}\n\n", self.title, self.about, self.compiler);
         let _ = writeln!(
@@ -58,7 +58,8 @@ impl Table {
         text
     }
 
-    /// What has grown over the tolerance since the baseline, in words; nothing, if that is of another compiler.
+    /// Describes the figures that have grown by more than the tolerance since the baseline; empty if the baseline is of
+    /// another compiler.
     pub(crate) fn growth(&self, baseline: &Baseline) -> Vec<String> {
         if baseline.compilers.get(self.title) != Some(&self.compiler) {
             return Vec::new();

@@ -1,5 +1,5 @@
-//! The tools of Debian that the certificate is made with: a compiler that has the sources of `core`, the tools of GNU
-//! for ARM, QEMU.
+//! Runs the tools of Debian that the measurements need: a Rust compiler with the sources of `core`, the GNU tools for
+//! ARM, and QEMU.
 
 use std::env;
 use std::ffi::OsStr;
@@ -9,11 +9,11 @@ use std::process::{Command, Output};
 
 use anyhow::{Context, Result, ensure};
 
-/// Debian's compiler, beside whatever rustup has installed.
+/// Debian's Rust compiler, even if rustup has installed another one.
 const RUSTC: &str = "/usr/bin/rustc";
 const CARGO: &str = "/usr/bin/cargo";
 
-/// What is built, and for what.
+/// A build of a package for a target.
 pub(crate) struct Build<'a> {
     /// The target's triple.
     pub(crate) target: &'a str,
@@ -35,11 +35,11 @@ impl Build<'_> {
         run(Command::new(CARGO)
             .current_dir(workspace)
             .env("RUSTC", RUSTC)
-            // unstable: core from its sources, the sizes of stack frames
+            // enables unstable options: building `core` from its sources, and sizes of stack frames
             .env("RUSTC_BOOTSTRAP", "1")
             .env("RUSTFLAGS", self.flags.join(" "))
             .env(linker, self.linker)
-            .env("CARGO_TARGET_DIR", &folder) // the same for all, so that they share the macro
+            .env("CARGO_TARGET_DIR", &folder) // one folder for all, so that they share the macro
             .args(["rustc", "--release", "--locked", "--quiet", "-Zbuild-std=core", "--target", self.target])
             .args(["--package", self.package])
             .args(self.arguments))?;
@@ -47,27 +47,27 @@ impl Build<'_> {
     }
 }
 
-/// Where everything is built.
+/// Returns the folder of all build results.
 pub(crate) fn target_folder(workspace: &Path) -> PathBuf {
     env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace.join("target"), PathBuf::from)
 }
 
-/// The version of Debian's compiler.
+/// Returns the version of Debian's Rust compiler.
 pub(crate) fn rustc_version() -> Result<String> {
     first_line(Command::new(RUSTC).arg("--version"))
 }
 
-/// The version of the C compiler for ARM.
+/// Returns the version of the C compiler for ARM.
 pub(crate) fn gcc_version() -> Result<String> {
     first_line(Command::new("arm-none-eabi-gcc").arg("--version"))
 }
 
-/// The version of QEMU.
+/// Returns the version of QEMU.
 pub(crate) fn qemu_version() -> Result<String> {
     first_line(Command::new("qemu-system-arm").arg("--version"))
 }
 
-/// The instructions of an image for ARM.
+/// Lists the instructions of an image for ARM.
 pub(crate) fn objdump(elf: &Path) -> Result<String> {
     text(Command::new("arm-none-eabi-objdump").args(["--disassemble", "--no-show-raw-insn"]).arg(elf))
 }
@@ -77,7 +77,7 @@ pub(crate) fn gcc<A: AsRef<OsStr>>(folder: &Path, arguments: impl IntoIterator<I
     run(Command::new("arm-none-eabi-gcc").current_dir(folder).args(arguments)).map(drop)
 }
 
-/// What an image prints on a board. An instruction takes 1024 ns there.
+/// Runs an image on a board in QEMU, and returns its output. An instruction takes 1024 ns there.
 pub(crate) fn qemu(machine: &str, elf: &Path) -> Result<String> {
     let semihosting = "enable=on,target=native";
     text(
@@ -88,7 +88,7 @@ pub(crate) fn qemu(machine: &str, elf: &Path) -> Result<String> {
     )
 }
 
-/// The instructions of an object file for RISC-V.
+/// Lists the instructions of an object file for RISC-V.
 pub(crate) fn riscv_objdump(object: &Path) -> Result<String> {
     text(Command::new("riscv64-unknown-elf-objdump").args(["--disassemble", "--no-show-raw-insn"]).arg(object))
 }
@@ -99,12 +99,12 @@ pub(crate) fn wasm_ld<'a>(object: &Path, module: &Path, exports: impl Iterator<I
     run(Command::new("wasm-ld").arg("--no-entry").args(exports).arg(object).arg("-o").arg(module)).map(drop)
 }
 
-/// Whether WebAssembly can be run.
+/// Whether Node is installed, which runs WebAssembly.
 pub(crate) fn has_node() -> bool {
     Command::new("node").arg("--version").output().is_ok_and(|output| output.status.success())
 }
 
-/// What a script of Node prints, from a module and a file as its input.
+/// Runs a script in Node, with a module and an input file as its arguments, and returns its output.
 pub(crate) fn node(script: &Path, module: &Path, input: &Path) -> Result<String> {
     text(
         Command::new("node")
@@ -114,7 +114,7 @@ pub(crate) fn node(script: &Path, module: &Path, input: &Path) -> Result<String>
     )
 }
 
-/// What a command prints.
+/// Runs a command and returns its output.
 pub(crate) fn text(command: &mut Command) -> Result<String> {
     let output = run(command)?;
     String::from_utf8(output.stdout).with_context(|| format!("{command:?} prints no text"))

@@ -1,4 +1,4 @@
-//! The generated code as WebAssembly, run by Node.
+//! Compiles the generated code to WebAssembly and runs it in Node.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -14,8 +14,8 @@ use crate::{object_file, tools};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// Fails if a torque of a robot in a form, in single or double precision, differs from the host's in a bit. How many
-/// numbers were compared.
+/// Compares the torques of every robot and form, in single and double precision, with those of the host; fails if a bit
+/// differs. Returns how many numbers were compared.
 pub(crate) fn examine(workspace: &Path, expected: &Log) -> Result<usize> {
     let object = object_file::build(workspace, TARGET, &[], &["--features", "double"])?;
     let symbols = symbols(&object)?;
@@ -38,7 +38,7 @@ pub(crate) fn examine(workspace: &Path, expected: &Log) -> Result<usize> {
     Ok(calls.numbers)
 }
 
-/// The functions that other languages can call, by their paths.
+/// Returns the exported functions: their paths and symbols.
 fn symbols(object: &Path) -> Result<Vec<(String, String)>> {
     let bytes = fs::read(object).with_context(|| object.display().to_string())?;
     let file = object::File::parse(&*bytes)?;
@@ -47,7 +47,7 @@ fn symbols(object: &Path) -> Result<Vec<(String, String)>> {
     Ok(functions.filter(|(path, _)| path.contains("::foreign::")).collect())
 }
 
-/// The calls that Node shall make.
+/// Collects the calls for Node as text.
 struct Calls<'a> {
     symbols: &'a [(String, String)],
     text: String,

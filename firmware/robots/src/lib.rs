@@ -1,6 +1,6 @@
 //! The functions that are certified.
 //!
-//! Each is a function of its own, never inlined, so that its instructions can be read and counted:
+//! Each is a separate function that is never inlined, so that its instructions can be read and counted:
 //! `robots::NAME::FORM::FUNCTION`, in `f32`.
 #![no_std]
 #![recursion_limit = "256"]

@@ -1,16 +1,16 @@
-//! All that the PUMA 560 can compute besides `inverse_dynamics`.
+//! All functions of the PUMA 560 other than `inverse_dynamics`.
 
 use rne::{BaseMotion, Numbers, ObserverState, Payload, Scalar, Wrench};
 
 use crate::states::State;
 
-/// What is done with each function.
+/// An operation that [`each`] applies to every function.
 pub trait Visitor {
-    /// `form` and `function` name the function of [`each`] that is called.
+    /// Receives a function of [`each`] as `call`, with its form and name.
     fn visit<N: Numbers<f32>>(&mut self, form: &'static str, function: &'static str, call: impl Fn(&Arguments) -> N);
 }
 
-/// An argument of every name.
+/// All arguments that functions of an arm may take, by their names.
 pub struct Arguments {
     q: [f32; 6],
     qd: [f32; 6],
@@ -27,7 +27,8 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// At a state; the torques are as large as the accelerations, tip and base as they happen to be.
+    /// Makes the arguments at a state. The torques have the numbers of the accelerations; those of tip and base are
+    /// arbitrary.
     #[must_use]
     pub fn at(State { q, qd, qdd }: State<6>) -> Self {
         let (sin, cos) = f32::sin_cos_array(q);
@@ -39,11 +40,11 @@ impl Arguments {
     }
 }
 
-/// A tick of the momentum observer.
+/// A function that updates the momentum observer by one tick.
 type Update = fn(&mut ObserverState<6, f32>, &[f32; 6], &[f32; 6], &[f32; 6]) -> [f32; 6];
 
 impl Arguments {
-    /// What an observer of 20 Hz at 1 kHz sees in its third tick.
+    /// Returns the external torques of an observer with a gain of 20 Hz in its third tick, at 1 kHz.
     fn observed(&self, update: Update) -> [f32; 6] {
         let Self { q, qd, tau, sin, cos, .. } = self;
         let mut observer = ObserverState::new(20.0, 1e-3);
@@ -52,7 +53,7 @@ impl Arguments {
     }
 }
 
-/// The type of an argument.
+/// Expands to the type of an argument.
 macro_rules! taken {
     (Step) => { f32 };
     (Wrench) => { Wrench<f32> };
@@ -61,7 +62,7 @@ macro_rules! taken {
     ($of_joints:ident) => { [f32; 6] };
 }
 
-/// An argument as a method takes it: a number by its value.
+/// Expands to an argument as a method takes it: numbers are passed by value, all others by reference.
 macro_rules! passed {
     (Step of $argument:ident) => {
         *$argument
@@ -71,7 +72,7 @@ macro_rules! passed {
     };
 }
 
-/// The macro of a struct with all capabilities of an arm with one tip.
+/// Selects, from the list of all capabilities, those of an arm with one tip.
 macro_rules! of_arms {
     ([$($found:ident)*] $capability:ident of $robots:ident: $summary:literal $(, $details:literal)?; $($rest:tt)*) => {
         of_arms! { [$($found)*] $($rest)* }
@@ -92,13 +93,13 @@ macro_rules! of_arms {
 }
 rne_functions::capabilities!(of_arms);
 
-/// A module per form with a function per method of a list, and [`each`].
+/// Makes a module for each form, with a function for each method of a list, and [`each`].
 macro_rules! modules {
     ($($function:ident($($argument:ident: $kind:ident),*))*) => {
         modules!(seven_steps, "seven_steps": $($function($($argument: $kind),*))*);
         modules!(reduced, "reduced": $($function($($argument: $kind),*))*);
 
-        /// Shows every function to a visitor.
+        /// Passes every function to a visitor.
         pub fn each(visitor: &mut impl Visitor) {
             $(
                 visitor.visit("seven_steps", stringify!($function), |a| seven_steps::$function($(&a.$argument),*));
@@ -116,7 +117,7 @@ macro_rules! modules {
             robot!($name);
 
             $(
-                /// The method of this name.
+                /// Calls the method with this name.
                 #[inline(never)]
                 #[must_use]
                 pub fn $function($($argument: &taken!($kind)),*) -> impl Numbers<f32> + use<> {
@@ -124,12 +125,12 @@ macro_rules! modules {
                 }
             )*
 
-            /// Its code is in the update alone, which can be read there.
+            /// A separate arm for the observer, so that its code is only in the update function, where it can be read.
             #[derive(MomentumObserver)]
             #[robot(path = "../../../robots/puma560.yaml", form = $name)]
             struct Observed;
 
-            /// A tick of the momentum observer.
+            /// Updates the momentum observer by one tick.
             #[inline(never)]
             #[must_use]
             pub fn observer_update(
@@ -144,7 +145,7 @@ macro_rules! modules {
     };
 }
 
-/// The functions of an arm with one tip, on a base that stands still or that something moves, but its torques.
+/// Selects the functions of an arm with one tip, on a fixed or a moving base, except its torques.
 macro_rules! of_arm {
     ([$($found:tt)*]) => { modules! { $($found)* } };
     ($found:tt InverseDynamics $axes:tt = $name:ident $arguments:tt -> $returned:ident:

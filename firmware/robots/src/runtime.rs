@@ -1,10 +1,10 @@
-//! The generic recursion over a table that is baked in: what the generated code is compared with.
+//! The generic recursion over a table in the image, with which the generated code is compared.
 
 use rne::{Arm, InverseDynamics};
 
 use table::PUMA560;
 
-/// Written by the build script.
+/// The table, which the build script writes.
 #[allow(clippy::enum_glob_use, clippy::unreadable_literal)]
 mod table {
     use rne::model::Convention::*;
@@ -15,13 +15,13 @@ mod table {
     include!(concat!(env!("OUT_DIR"), "/puma560.rs"));
 }
 
-/// The PUMA 560 as loops over its links.
+/// Returns the PUMA 560 as an arm whose functions loop over its links.
 #[must_use]
 pub fn arm() -> Arm<6, f32> {
     Arm::new(PUMA560)
 }
 
-/// Torques.
+/// Computes the torques for positions, velocities and accelerations.
 #[inline(never)]
 #[must_use]
 pub fn inverse_dynamics(arm: &Arm<6, f32>, q: &[f32; 6], qd: &[f32; 6], qdd: &[f32; 6]) -> [f32; 6] {

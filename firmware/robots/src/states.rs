@@ -1,6 +1,6 @@
 //! States at which results are compared.
 
-/// How many there are.
+/// Number of states.
 pub const STATES: u32 = 32;
 
 /// Positions, velocities and accelerations between -3 and 3, the same on every machine.
@@ -12,7 +12,7 @@ pub struct State<const DOF: usize, T = f32> {
 }
 
 impl<const DOF: usize> State<DOF> {
-    /// The state of a number below [`STATES`].
+    /// Returns the state with this number, below [`STATES`].
     #[must_use]
     pub fn new(number: u32) -> Self {
         let mut random = Xorshift(number.wrapping_mul(747_796_405).wrapping_add(2_891_336_453) | 1);
@@ -24,14 +24,14 @@ impl<const DOF: usize> State<DOF> {
         }
     }
 
-    /// The same numbers in double precision.
+    /// Returns the state with its numbers in double precision.
     #[must_use]
     pub fn double(&self) -> State<DOF, f64> {
         State { q: self.q.map(f64::from), qd: self.qd.map(f64::from), qdd: self.qdd.map(f64::from) }
     }
 }
 
-/// G. Marsaglia's generator, Journal of Statistical Software 8 (2003).
+/// Xorshift generator of random numbers: G. Marsaglia, Journal of Statistical Software 8 (2003).
 struct Xorshift(u32);
 
 impl Xorshift {

@@ -3,13 +3,13 @@
 /// A function from positions, velocities and accelerations to torques.
 pub type Torques<const DOF: usize, T = f32> = fn(&[T; DOF], &[T; DOF], &[T; DOF]) -> [T; DOF];
 
-/// What is done with each function.
+/// An operation that [`each`] applies to every function.
 pub trait Visitor<T = f32> {
-    /// `robot` and `form` name the function of [`each`].
+    /// Receives a function of [`each`], with the names of its robot and form.
     fn visit<const DOF: usize>(&mut self, robot: &'static str, form: &'static str, function: Torques<DOF, T>);
 }
 
-/// A module per robot and form, and [`each`].
+/// Makes a module for each robot and form, and [`each`].
 macro_rules! robots {
     ($([$robot:ident, $path:literal])*) => {
         $(
@@ -21,7 +21,7 @@ macro_rules! robots {
             }
         )*
 
-        /// Shows every function to a visitor.
+        /// Passes every function to a visitor.
         pub fn each(visitor: &mut impl Visitor) {
             $(
                 visitor.visit(stringify!($robot), "seven_steps", $robot::seven_steps::inverse_dynamics);
@@ -29,8 +29,8 @@ macro_rules! robots {
             )*
         }
 
-        /// The tick of the controller of every robot: its torques, named `tick`, and its external torques, named
-        /// `contact`.
+        /// Passes the results of a controller tick of every robot to a visitor: its torques, named `tick`, and its
+        /// external torques, named `contact`.
         #[cfg(feature = "methods")]
         pub fn each_controller(visitor: &mut impl Visitor) {
             $(
@@ -39,7 +39,7 @@ macro_rules! robots {
             )*
         }
 
-        /// The same in double precision.
+        /// Passes every function in double precision to a visitor.
         #[cfg(feature = "double")]
         pub fn each_double(visitor: &mut impl Visitor<f64>) {
             $(
@@ -50,7 +50,7 @@ macro_rules! robots {
     };
 }
 
-/// The functions of a robot in a form.
+/// Makes the functions of a robot in a form.
 macro_rules! form {
     ($form:ident, $name:literal, $path:literal) => {
         #[doc = concat!("The form `", $name, "`.")]
@@ -62,14 +62,14 @@ macro_rules! form {
             /// One number per joint.
             type Joints<T> = [T; Robot::DOF];
 
-            /// Torques.
+            /// Computes the torques.
             #[inline(never)]
             #[must_use]
             pub fn inverse_dynamics(q: &Joints<f32>, qd: &Joints<f32>, qdd: &Joints<f32>) -> Joints<f32> {
                 rne::InverseDynamics::inverse_dynamics(&Robot, q, qd, qdd)
             }
 
-            /// The same in double precision.
+            /// Computes the torques in double precision.
             #[cfg(feature = "double")]
             #[inline(never)]
             #[must_use]
@@ -77,12 +77,12 @@ macro_rules! form {
                 rne::InverseDynamics::inverse_dynamics(&Robot, q, qd, qdd)
             }
 
-            /// As functions that other languages can call.
+            /// The same functions, exported for other languages.
             #[cfg(all(feature = "double", target_family = "wasm"))]
             pub mod foreign {
                 use super::Joints;
 
-                /// Torques.
+                /// Computes the torques.
                 pub extern "C" fn inverse_dynamics(
                     q: &Joints<f32>,
                     qd: &Joints<f32>,
@@ -92,7 +92,7 @@ macro_rules! form {
                     *tau = super::inverse_dynamics(q, qd, qdd);
                 }
 
-                /// The same in double precision.
+                /// Computes the torques in double precision.
                 pub extern "C" fn double(q: &Joints<f64>, qd: &Joints<f64>, qdd: &Joints<f64>, tau: &mut Joints<f64>) {
                     *tau = super::double(q, qd, qdd);
                 }
@@ -101,10 +101,10 @@ macro_rules! form {
     };
 }
 
-/// A controller of a robot at 1 kHz, in the reduced form.
+/// Makes a controller of a robot at 1 kHz, in the reduced form.
 macro_rules! controller {
     ($path:literal) => {
-        /// Computed torque with an observer of contacts.
+        /// A computed-torque controller with an observer of external torques.
         #[cfg(feature = "methods")]
         pub mod controller {
             use rne::{ComputedTorque, Desired, ObserverState};
@@ -117,7 +117,7 @@ macro_rules! controller {
             type Joints = [f32; Robot::DOF];
             type Controller = ComputedTorque<{ Robot::DOF }, f32>;
 
-            /// A tick.
+            /// Runs one tick of the controller.
             #[inline(never)]
             #[must_use]
             pub fn tick(
@@ -130,13 +130,13 @@ macro_rules! controller {
                 controller.tick(&Robot, q, qd, desired, applied)
             }
 
-            /// The torques of the third tick.
+            /// Returns the torques of the third tick.
             #[must_use]
             pub fn torques(q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
                 third(q, qd, qdd).1
             }
 
-            /// The external torques of the third tick.
+            /// Returns the external torques of the third tick.
             #[must_use]
             pub fn external_torques(q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
                 *third(q, qd, qdd).0.observer.external_torques()

@@ -20,7 +20,7 @@ impl Friction {
         (damping.is_finite() && friction.is_finite()).then_some(Self { damping, friction })
     }
 
-    /// Computes the friction at the joint; `None` where there is none, or where it overflows.
+    /// Computes the friction at the joint; `None` without friction, or where it overflows.
     pub(super) fn of(motor: &Motor) -> Option<Self> {
         Self::at_joint(motor).filter(|at_joint| at_joint.damping != 0.0 || at_joint.friction != 0.0)
     }

@@ -26,7 +26,7 @@ pub(super) struct Compiler {
     pub(super) total_mass: Option<f64>,
 }
 
-/// Which bodies get their inertia from their geoms.
+/// The bodies that get their inertia from their geoms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum FromGeoms {
     /// No body: only `inertial` counts.

@@ -274,7 +274,8 @@ pub fn changes(
     Err(WatchError::ShortLog { duration, needed: duration + more, cutoff: baseline.cutoff })
 }
 
-/// Returns for each joint the torques of a run's motion that are explained already, N m or N; empty if there are none.
+/// Returns for each joint the torques of a run's motion that are explained already, N m or N; empty without such
+/// torques.
 type Explain<'a> = &'a dyn Fn(u64, &Motion) -> Result<Vec<Vec<f64>>, WatchError>;
 
 /// Receives the signals of a piece of a run, with the torques that are explained already.

@@ -51,7 +51,7 @@ pub(crate) struct Change {
 /// The estimate of a change.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Estimate {
-    /// All numbers of the candidate.
+    /// The estimated numbers of the candidate.
     pub(crate) values: Vec<f64>,
     /// Standard deviation of the first number, for errors that are white.
     pub(crate) deviation: f64,

@@ -21,6 +21,8 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// Checks that all settings are above zero.
+    ///
     /// # Errors
     /// When a setting is not above zero.
     pub(crate) fn check(&self) -> Result<(), WatchError> {

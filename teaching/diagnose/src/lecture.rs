@@ -145,7 +145,7 @@ pub fn seven_steps(rows: &[Row], state: &State, misprints: &[Misprint]) -> Vec<L
 fn forward(rows: &[Row], links: &[Placed], state: &State, misprints: &[Misprint]) -> Vec<LinkVectors> {
     let e = axis(misprints);
     let mut all = Vec::new();
-    // Link 0 rests in frame 1.
+    // link 0 is at rest in frame 1
     let mut prev = LinkVectors { gravity: state.gravity.into(), ..LinkVectors::default() };
     if misprints.contains(&Misprint::E13GroundFrame) {
         prev.gravity = links[0].turn.transpose() * prev.gravity;

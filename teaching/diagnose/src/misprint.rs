@@ -9,13 +9,13 @@ macro_rules! misprints {
         pub enum Misprint { $(#[doc = $says] $variant,)* }
 
         impl Misprint {
-            /// The formula as it was printed or is often written.
+            /// Returns the formula as it was printed or is often written.
             #[must_use]
             pub fn says(self) -> &'static str {
                 match self { $(Self::$variant => $says,)* }
             }
 
-            /// The correct formula.
+            /// Returns the correct formula.
             #[must_use]
             pub fn right(self) -> &'static str {
                 match self { $(Self::$variant => $right,)* }

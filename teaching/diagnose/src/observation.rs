@@ -26,8 +26,8 @@ pub struct Observation {
 pub const COARSEST: f64 = 1e-3;
 
 impl Observation {
-    /// A copy in which no tolerance exceeds [`COARSEST`] times the largest torque. Without this limit, some pairs of
-    /// slips would agree by chance with torques of few digits.
+    /// Returns a copy in which no tolerance exceeds [`COARSEST`] times the largest torque. Without this limit, some
+    /// pairs of slips would agree by chance with torques of few digits.
     pub(crate) fn to_enough_digits(&self) -> Self {
         let most = COARSEST * largest(&self.tau);
         Self { resolution: self.resolution.iter().map(|half| half.min(most)).collect(), ..self.clone() }
@@ -43,7 +43,8 @@ impl Observation {
         pairs.map(|((a, b), own)| (a - b).abs() - own).all(|excess| excess <= rounding)
     }
 
-    /// The largest difference from the torques, relative to the largest torque; infinite if a torque is not a number.
+    /// Returns the largest difference from the torques, relative to the largest torque; infinite if a torque is not a
+    /// number.
     pub(crate) fn error(&self, tau: &[f64]) -> f64 {
         if tau.iter().any(|tau| !tau.is_finite()) {
             return f64::INFINITY;

@@ -190,9 +190,9 @@ pub struct Quantity {
     /// absent for quantities without axes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub axes: Option<&'static str>,
-    /// Where to draw it. `joint`: an arrow at the joint; `com`: at the centre of mass of the link; `axis`: along or
-    /// about the joint's axis; `position`: from the joint to the centre of mass; `lever`: at the end of the link, where
-    /// the next joint is; `frame`: the axes of the joint's frame; `link`: the whole link.
+    /// The place in drawings of the arm. `joint`: an arrow at the joint; `com`: at the centre of mass of the link;
+    /// `axis`: along or about the joint's axis; `position`: from the joint to the centre of mass; `lever`: at the end
+    /// of the link, where the next joint is; `frame`: the axes of the joint's frame; `link`: the whole link.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub drawn: Option<&'static str>,
 }
@@ -268,7 +268,7 @@ pub struct Component {
     pub with_numbers: String,
     /// The terms that were folded away, with the reasons.
     pub folded: Vec<Folded>,
-    /// What the component became in the code.
+    /// The fate of the component in the code.
     pub became: Became,
     /// The statements that compute the component and its parts, in order.
     pub statements: Vec<String>,
@@ -287,7 +287,7 @@ pub struct Folded {
     pub why: String,
 }
 
-/// What a component became in the code.
+/// The fate of a component in the code.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Became {

@@ -1,4 +1,5 @@
-//! A polynomial as a person writes it: common factors before parentheses, what stands beside one sine together.
+//! Collects the terms of a polynomial as a person writes it: common factors before parentheses, and all terms with the
+//! same sine together.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -11,11 +12,11 @@ use crate::rational::{Rational, fraction};
 use crate::symbol::{Constants, Kind, Symbol};
 use crate::trigonometry::{self, Product};
 
-/// A sum of products that may hold sums.
+/// A sum of products, which may contain sums.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Sum(pub(crate) Vec<Term>);
 
-/// coefficient · before · (sum)ⁿ… · after
+/// A product: coefficient · before · powers of sums · after.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Term {
     pub(crate) coefficient: Rational,
@@ -24,7 +25,7 @@ pub(crate) struct Term {
     pub(crate) after: Vec<(Factor, i32)>,
 }
 
-/// A term before sums are collected.
+/// A term of a polynomial, before collecting.
 #[derive(Clone, Debug, PartialEq)]
 struct Flat {
     coefficient: Rational,
@@ -32,20 +33,20 @@ struct Flat {
 }
 
 impl Flat {
-    /// The factors of a class with their exponents.
+    /// Returns the factors of a class with their exponents.
     fn of_class(&self, class: Class) -> Vec<(Factor, i32)> {
         let factors = self.factors.iter().filter(|(factor, _)| factor.class() == class);
         factors.map(|(factor, exponent)| (factor.clone(), *exponent)).collect()
     }
 }
 
-/// Some factors of terms, and the terms that have them.
+/// Factors, and the terms that have them.
 type Group<P> = (P, Vec<Flat>);
 
-/// Short forms that are known, by the polynomial with the first coefficient 1.
+/// Known short forms of trigonometric polynomials, which are scaled so that their first coefficient is 1.
 type Known = HashMap<Vec<(Monomial, Rational)>, Vec<Product>>;
 
-/// Writes polynomials of one arm.
+/// Collects the terms of the polynomials of one arm.
 #[derive(Debug)]
 pub(crate) struct Collector<'c> {
     constants: &'c Constants,
@@ -57,7 +58,7 @@ impl<'c> Collector<'c> {
         Self { constants, known: Known::new() }
     }
 
-    /// The polynomial, collected; nothing for one that is too long.
+    /// Collects the terms of a polynomial; `None` if it is too long.
     pub(crate) fn collected(&mut self, polynomial: &Polynomial) -> Option<Sum> {
         let mut beside: BTreeMap<Monomial, BTreeMap<Monomial, Rational>> = BTreeMap::new();
         for (monomial, value) in polynomial.terms()? {
@@ -77,7 +78,7 @@ impl<'c> Collector<'c> {
         Some(self.gathered(flat))
     }
 
-    /// The short form of a polynomial in sines and cosines.
+    /// Returns the short form of a polynomial in sines and cosines.
     fn short(&mut self, angles: &BTreeMap<Monomial, Rational>) -> Vec<Product> {
         let Some(first) = angles.values().next().cloned() else { return Vec::new() };
         let scaled: Vec<(Monomial, Rational)> = angles.iter().map(|(k, value)| (k.clone(), value / &first)).collect();
@@ -117,7 +118,7 @@ impl<'c> Collector<'c> {
         Sum(positive_first(sum))
     }
 
-    /// Terms with the factor that most of them have, and the others; `None` where no two have one.
+    /// Separates the terms with the most frequent factor from the others; `None` if no two terms have a common factor.
     fn by_factor(&self, terms: &[Flat]) -> Option<Vec<Vec<Flat>>> {
         let mut counts: BTreeMap<&Factor, usize> = BTreeMap::new();
         for factor in terms.iter().flat_map(|term| term.factors.keys()) {
@@ -131,11 +132,11 @@ impl<'c> Collector<'c> {
             },
             _ => 0,
         };
-        // a² + a b is no shorter as a (a + b)
-        // what all have, in unlike powers, tells none of them apart: m a + m² b, where a mass is a length too
+        // Lengths are not chosen, because a² + a b is not shorter as a (a + b). A factor of all terms does not separate
+        // them, as m in m a + m² b, where the mass is also a length.
         let tells = 2..terms.len();
         let repeated = counts.into_iter().filter(|(factor, count)| tells.contains(count) && rank(factor) > 0);
-        // of equals the first
+        // the first one if several are equal
         let (best, _) = repeated.rev().max_by_key(|(factor, count)| (rank(factor), *count))?;
         let best = best.clone();
         let (with, without): (Vec<Flat>, Vec<Flat>) =
@@ -145,8 +146,8 @@ impl<'c> Collector<'c> {
     }
 }
 
-/// Terms together that have the same accelerations, or else the same rates, or else the same sines and cosines; `None`
-/// where that brings no two together.
+/// Groups terms with the same accelerations, otherwise with the same rates, otherwise with the same sines and cosines;
+/// `None` if no group has two terms.
 fn by_class(terms: &[Flat]) -> Option<Vec<Vec<Flat>>> {
     [Class::Acceleration, Class::Rate, Class::Trigonometric].into_iter().find_map(|class| {
         let mut groups: Vec<Group<Vec<(Factor, i32)>>> = Vec::new();
@@ -162,13 +163,13 @@ fn by_class(terms: &[Flat]) -> Option<Vec<Vec<Flat>>> {
     })
 }
 
-/// The order of terms: by what is collected first, then by the letters.
+/// Returns the sort key of a term: first the classes in the order of collecting, then the letters.
 fn order(term: &Flat) -> Vec<(Class, Vec<(Factor, i32)>)> {
     [Class::Acceleration, Class::Rate, Class::Trigonometric, Class::Constant, Class::Position]
         .into_iter()
         .map(|class| {
-            // accelerations and gravity last in no order of the alphabet: what has none of a class comes after what has
-            // some for rates, and before for the rest
+            // terms without a rate or acceleration come after terms with one; for other classes, terms without a factor
+            // come first
             let part: Vec<(Factor, i32)> =
                 term.of_class(class).into_iter().map(|(factor, exponent)| (factor, -exponent)).collect();
             let is_last = part.is_empty() && class >= Class::Rate;
@@ -177,7 +178,7 @@ fn order(term: &Flat) -> Vec<(Class, Vec<(Factor, i32)>)> {
         .collect()
 }
 
-/// The factors that all terms have with the same exponent: (1/3) a² + (1/2) a b is not changed.
+/// Returns the factors that all terms have with the same exponent, so that (1/3) a² + (1/2) a b is not changed.
 fn common_factors(terms: &[Flat]) -> BTreeMap<Factor, i32> {
     let Some((first, rest)) = terms.split_first() else { return BTreeMap::new() };
     let mut common = first.factors.clone();
@@ -185,8 +186,8 @@ fn common_factors(terms: &[Flat]) -> BTreeMap<Factor, i32> {
     common
 }
 
-/// The coefficient before the parentheses: a magnitude that all coefficients have, or what divides integers; and the
-/// sign, if none is positive.
+/// Returns the coefficient before parentheses: the common magnitude of all coefficients, or the common divisor of
+/// integers, with a minus sign if no coefficient is positive.
 fn common_coefficient(terms: &[Flat]) -> Rational {
     let magnitudes: BTreeSet<Rational> = terms.iter().map(|term| term.coefficient.abs()).collect();
     let magnitude = match magnitudes.first() {
@@ -206,14 +207,14 @@ impl Flat {
     }
 }
 
-/// A product of factors and sums. Behind the sums stand the factors that are of a later class than all in them:
-/// (m1 + m2) cos θ1.
+/// Makes a product of factors and sums. Factors of a later class than all in the sums are written after them: (m1 + m2)
+/// cos θ1.
 fn product<const N: usize>(outside: Flat, inside: [Sum; N]) -> Term {
     let Flat { mut coefficient, mut factors } = outside;
     let mut sums = Vec::new();
     for sum in inside {
         match <[Term; 1]>::try_from(sum.0) {
-            // a sum of one term is a product itself
+            // a sum with one term is merged into the product
             Ok([term]) => {
                 coefficient *= term.coefficient;
                 for (factor, exponent) in term.before.into_iter().chain(term.after) {
@@ -239,7 +240,7 @@ fn latest_class(sum: &Sum) -> Class {
     sum.0.iter().map(of_term).max().unwrap_or(Class::Constant)
 }
 
-/// k p² ± 2 k p q + k q² = k (p ± q)²
+/// Returns k p² ± 2 k p q + k q² as k (p ± q)².
 fn square(terms: &[Flat]) -> Option<Term> {
     let [first, second, third] = terms else { return None };
     [[first, second, third], [first, third, second], [second, third, first]].into_iter().find_map(
@@ -266,7 +267,7 @@ fn square(terms: &[Flat]) -> Option<Term> {
     )
 }
 
-/// Three terms that are a square, and the others.
+/// Separates three terms that are a square from the others.
 fn with_square(terms: &[Flat]) -> Option<Vec<Vec<Flat>>> {
     let indices = 0..terms.len();
     let triples = indices.clone().flat_map(|i| (i + 1..terms.len()).map(move |j| (i, j)));
@@ -276,8 +277,8 @@ fn with_square(terms: &[Flat]) -> Option<Vec<Vec<Flat>>> {
     Some(vec![found.map(|at| terms[at].clone()).to_vec(), rest])
 }
 
-/// A product of two sums, multiplied out: what stands beside the rates, the sines or the powers of a letter is the same
-/// sum but for a factor.
+/// Finds two sums whose product the terms are: the coefficients of the rates, of the sines or of the powers of a letter
+/// are proportional sums.
 fn two_sums(terms: &[Flat]) -> Option<(Vec<Flat>, Vec<Flat>)> {
     let classes = [Class::Acceleration, Class::Rate, Class::Trigonometric];
     let letters: BTreeSet<&Factor> =
@@ -286,7 +287,7 @@ fn two_sums(terms: &[Flat]) -> Option<(Vec<Flat>, Vec<Flat>)> {
     by_class.or_else(|| letters.into_iter().find_map(|letter| factored(terms, |factor| factor == letter)))
 }
 
-/// The two sums, where what stands beside the chosen factors is proportional.
+/// Returns the two sums, if the coefficients of the chosen factors are proportional.
 fn factored(terms: &[Flat], is_chosen: impl Fn(&Factor) -> bool) -> Option<(Vec<Flat>, Vec<Flat>)> {
     let mut groups: Vec<Group<BTreeMap<Factor, i32>>> = Vec::new();
     for term in terms {
@@ -304,7 +305,7 @@ fn factored(terms: &[Flat], is_chosen: impl Fn(&Factor) -> bool) -> Option<(Vec<
     let mut common: Option<Vec<Flat>> = None;
     let mut contents = Vec::new();
     for (part, mut group) in groups {
-        // the least exponents, and the first coefficient
+        // the smallest exponents, and the first coefficient
         let mut factors = group[0].factors.clone();
         for term in &group {
             for (factor, exponent) in &mut factors {
@@ -340,7 +341,7 @@ fn factored(terms: &[Flat], is_chosen: impl Fn(&Factor) -> bool) -> Option<(Vec<
     Some((contents, common?))
 }
 
-/// A sum begins with a positive term, if it has one.
+/// Moves the first positive term to the beginning.
 fn positive_first(mut terms: Vec<Term>) -> Vec<Term> {
     if let Some(at) = terms.iter().position(|term| term.coefficient.is_positive()) {
         terms[..=at].rotate_right(1);
@@ -349,7 +350,7 @@ fn positive_first(mut terms: Vec<Term>) -> Vec<Term> {
 }
 
 impl Sum {
-    /// The sum times a factor, as one term.
+    /// Multiplies the sum by a factor.
     pub(crate) fn times(&self, factor: Factor) -> Vec<Term> {
         let mut sum = self.clone();
         match sum.0.as_mut_slice() {
@@ -388,7 +389,7 @@ impl Sum {
     }
 }
 
-/// Whether the magnitude of a coefficient goes without saying.
+/// Whether a coefficient is 1 or -1, so that its magnitude is not written.
 pub(crate) fn is_unit(coefficient: &Rational) -> bool {
     coefficient.abs().is_one() && !coefficient.is_zero()
 }

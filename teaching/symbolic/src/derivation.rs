@@ -1,7 +1,7 @@
-//! The compiler's seven steps over polynomials.
+//! Derives torques by the compiler's seven steps over polynomials.
 //!
-//! The compiler writes them for an arm whose numbers, but zeros and right angles, are all known at run time only; its
-//! program then runs with the letters of the table for these numbers.
+//! The steps are compiled for an arm all of whose numbers, except zeros and right angles, are run-time parameters. The
+//! program is then run with the letters of the table for these numbers.
 
 use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
@@ -16,30 +16,30 @@ use crate::symbol::{Angle, Symbol};
 use crate::table::Table;
 use crate::vector::{Matrix, Vector};
 
-/// A polynomial of the derivation has more terms than any page.
+/// The error that a polynomial of the derivation has too many terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TooLong;
 
-/// The results of the seven steps for an arm in letters: torques, and the quantities that were asked for.
+/// The results of the seven steps for an arm in letters: torques, and the requested quantities.
 #[derive(Debug)]
 pub(crate) struct Derivation {
     values: HashMap<Name, Polynomial>,
 }
 
 impl Derivation {
-    /// Derives the torques, and every component of some quantities besides.
+    /// Derives the torques, and every component of some quantities.
     pub(crate) fn new(table: &Table, quantities: &[Quantity]) -> Result<Self, TooLong> {
         let (derivation, is_too_long) = Self::run(table, quantities, Polynomial::clone)?;
         if is_too_long { Err(TooLong) } else { Ok(derivation) }
     }
 
-    /// Derives quantities that no motion and no gravity changes, without any.
+    /// Derives quantities that do not depend on motion and gravity, which are set to zero.
     pub(crate) fn at_rest(table: &Table, quantities: &[Quantity]) -> Result<Self, TooLong> {
         Ok(Self::run(table, quantities, |_| Polynomial::zero())?.0)
     }
 
-    /// Runs the program, and says whether something grew too long; `moving` is applied to rates, accelerations and
-    /// gravity.
+    /// Runs the program, and returns whether a polynomial became too long; `moving` is applied to rates, accelerations
+    /// and gravity.
     fn run(
         table: &Table,
         quantities: &[Quantity],
@@ -73,30 +73,30 @@ impl Derivation {
         self.values.get(&name).cloned().unwrap_or_else(Polynomial::zero)
     }
 
-    /// The torques or forces of all actuators, base to tip.
+    /// Returns the torques or forces of all actuators, base to tip.
     pub(crate) fn torques(&self) -> Vec<Polynomial> {
         let torque = |joint| self.values.get(&Name::scalar(Quantity::Torque, joint)).cloned();
         (1..).map_while(torque).collect()
     }
 
-    /// A vector of a joint, counted from 1.
+    /// Returns a vector quantity of a joint, counted from 1.
     pub(crate) fn vector(&self, quantity: Quantity, joint: usize) -> Vector {
         Vector(Axis::ALL.map(|axis| self.value(Name::vector(quantity, joint, axis))))
     }
 
-    /// A matrix of a joint, counted from 1.
+    /// Returns a matrix quantity of a joint, counted from 1.
     pub(crate) fn matrix(&self, quantity: Quantity, joint: usize) -> Matrix {
         let row = |row| Vector(Axis::ALL.map(|column| self.value(Name::matrix(quantity, joint, row, column))));
         Matrix(Axis::ALL.map(row))
     }
 }
 
-/// The arm of a table, all of whose numbers but zeros and right angles are run-time parameters.
+/// The arm of a table whose numbers, except zeros and right angles, are run-time parameters.
 struct Lettered {
     robot: Robot,
-    /// The letters, or sums and products of letters, that stand for them.
+    /// The values of the parameters: letters, or polynomials of letters.
     parameters: Vec<Polynomial>,
-    /// How many of them, the first, are components of gravity.
+    /// How many parameters at the beginning are components of gravity.
     gravity: usize,
 }
 
@@ -118,7 +118,7 @@ impl Lettered {
         for (i, (row, joint)) in table.rows.iter().zip(&mut robot.joints).enumerate() {
             let dh = &mut joint.row.dh;
             let is_revolute = row.kind == JointKind::Revolute;
-            // the letters of a joint's variable have its constant part in them
+            // the letters of a joint variable include its constant part
             let d = if is_revolute { row.d.clone() } else { Polynomial::zero() };
             if is_revolute {
                 dh.theta = Turn::ZERO;
@@ -143,7 +143,7 @@ impl Lettered {
         }
         let mut parameters = Vec::new();
         for (entry, polynomial) in entries {
-            // the compiler asks of a number that varies only whether it is zero
+            // of a run-time parameter, the compiler uses only whether it is zero
             if let Some(number) = robot.number_mut(entry) {
                 *number = if polynomial.is_zero() { 0.0 } else { 1.0 };
             }
@@ -157,7 +157,7 @@ impl Lettered {
     }
 }
 
-/// The polynomials of a derivation. After one that is too long nothing is computed any more.
+/// The polynomials of a derivation. After one that is too long, no more are computed.
 #[derive(Default)]
 struct Pages {
     polynomials: RefCell<Vec<Polynomial>>,
@@ -175,7 +175,7 @@ impl Pages {
     }
 }
 
-/// A polynomial of a derivation: a number of the interpreter.
+/// A polynomial of a derivation, which the interpreter uses as its number type.
 #[derive(Clone, Copy)]
 struct Value<'p> {
     pages: &'p Pages,
@@ -191,7 +191,7 @@ impl Value<'_> {
         self.pages.add(polynomial)
     }
 
-    /// Sine and cosine of the variable of a revolute joint.
+    /// Returns sine and cosine of the variable of a revolute joint.
     fn sine_and_cosine(self) -> (Self, Self) {
         let joint = match self.pages.polynomials.borrow()[self.at].single().map(|(monomial, _)| monomial.0.as_slice()) {
             Some([(Symbol::Position(joint), 1)]) => Angle::Joint(*joint),
@@ -224,7 +224,7 @@ impl Neg for Value<'_> {
     }
 }
 
-/// The seven steps divide by nothing and ask for no sign.
+/// Not used: the seven steps have no divisions.
 impl Div for Value<'_> {
     type Output = Self;
 

@@ -1,4 +1,4 @@
-//! The sections of a closed form, in order, in any script: torques, M, h, γ, and the meaning of the letters.
+//! Makes the sections of a closed form for a terminal or LaTeX: torques, M, h, γ, and the meaning of the letters.
 
 use std::collections::BTreeSet;
 
@@ -15,13 +15,13 @@ use crate::recursion;
 use crate::symbol::Symbol;
 use crate::written::{COLUMNS, Written};
 
-/// A torque of more lines is given by its parts alone.
+/// Largest number of lines of a torque; a longer one is given only by its parts.
 const MOST_LINES_OF_A_TORQUE: usize = 8;
 
 /// A part of the document.
 #[derive(Debug)]
 pub(crate) struct Section {
-    /// Words and formulas in turns, words first.
+    /// Words and formulas alternately, words first.
     pub(crate) title: Vec<String>,
     pub(crate) items: Vec<Item>,
 }
@@ -29,15 +29,15 @@ pub(crate) struct Section {
 /// A formula or words.
 #[derive(Debug)]
 pub(crate) enum Item {
-    /// left = right, with the columns that the left side takes on a terminal.
+    /// A formula left = right; `width` is that of the left side on a terminal, in columns.
     Formula { left: String, width: usize, right: Pieces },
-    /// Words and formulas in turns, words first.
+    /// Words and formulas alternately, words first.
     Words(Vec<String>),
-    /// Formulas in a row, with words behind a formula: the values of letters.
+    /// Formulas in a row, each with words after it: the values of letters.
     List(Vec<(String, String)>),
 }
 
-/// Builds formulas in a script, and knows how wide they are on a terminal.
+/// Writes formulas in a script, and computes their width on a terminal.
 pub(crate) struct Composer<'a> {
     pub(crate) notation: Notation<'a>,
     pub(crate) plain: Notation<'a>,
@@ -53,7 +53,7 @@ impl Composer<'_> {
     }
 }
 
-/// The sections of a closed form, or of the recursion in its place.
+/// Returns the sections of a closed form, or of the recursion if there is no closed form.
 pub(crate) fn sections(form: &ClosedForm, script: Script) -> Vec<Section> {
     let kinds = crate::written::kinds(&form.table);
     let notation = Notation { script, constants: &form.table.constants, kinds: &kinds };
@@ -86,7 +86,7 @@ pub(crate) fn sections(form: &ClosedForm, script: Script) -> Vec<Section> {
     sections
 }
 
-/// Words alone.
+/// Makes a text of words only, without formulas.
 pub(crate) fn words(text: &str) -> Vec<String> {
     vec![text.to_owned()]
 }
@@ -139,7 +139,7 @@ fn mass_matrix(composer: &Composer<'_>, equations: &Equations, written: &Written
     for i in 0..dof {
         for j in i..dof {
             let sum = &written.mass_matrix[i][j];
-            // off the diagonal what is zero is not worth a line each
+            // zeros outside of the diagonal are only counted
             if sum.is_zero() && i != j {
                 zeros += 1;
                 continue;
@@ -232,7 +232,7 @@ fn gravity(composer: &Composer<'_>, written: &Written) -> Section {
     Section { title, items: written.gravity.iter().enumerate().map(item).collect() }
 }
 
-/// The letters that occur.
+/// Returns the letters that occur in some polynomials.
 pub(crate) fn used<'p>(polynomials: impl Iterator<Item = &'p Polynomial>) -> BTreeSet<Symbol> {
     let terms = polynomials.filter_map(Polynomial::terms).flatten();
     terms.flat_map(|(monomial, _)| monomial.0.iter().map(|(symbol, _)| *symbol)).collect()

@@ -1,4 +1,4 @@
-//! The torques, sorted: τ = M(θ)θ̈ + h(θ,θ̇) + γ(θ).
+//! Splits torques into their parts: τ = M(θ)θ̈ + h(θ,θ̇) + γ(θ).
 
 use crate::polynomial::{Monomial, Polynomial};
 use crate::rational::fraction;
@@ -7,11 +7,11 @@ use crate::symbol::Symbol;
 /// The parts of the equations of motion.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Equations {
-    /// M_ij, by rows.
+    /// Mass matrix M_ij, by rows.
     pub(crate) mass_matrix: Vec<Vec<Polynomial>>,
-    /// c_ijk, Christoffel's symbols of the first kind: h_i = Σ c_ijk q̇_j q̇_k over all j and k.
+    /// Christoffel symbols c_ijk of the first kind: h_i = Σ c_ijk q̇_j q̇_k over all j and k.
     pub(crate) christoffel: Vec<Vec<Vec<Polynomial>>>,
-    /// γ_i
+    /// Gravity torques γ_i.
     pub(crate) gravity: Vec<Polynomial>,
 }
 
@@ -20,8 +20,8 @@ fn is_rate(symbol: Symbol) -> bool {
 }
 
 impl Equations {
-    /// Sorts torques by their accelerations and rates. What is neither linear in the accelerations nor quadratic in the
-    /// rates nor free of both belongs nowhere: there is no such term in the torques of an arm.
+    /// Splits torques by their accelerations and rates. Every term in the torques of an arm is linear in the
+    /// accelerations, or quadratic in the rates, or free of both; other terms are lost.
     pub(crate) fn sorted(torques: &[Polynomial]) -> Self {
         let dof = torques.len();
         let mass_matrix = torques
@@ -43,7 +43,7 @@ impl Equations {
         Self { mass_matrix, christoffel, gravity }
     }
 
-    /// h_i
+    /// Returns the velocity torque h_i.
     pub(crate) fn velocity_torque(&self, joint: usize) -> Polynomial {
         let mut sum = Polynomial::zero();
         for (j, row) in self.christoffel[joint].iter().enumerate() {
@@ -54,7 +54,7 @@ impl Equations {
         sum
     }
 
-    /// τ_i, from its parts.
+    /// Returns the torque τ_i, the sum of its parts.
     pub(crate) fn torque(&self, joint: usize) -> Polynomial {
         let accelerations = self.mass_matrix[joint]
             .iter()
@@ -63,7 +63,7 @@ impl Equations {
         accelerations + self.velocity_torque(joint) + self.gravity[joint].clone()
     }
 
-    /// Every polynomial.
+    /// Returns all polynomials.
     pub(crate) fn all(&self) -> impl Iterator<Item = &Polynomial> {
         let symbols = self.christoffel.iter().flatten().flatten();
         self.mass_matrix.iter().flatten().chain(symbols).chain(&self.gravity)

@@ -1,4 +1,4 @@
-//! The factors of a printed product: the letters, and sines and cosines of sums of angles.
+//! The factors of a written product: letters, and sines and cosines of sums of angles.
 
 #[cfg(test)]
 use crate::polynomial::Polynomial;
@@ -6,27 +6,27 @@ use crate::polynomial::Polynomial;
 use crate::rational::fraction;
 use crate::symbol::{Angle, Symbol};
 
-/// A sum of angles: each with how often it is taken, sorted; the first of them is positive.
+/// A sum of angles with integer factors, sorted; the first factor is positive.
 pub(crate) type Argument = Vec<(Angle, i32)>;
 
-/// A factor. In this order factors are written.
+/// A factor of a product. Factors are written in this order.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Factor {
-    /// A constant, by its index.
+    /// A constant, by its index in [`Constants`](crate::symbol::Constants).
     Constant(usize),
-    /// d of a prismatic joint.
+    /// The variable d of a prismatic joint.
     Position(usize),
     /// The sine of a sum of angles.
     Sine(Argument),
-    /// Its cosine.
+    /// The cosine of a sum of angles.
     Cosine(Argument),
-    /// q̇
+    /// The rate q̇ of a joint.
     Rate(usize),
-    /// q̈
+    /// The acceleration q̈ of a joint.
     Acceleration(usize),
 }
 
-/// The class of a factor; sums are collected by the later classes first.
+/// The class of a factor; terms are collected by later classes first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Class {
     Constant,
@@ -47,7 +47,7 @@ impl Factor {
         }
     }
 
-    /// The factor of a letter.
+    /// Makes the factor of a letter.
     pub(crate) fn of(symbol: Symbol) -> Self {
         match symbol {
             Symbol::Constant(index) => Self::Constant(index),
@@ -59,7 +59,7 @@ impl Factor {
         }
     }
 
-    /// The factor as a polynomial in letters.
+    /// Returns the factor as a polynomial in letters.
     #[cfg(test)]
     pub(crate) fn expanded(&self) -> Polynomial {
         match self {
@@ -73,7 +73,7 @@ impl Factor {
     }
 }
 
-/// Sine and cosine of a sum of angles, by the addition theorems.
+/// Returns sine and cosine of a sum of angles, by the addition theorems.
 #[cfg(test)]
 fn sine_cosine(argument: &Argument) -> (Polynomial, Polynomial) {
     let mut sum = (Polynomial::zero(), Polynomial::integer(1));

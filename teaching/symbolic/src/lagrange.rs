@@ -1,13 +1,13 @@
-//! The equations of motion by Lagrange, from the energies: the independent side.
+//! Derives the equations of motion by Lagrange's method, from the energies, as an independent check.
 //!
-//! It shares the letters of the table with the seven steps and nothing else: frames are placed in the base frame by the
-//! four turns and shifts of a row, velocities are Jacobians, which are derivatives of positions, and
+//! It has only the letters of the table in common with the seven steps: frames are placed in the base frame by the four
+//! rotations and translations of a row, velocities are given by Jacobians, which are derivatives of positions, and
 //!
 //! ```text
 //! M = Σ m Jvᵀ Jv + Jωᵀ (R Ī Rᵀ) Jω      c_ijk = ½ (∂M_ij/∂q_k + ∂M_ik/∂q_j - ∂M_jk/∂q_i)      γ_i = -∂/∂q_i Σ m g·c
 //! ```
 //!
-//! A first moment h beside the mass has v · (ω × R h) in the kinetic energy and -g · R h in the potential one.
+//! A first moment h in addition to the mass adds v · (ω × R h) to the kinetic and -g · R h to the potential energy.
 
 use rne_model::{Convention, JointKind};
 
@@ -18,7 +18,7 @@ use crate::rational::{exact, fraction};
 use crate::table::{Row, Table};
 use crate::vector::{Matrix, Vector};
 
-/// A frame in the base frame.
+/// Rotation and origin of a frame, in the base frame.
 #[derive(Clone)]
 struct Frame {
     rotation: Matrix,
@@ -40,7 +40,8 @@ impl Frame {
     }
 }
 
-/// The axis of a joint and the frame of its link: Rz(θ) Tz(d) Tx(a) Rx(α), or Rx(α) Tx(a) Rz(θ) Tz(d).
+/// Returns the axis of a joint and the frame of its link: Rz(θ) Tz(d) Tx(a) Rx(α) for standard rows, Rx(α) Tx(a) Rz(θ)
+/// Tz(d) for modified ones.
 fn placed(before: &Frame, row: &Row, convention: Convention) -> (Vector, Frame) {
     let along_x = Vector([row.a.clone(), Polynomial::zero(), Polynomial::zero()]);
     let along_z = Vector::along_z(row.d.clone());
@@ -56,25 +57,26 @@ fn placed(before: &Frame, row: &Row, convention: Convention) -> (Vector, Frame) 
     }
 }
 
-/// Where the row of a joint begins, behind the frame of its parent: Rz(yaw) Ry(pitch) Rx(roll) of right angles.
+/// Returns the frame where the row of a joint begins: the frame of its parent, moved by a placement with right angles,
+/// Rz(yaw) Ry(pitch) Rx(roll).
 fn beginning(parent: &Frame, table: &Table, joint: usize) -> Frame {
     let Some(branch) = &table.robot.joints[joint].branch else { return parent.clone() };
     let number = |value: f64| Polynomial::number(exact(value));
     let [roll, pitch, yaw] = branch.placement.rpy.map(|angle| (number(angle.sin), number(angle.cos)));
-    // Ry is Rx about another axis: Rz(π/2) Rx Rz(-π/2)
+    // Ry = Rz(π/2) Rx Rz(-π/2)
     let quarter = Matrix::about_z(&(Polynomial::integer(1), Polynomial::zero()));
     let about_y = &(&quarter * &Matrix::about_x(&pitch)) * &quarter.transpose();
     let placed = parent.shifted(&Vector(branch.placement.xyz.map(number)));
     placed.turned(&Matrix::about_z(&yaw)).turned(&about_y).turned(&Matrix::about_x(&roll))
 }
 
-/// Whether a joint turns a link.
+/// Whether a joint is revolute and moves a link.
 fn turns(table: &Table, joint: usize, link: usize) -> bool {
     let mut carriers = std::iter::successors(Some(link), |&link| table.robot.parent(link));
     table.rows[joint].kind == JointKind::Revolute && carriers.any(|carrier| carrier == joint)
 }
 
-/// M, the Christoffel symbols and γ.
+/// Derives M, the Christoffel symbols and γ.
 pub(crate) fn equations(table: &Table) -> Result<Equations, TooLong> {
     let dof = table.rows.len();
     let zero = Polynomial::zero();
@@ -112,7 +114,7 @@ pub(crate) fn equations(table: &Table) -> Result<Equations, TooLong> {
         mass_matrix[i][i] = &mass_matrix[i][i] + &row.rotor;
         frames.push(frame);
     }
-    // only the upper half was summed
+    // only the upper triangle was computed
     let element = |j: usize, k: usize| mass_matrix[j.min(k)][j.max(k)].clone();
     let mass_matrix: Vec<Vec<Polynomial>> = (0..dof).map(|j| (0..dof).map(|k| element(j, k)).collect()).collect();
     let symbol = |i: usize, j: usize, k: usize| {

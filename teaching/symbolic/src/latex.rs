@@ -1,4 +1,5 @@
-//! The document in LaTeX: an article with amsmath, which every TeX has; or its equations for an article or for slides.
+//! Writes the document in LaTeX: an article with the common package amsmath, or only its equations, for an article or
+//! for slides.
 
 use std::fmt::Write as _;
 
@@ -6,23 +7,23 @@ use crate::ClosedForm;
 use crate::document::{Item, sections};
 use crate::notation::{Script, latex_text};
 
-/// The use of a text in LaTeX.
+/// The kind of LaTeX text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LatexStyle {
     /// A document that compiles by itself.
     #[default]
     Article,
-    /// Equations alone, for `\input` into a document with amsmath.
+    /// Only equations, for `\input` into a document with amsmath.
     Body,
-    /// A frame of beamer for each torque, then a frame for each other section of equations, for `\input`.
+    /// A beamer frame for each torque, then a frame for each other section with equations, for `\input`.
     Beamer,
 }
 
-/// Columns of a terminal whose formulas fill a line of the page.
+/// Width, in columns of a terminal, of formulas that fill a line of the page.
 const COLUMNS: usize = 78;
 
-/// Columns of a terminal whose formulas fill a line of a slide, in small letters.
+/// Width, in columns of a terminal, of formulas that fill a line of a slide in small letters.
 const COLUMNS_OF_SLIDE: usize = 54;
 
 const HEAD: &str = r"\documentclass{article}
@@ -50,7 +51,7 @@ pub(crate) fn latex(form: &ClosedForm, title: &str, style: LatexStyle) -> String
         LatexStyle::Beamer => {
             let mut text = format!("% {}; frames for beamer\n", latex_text(title));
             for (at, section) in sections(form, Script::Latex).iter().enumerate() {
-                // the torques come first, a frame for each
+                // the first section with equations has the torques, a frame for each
                 let is_torques = at == usize::from(form.joints() < form.dof) && form.is_closed();
                 let parts: Vec<&[Item]> =
                     if is_torques { section.items.chunks(1).collect() } else { vec![section.items.as_slice()] };
@@ -67,7 +68,7 @@ pub(crate) fn latex(form: &ClosedForm, title: &str, style: LatexStyle) -> String
     }
 }
 
-/// A slide with formulas of a section; long ones go on in another slide.
+/// Writes a slide with formulas of a section; long formulas continue on another slide.
 fn frame(text: &mut String, title: &str, items: &[Item]) {
     if is_of_equations(items) {
         let _ = writeln!(text, "\n\\begin{{frame}}[allowframebreaks]{{{title}}}\n\\small\\allowdisplaybreaks");
@@ -76,12 +77,12 @@ fn frame(text: &mut String, title: &str, items: &[Item]) {
     }
 }
 
-/// Whether a section has equations, or the values of their letters: all others are words about the whole.
+/// Whether a section has equations or values of letters, and not only words.
 fn is_of_equations(items: &[Item]) -> bool {
     items.iter().any(|item| !matches!(item, Item::Words(_)))
 }
 
-/// The formulas, words and lists of a section.
+/// Writes the formulas, words and lists of a section.
 fn content(text: &mut String, items: &[Item], columns: usize) {
     let mut rows: Vec<String> = Vec::new();
     for item in items {
@@ -101,7 +102,7 @@ fn content(text: &mut String, items: &[Item], columns: usize) {
     aligned(text, &mut rows);
 }
 
-/// The rows of an item; none of words.
+/// Returns the rows of a formula; empty for words.
 fn rows_of(item: &Item, columns: usize) -> Vec<String> {
     let Item::Formula { left, width, right } = item else { return Vec::new() };
     let lines = match columns {
@@ -127,7 +128,7 @@ fn article(form: &ClosedForm, title: &str) -> String {
     text
 }
 
-/// Formulas below one another.
+/// Writes aligned formulas, one below the other.
 fn aligned(text: &mut String, rows: &mut Vec<String>) {
     if !rows.is_empty() {
         let _ = writeln!(text, "\\begin{{align*}}\n{}\n\\end{{align*}}", rows.join(" \\\\\n"));
@@ -135,7 +136,7 @@ fn aligned(text: &mut String, rows: &mut Vec<String>) {
     }
 }
 
-/// Words and formulas in turns.
+/// Writes alternating words and formulas.
 fn mixed(parts: &[String]) -> String {
     let part = |(at, part): (usize, &String)| match at % 2 {
         0 => latex_text(part),

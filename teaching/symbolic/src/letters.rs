@@ -1,4 +1,4 @@
-//! The letters of a closed form with their meaning: constants by their values, and angles by the joint variables.
+//! Explains the letters of a closed form: constants by their values, and angles by the joint variables.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use crate::notation::{Notation, Script};
 use crate::symbol::{Angle, Constant, Symbol};
 use crate::table::Table;
 
-/// The section on the meaning of the letters.
+/// Returns the section on the meaning of the letters.
 pub(crate) fn letters(composer: &Composer<'_>, table: &Table, used: &BTreeSet<Symbol>) -> Option<Section> {
     let notation = &composer.notation;
     let constants: Vec<usize> = used
@@ -42,7 +42,7 @@ pub(crate) fn letters(composer: &Composer<'_>, table: &Table, used: &BTreeSet<Sy
     (!items.is_empty()).then(|| Section { title: words("Where"), items })
 }
 
-/// The constants that are parameters, or the others, with their values and units.
+/// Returns the constants that are parameters of the file, or all others, with their values and units.
 fn values(notation: &Notation<'_>, table: &Table, constants: &[usize], is_parameter: bool) -> Vec<(String, String)> {
     let all = constants.iter().filter_map(|index| Some((*index, table.constants.0.get(*index)?)));
     let value = |(index, constant): (usize, &Constant)| {
@@ -53,7 +53,7 @@ fn values(notation: &Notation<'_>, table: &Table, constants: &[usize], is_parame
     all.filter(|(_, constant)| constant.is_parameter == is_parameter).map(value).collect()
 }
 
-/// The meanings of the letters with indices that occur.
+/// Returns the meanings of the letters with indices, such as m1, that occur.
 fn meanings(table: &Table, constants: &[usize]) -> Vec<&'static str> {
     let constants = constants.iter().map(|index| &table.constants.0[*index]);
     let names: Vec<&str> =
@@ -74,7 +74,8 @@ fn meanings(table: &Table, constants: &[usize]) -> Vec<&'static str> {
     all.into_iter().filter(|(is_used, _)| *is_used).map(|(_, meaning)| meaning).collect()
 }
 
-/// The angles of the table that occur, with their units: those of joints by q, the others by their values.
+/// Returns the angles of the table that occur, with their units: those of joints by their variable q, the others by
+/// their values.
 fn angles(notation: &Notation<'_>, table: &Table, used: &BTreeSet<Symbol>) -> Vec<(String, String)> {
     let mut angles = Vec::new();
     for (angle, turn) in &table.angles {
@@ -99,7 +100,7 @@ fn angles(notation: &Notation<'_>, table: &Table, used: &BTreeSet<Symbol>) -> Ve
     angles
 }
 
-/// The offsets of sliding joints that occur, by q, with their unit.
+/// Returns the offsets d of prismatic joints that occur, by their variable q, with their unit.
 fn lengths(notation: &Notation<'_>, table: &Table, used: &BTreeSet<Symbol>) -> Vec<(String, String)> {
     let slides = table.rows.iter().enumerate().filter(|(joint, row)| {
         row.kind == JointKind::Prismatic && !row.d_constant.is_zero() && used.contains(&Symbol::Position(*joint))
@@ -114,12 +115,12 @@ fn lengths(notation: &Notation<'_>, table: &Table, used: &BTreeSet<Symbol>) -> V
     slides.map(length).collect()
 }
 
-/// A number of the file.
+/// Formats a number of the file.
 fn number(value: f64) -> String {
     format!("{value}")
 }
 
-/// Words without Greek letters, which a page has in mathematics alone.
+/// Replaces Greek letters in words for LaTeX, which has them only in mathematics.
 fn script_words(notation: &Notation<'_>, text: &str) -> String {
     if notation.script == Script::Latex { text.replace('θ', "theta") } else { text.to_owned() }
 }
@@ -128,7 +129,7 @@ fn with_pi(notation: &Notation<'_>, text: &str) -> String {
     if notation.script == Script::Latex { text.replace('π', r"\pi") } else { text.to_owned() }
 }
 
-/// A constant angle: a right one as a multiple of π.
+/// Formats a constant angle; multiples of a right angle as multiples of π.
 fn angle(turn: &rne_model::Angle) -> String {
     let quarters = (turn.radians / std::f64::consts::FRAC_PI_2).round();
     if turn.right.is_none() || quarters.abs() > 4.0 || quarters == 0.0 {

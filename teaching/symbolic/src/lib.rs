@@ -1,9 +1,9 @@
 //! The dynamics of an arm in closed form, as a lecture writes them: τ = M(θ)θ̈ + h(θ,θ̇) + γ(θ).
 //!
 //! The compiler's seven steps of recursive Newton-Euler run over polynomials with exact fractions, whose letters are
-//! the parameters of the robot file and the other numbers of its table. The torques are sorted into the mass matrix,
-//! Christoffel's symbols and gravity, held against Lagrange's equations, and collected for reading. What is printed is
-//! multiplied out again and must be what was derived. Data in, data out: nothing here opens a file or prints.
+//! the parameters of the robot file and the other numbers of its table. The torques are split into the mass matrix,
+//! Christoffel symbols and gravity, compared with Lagrange's equations, and collected for reading. Written formulas are
+//! multiplied out again and must be equal to the derived ones. This crate does not open files and does not print.
 //!
 //! ```
 //! use rne_symbolic::{ClosedForm, read};
@@ -63,25 +63,25 @@ use crate::equations::Equations;
 use crate::table::Table;
 use crate::written::Written;
 
-/// Largest number of lines of text for one joint, its torque in parts: what is longer is no formula to read.
+/// Largest number of lines of text for one joint, with its torque in parts; a longer formula is not readable.
 pub const MOST_LINES: usize = 60;
 
-/// The equations of motion of an arm in letters, or its recursion in letters where they are too long.
+/// The equations of motion of an arm in letters or, if they are too long, its recursion in letters.
 #[derive(Debug)]
 pub struct ClosedForm {
     table: Table,
-    /// Joints of the robot, of which the form may have the first only.
+    /// Number of joints of the robot; the form may have only the first of them.
     dof: usize,
-    /// `Err` where a page does not hold it.
+    /// The equations; `Err` if they are too long for a page.
     written: Result<(Equations, Written), TooLong>,
-    /// Number of joints from the base whose closed form fits, if that of all does not.
+    /// Number of joints from the base whose closed form fits a page, if that of all does not.
     shorter: Option<usize>,
 }
 
-/// More joints than these have no form that fits a page, unless they all slide.
+/// Largest number of joints with a form that fits a page, unless all joints are prismatic.
 const MOST_JOINTS: usize = 4;
 
-/// The equations of an arm, if they are short enough and have only the angles of the table.
+/// Derives the equations of an arm, if they are short enough and have only the angles of the table.
 fn equations(table: &Table) -> Result<(Equations, Written), TooLong> {
     if table.oblique().is_some() {
         return Err(TooLong);
@@ -92,9 +92,9 @@ fn equations(table: &Table) -> Result<(Equations, Written), TooLong> {
 }
 
 impl ClosedForm {
-    /// The closed form of the first `joints` joints of a robot, all of them if there are fewer. The links behind are
-    /// left away with their masses. Numbers that depend on the run-time parameters of `robot` are formulas of these:
-    /// [`read`] takes every parameter of a file for one.
+    /// Derives the closed form of the first `joints` joints of a robot, or of all joints if there are fewer. The links
+    /// after them are removed with their masses. Numbers that depend on the run-time parameters of `robot` are formulas
+    /// of these; [`read`] makes every possible parameter of a file a run-time parameter.
     #[must_use]
     pub fn of(robot: &Robot, joints: usize) -> Self {
         let table = Table::new(robot, joints);
@@ -105,26 +105,26 @@ impl ClosedForm {
         Self { dof: robot.dof(), table, written, shorter }
     }
 
-    /// Joints that the form has.
+    /// Number of joints in the form.
     #[must_use]
     pub fn joints(&self) -> usize {
         self.table.rows.len()
     }
 
-    /// The number of joints from the base whose closed form fits a page, where that of all does not.
+    /// The number of joints from the base whose closed form fits a page, if that of all does not.
     #[must_use]
     pub fn shorter(&self) -> Option<usize> {
         self.shorter
     }
 
-    /// Whether the equations are short enough to be read; otherwise there is the recursion in letters.
+    /// Whether the equations are short enough to be read; otherwise, the form is the recursion in letters.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.written.is_ok()
     }
 
-    /// Whether the equations are identical, as polynomials, with those that Lagrange's method gives; `None` if there is
-    /// no closed form, or if those of Lagrange grow too long on the way.
+    /// Whether the equations are identical, as polynomials, with those of Lagrange's method; `None` if there is no
+    /// closed form, or if the derivation by Lagrange's method becomes too long.
     #[must_use]
     pub fn is_lagranges(&self) -> Option<bool> {
         let (equations, _) = self.written.as_ref().ok()?;
@@ -132,8 +132,8 @@ impl ClosedForm {
         Some(lagranges == *equations)
     }
 
-    /// The torques for numbers: joint variables q, rates and accelerations, and the values of the letters in the file.
-    /// `None` where there is no closed form.
+    /// Evaluates the torques for joint variables q, rates and accelerations, with the values of the letters in the
+    /// file. `None` if there is no closed form.
     #[must_use]
     pub fn torques(&self, q: &[f64], qd: &[f64], qdd: &[f64]) -> Option<Vec<f64>> {
         let (equations, _) = self.written.as_ref().ok()?;
@@ -141,25 +141,25 @@ impl ClosedForm {
         Some((0..self.joints()).map(torque).collect())
     }
 
-    /// The element M_ij, joints from 0, in one line; `None` where there is no closed form or no such element.
+    /// Returns the element M_ij, joints from 0, in one line; `None` if there is no closed form or no such element.
     #[must_use]
     pub fn mass(&self, i: usize, j: usize) -> Option<String> {
         self.one_line(|written| written.mass_matrix.get(i)?.get(j))
     }
 
-    /// The Christoffel symbol c_ijk, joints from 0, in one line: h_i = Σ c_ijk q̇_j q̇_k.
+    /// Returns the Christoffel symbol c_ijk, joints from 0, in one line: h_i = Σ c_ijk q̇_j q̇_k.
     #[must_use]
     pub fn christoffel(&self, i: usize, j: usize, k: usize) -> Option<String> {
         self.one_line(|written| written.christoffel.get(i)?.get(j)?.get(k))
     }
 
-    /// γ_i, joints from 0, in one line.
+    /// Returns the gravity torque γ_i, joints from 0, in one line.
     #[must_use]
     pub fn gravity(&self, i: usize) -> Option<String> {
         self.one_line(|written| written.gravity.get(i))
     }
 
-    /// τ_i, joints from 0, in one line: accelerations, rates, gravity.
+    /// Returns the torque τ_i, joints from 0, in one line: terms with accelerations, rates, then gravity.
     #[must_use]
     pub fn torque(&self, i: usize) -> Option<String> {
         self.one_line(|written| written.torques.get(i))
@@ -170,20 +170,20 @@ impl ClosedForm {
         of(written).map(|sum| written::one_line(&self.table, sum))
     }
 
-    /// The form as text in Unicode, in lines of at most 80 columns.
+    /// Returns the form as text in Unicode, in lines of at most 80 columns.
     #[must_use]
     pub fn text(&self) -> String {
         self.text_spelt(str::to_owned)
     }
 
-    /// The text with letters spelt otherwise, such as `theta1` for θ1: each part of a line is given to `spelling`
-    /// before lines are broken.
+    /// Returns the text with other spellings of letters, such as `theta1` for θ1: `spelling` converts each part of a
+    /// line before lines are broken.
     #[must_use]
     pub fn text_spelt(&self, spelling: impl Fn(&str) -> String) -> String {
         text::text(self, spelling)
     }
 
-    /// The form in LaTeX with the package amsmath; `title` is any text.
+    /// Returns the form in LaTeX with the package amsmath; `title` may be any text.
     #[must_use]
     pub fn latex(&self, title: &str, style: LatexStyle) -> String {
         latex::latex(self, title, style)

@@ -1,4 +1,4 @@
-//! Formulas in lines: a sum that is too wide goes on below, outside of parentheses where it can.
+//! Breaks formulas into lines, outside of parentheses if possible.
 
 use num_traits::Signed;
 use unicode_width::UnicodeWidthStr as _;
@@ -6,30 +6,30 @@ use unicode_width::UnicodeWidthStr as _;
 use crate::collected::{Sum, Term, is_unit};
 use crate::notation::{Notation, Script};
 
-/// A stretch of a formula that is not broken.
+/// A piece of a formula that is not broken.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
-    /// In the script.
+    /// The text in the script.
     text: String,
-    /// Columns on a terminal, of which those of a page are a multiple.
+    /// Width in columns of a terminal; the width on a page is proportional to it.
     width: usize,
     /// Number of parentheses that are open before it.
     depth: usize,
 }
 
-/// A formula as pieces; before each but the first a line may end.
+/// A formula as pieces; a line may end before each, except the first.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pieces(Vec<Piece>);
 
 impl Pieces {
-    /// A sum; 0 where there is nothing.
+    /// Makes the pieces of a sum; 0 for an empty sum.
     pub(crate) fn of(sum: &Sum, notation: &Notation<'_>) -> Self {
         let mut writer = Writer { notation: *notation, plain: Script::Unicode, pieces: Vec::new() };
         writer.sum(sum, 0);
         Self(writer.pieces)
     }
 
-    /// Terms that are written already, with their signs: `M11 θ̈1 + h1`.
+    /// Makes the pieces of terms that are already written, in the script and as plain text: `M11 θ̈1 + h1`.
     pub(crate) fn of_terms(terms: &[(String, String)]) -> Self {
         let piece = |(at, (text, plain)): (usize, &(String, String))| {
             let sign = if at == 0 { "" } else { "+ " };
@@ -42,7 +42,7 @@ impl Pieces {
         Self(terms.iter().enumerate().map(piece).collect())
     }
 
-    /// The components of a vector.
+    /// Makes the pieces of the components of a vector.
     pub(crate) fn components(components: &[Sum], notation: &Notation<'_>) -> Self {
         let mut writer = Writer { notation: *notation, plain: Script::Unicode, pieces: Vec::new() };
         writer.push("(".to_owned(), 1, 0, true);
@@ -57,7 +57,7 @@ impl Pieces {
         Self(writer.pieces)
     }
 
-    /// Rewrites the pieces in other letters.
+    /// Converts the pieces to another spelling.
     pub(crate) fn spelt(self, spelling: impl Fn(&str) -> String) -> Self {
         let piece = |piece: Piece| {
             let text = spelling(&piece.text);
@@ -66,18 +66,19 @@ impl Pieces {
         Self(self.0.into_iter().map(piece).collect())
     }
 
-    /// Breaks a formula into lines of at most `most` columns, the first of them after `head` columns; with each line
-    /// the depth in which it begins.
+    /// Breaks a formula into lines of at most `most` columns; the first begins after `head` columns. Returns each line
+    /// with the depth of parentheses at its beginning.
     pub(crate) fn lines(&self, head: usize, indent: usize, most: usize) -> Vec<(usize, String)> {
         self.lines_with(head, indent, most, 4)
     }
 
-    /// Like [`Self::lines`], but a line ends outside all parentheses wherever it can, however short it is then.
+    /// Like [`Self::lines`], but a line ends outside all parentheses if possible, even if it is very short then.
     pub(crate) fn outer_lines(&self, head: usize, indent: usize, most: usize) -> Vec<(usize, String)> {
         self.lines_with(head, indent, most, usize::MAX)
     }
 
-    /// A line that ends outside all parentheses may be as short as one part in `least` of what fits.
+    /// Breaks a formula into lines. A line that ends outside all parentheses must fill at least the part 1 / `least` of
+    /// what fits.
     fn lines_with(&self, head: usize, indent: usize, most: usize, least: usize) -> Vec<(usize, String)> {
         let mut lines = Vec::new();
         let mut rest = self.0.as_slice();
@@ -101,7 +102,8 @@ impl Pieces {
         lines
     }
 
-    /// The outermost place to break at, unless that leaves most of the line empty; the last one of equals.
+    /// Returns the break with the smallest depth of parentheses that does not leave most of the line empty; the last
+    /// one if several are equal.
     fn best_break(pieces: &[Piece], fitting: usize, least: usize) -> usize {
         let widths: usize = pieces[..fitting].iter().map(|piece| piece.width + 1).sum();
         let mut column = 0;
@@ -120,7 +122,7 @@ impl Pieces {
 
 struct Writer<'c> {
     notation: Notation<'c>,
-    /// Widths are those of this script.
+    /// The script by which widths are computed.
     plain: Script,
     pieces: Vec<Piece>,
 }
@@ -142,7 +144,7 @@ impl Writer<'_> {
         }
     }
 
-    /// A term behind its sign.
+    /// Writes a term without its sign.
     fn term(&mut self, term: &Term, depth: usize) {
         let plain = Notation { script: self.plain, ..self.notation };
         let factors = |notation: &Notation<'_>, is_after: bool| {

@@ -1,4 +1,4 @@
-//! Letters, powers and fractions, in Unicode for a terminal and in LaTeX.
+//! Writes letters, powers and fractions in Unicode for a terminal and in LaTeX.
 
 use rne_model::JointKind;
 
@@ -6,16 +6,16 @@ use crate::factor::{Argument, Factor};
 use crate::rational::{Rational, Spelling, spelling};
 use crate::symbol::{Angle, Constants};
 
-/// The place at which a formula is read.
+/// The script in which a formula is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Script {
-    /// A terminal.
+    /// Unicode for a terminal.
     Unicode,
-    /// The mathematics of LaTeX.
+    /// Mathematics of LaTeX.
     Latex,
 }
 
-/// The letters of an arm in a script.
+/// Writes the letters of an arm in a script.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Notation<'c> {
     pub(crate) script: Script,
@@ -25,7 +25,7 @@ pub(crate) struct Notation<'c> {
 }
 
 impl Notation<'_> {
-    /// A letter with an index.
+    /// Writes a letter with an index.
     pub(crate) fn indexed(&self, letter: &str, index: &str) -> String {
         match self.script {
             Script::Unicode => format!("{letter}{index}"),
@@ -34,13 +34,13 @@ impl Notation<'_> {
         }
     }
 
-    /// The indices of a matrix or of a Christoffel symbol; with commas once there are two digits.
+    /// Writes the indices of a matrix or a Christoffel symbol, with commas if there are more than nine joints.
     pub(crate) fn indices(&self, indices: &[usize]) -> String {
         let separator = if self.kinds.len() > 9 { "," } else { "" };
         indices.iter().map(|index| (index + 1).to_string()).collect::<Vec<_>>().join(separator)
     }
 
-    /// A Greek or other letter.
+    /// Writes a Greek or other letter.
     pub(crate) fn letter(&self, unicode: &'static str) -> &'static str {
         match (self.script, unicode) {
             (Script::Unicode, _) => unicode,
@@ -57,7 +57,7 @@ impl Notation<'_> {
         }
     }
 
-    /// θ or d of a joint with a number of dots.
+    /// Writes θ or d of a joint with a number of dots.
     pub(crate) fn variable(&self, joint: usize, dots: usize) -> String {
         let is_revolute = self.kinds.get(joint) == Some(&JointKind::Revolute);
         let letters = if is_revolute { ["θ", "θ̇", "θ̈"] } else { ["d", "ḋ", "d̈"] };
@@ -76,7 +76,7 @@ impl Notation<'_> {
         self.named(self.constants.0.get(index).map_or("", |constant| constant.name.as_str()))
     }
 
-    /// A constant by its name.
+    /// Writes the name of a constant.
     pub(crate) fn named(&self, name: &str) -> String {
         match self.script {
             Script::Unicode => name.to_owned(),
@@ -84,7 +84,7 @@ impl Notation<'_> {
         }
     }
 
-    /// A power of a factor.
+    /// Writes a power of a factor.
     pub(crate) fn power(&self, factor: &Factor, exponent: i32) -> String {
         let power = self.exponent(exponent);
         match factor {
@@ -116,7 +116,7 @@ impl Notation<'_> {
         }
     }
 
-    /// A raised number; nothing for 1.
+    /// Writes an exponent; nothing for 1.
     pub(crate) fn exponent(&self, exponent: i32) -> String {
         match (self.script, exponent) {
             (_, 1) => String::new(),
@@ -135,7 +135,7 @@ impl Notation<'_> {
         }
     }
 
-    /// The magnitude of a number.
+    /// Writes the magnitude of a number.
     pub(crate) fn magnitude(&self, number: &Rational) -> String {
         match (spelling(number), self.script) {
             (Spelling::Plain(text), _) => text,
@@ -144,7 +144,7 @@ impl Notation<'_> {
         }
     }
 
-    /// The sign between factors.
+    /// Returns the separator between factors.
     pub(crate) fn times(&self) -> &'static str {
         match self.script {
             Script::Unicode => " ",
@@ -153,16 +153,16 @@ impl Notation<'_> {
     }
 }
 
-/// Greek letters that LaTeX knows, as parameters are called.
+/// Names of parameters that LaTeX has as Greek letters.
 const GREEK: [&str; 22] = [
     "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu", "xi",
     "rho", "sigma", "tau", "phi", "chi", "psi", "omega", "pi",
 ];
 
-/// Characters of a word in LaTeX: a line of the page holds several.
+/// Largest number of characters of a word in LaTeX, so that several fit on a line.
 const LONGEST_WORD: usize = 32;
 
-/// A word as it is printed: its beginning alone, where it is so long that TeX could not even measure the line.
+/// Cuts off a word that is so long that TeX could not measure the line.
 fn shortened(word: &str) -> String {
     if word.len() <= LONGEST_WORD {
         return word.to_owned();
@@ -170,8 +170,8 @@ fn shortened(word: &str) -> String {
     word.chars().take(LONGEST_WORD).chain("\\ldots ".chars()).collect()
 }
 
-/// The name of a constant in LaTeX: m1 is m with an index, longer words stay words, of which much too long ones have
-/// their beginning alone. Names are letters, digits and underscores, and primes behind them.
+/// Writes the name of a constant in LaTeX: m1 is m with an index, and longer words stay words, which are cut off if
+/// they are much too long. Names consist of letters, digits and underscores, with primes after them.
 pub(crate) fn latex_name(name: &str) -> String {
     let primes = name.len() - name.trim_end_matches('\'').len();
     let (name, primes) = name.split_at(name.len() - primes);
@@ -192,13 +192,13 @@ pub(crate) fn latex_name(name: &str) -> String {
     format!("{letter}{index}{primes}")
 }
 
-/// A text outside mathematics: what LaTeX would take for a command is written as a letter, and what its fonts may not
-/// have is left out.
+/// Writes a text outside mathematics: special characters of LaTeX are escaped, and characters that its fonts may not
+/// have are left out.
 pub(crate) fn latex_text(text: &str) -> String {
     let mut inert = String::new();
     for c in text.chars() {
         match c {
-            // two of them would become a dash
+            // prevents two hyphens from becoming a dash
             '-' => inert.push_str("-{}"),
             '\\' => inert.push_str(r"\textbackslash{}"),
             '^' => inert.push_str(r"\textasciicircum{}"),
@@ -207,7 +207,7 @@ pub(crate) fn latex_text(text: &str) -> String {
             '>' => inert.push_str(r"\textgreater{}"),
             '|' => inert.push_str(r"\textbar{}"),
             '"' => inert.push_str("''"),
-            // neither a quote with the one behind it, nor a mark turned over with the one before it
+            // prevents ligatures with a second quote and with a question or exclamation mark before it
             '`' => inert.push_str("{}`{}"),
             '#' | '$' | '%' | '&' | '_' | '{' | '}' => {
                 inert.push('\\');

@@ -1,15 +1,15 @@
-//! The parameters of a file that stay letters.
+//! Reads a robot file whose parameters stay letters.
 
 use rne_model::{Reader, Report, Robot};
 
-/// Largest number of parameters that become letters, the last ones of the file: the file is read once more for each.
+/// Largest number of parameters that become letters, the last ones of the file. The file is read once for each.
 const MOST_PARAMETERS: usize = 64;
 
-/// Reads a robot file; every parameter that may vary does. The robot is that of the values in the file.
+/// Reads a robot file, and makes every possible parameter a run-time parameter. The robot has the values of the file.
 ///
-/// A parameter that an angle depends on, or a root, is a number; so is one that is 0. Of two parameters one of which is
-/// defined by the other the one that the table names is a letter: the last one of the file. Of more than 64 parameters
-/// the first ones are numbers. Where the rows of a tree begin is in numbers, too.
+/// A parameter is replaced by its value if an angle or a root depends on it, or if it is 0. If one parameter is defined
+/// by another, the last one of the file, which the table uses, is a letter. If there are more than 64 parameters, the
+/// first ones are replaced by their values. Placements where the rows of a tree begin are numbers, too.
 ///
 /// # Errors
 ///
@@ -19,7 +19,7 @@ pub fn read(name: &str, file: &[u8]) -> Result<Robot, Report> {
     let mut robot = plain.clone();
     let mut free: Vec<&str> = Vec::new();
     for (parameter, _) in plain.parameters.iter().rev().take(MOST_PARAMETERS) {
-        // in the order of the file
+        // keeps the order of the file
         let names: Vec<&str> = std::iter::once(parameter.as_str()).chain(free.iter().copied()).collect();
         if let Ok(checked) = Reader::new(name).trees().run_time(&names).read(file) {
             robot = checked.robot;

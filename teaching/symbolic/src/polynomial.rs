@@ -1,7 +1,7 @@
 //! Polynomials with exact coefficients, in a normal form: two are equal if and only if their terms are.
 //!
-//! The normal form has no square of a sine: sin² x is 1 - cos² x. Constants may have negative exponents, for a file may
-//! divide by a parameter.
+//! The normal form has no square of a sine: sin² x is 1 - cos² x. Constants may have negative exponents, because a file
+//! may divide by a parameter.
 
 use std::collections::BTreeMap;
 use std::ops::{Add, Mul, Neg, Sub};
@@ -11,13 +11,13 @@ use num_traits::{One, Zero};
 use crate::rational::{Rational, fraction};
 use crate::symbol::{Angle, Symbol};
 
-/// Largest number of terms of a polynomial; a page holds fewer.
+/// Largest number of terms of a polynomial, more than fit on a page.
 const MOST_TERMS: usize = 3_000;
 
 /// Largest number of products of terms for one product of polynomials.
 const MOST_PRODUCTS: usize = 60_000;
 
-/// A product of powers, sorted; no exponent is 0.
+/// A product of powers of letters, sorted by the letters, without exponents 0.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub(crate) struct Monomial(pub(crate) Vec<(Symbol, i32)>);
 
@@ -48,13 +48,13 @@ impl Monomial {
         self.0.iter().find(|(known, _)| *known == symbol).map_or(0, |(_, exponent)| *exponent)
     }
 
-    /// The factors for which `is_in` holds, and the others.
+    /// Splits the factors into those for which `is_in` is true, and the others.
     pub(crate) fn split(&self, is_in: impl Fn(Symbol) -> bool) -> (Self, Self) {
         let (inside, outside) = self.0.iter().partition(|(symbol, _)| is_in(*symbol));
         (Self(inside), Self(outside))
     }
 
-    /// The angle of a squared sine, of which products of normal forms have some.
+    /// Returns the angle of a squared sine, which may occur in products of normal forms.
     fn squared_sine(&self) -> Option<Angle> {
         self.0.iter().find_map(|(symbol, exponent)| match symbol {
             Symbol::Sine(angle) if *exponent >= 2 => Some(*angle),
@@ -63,10 +63,10 @@ impl Monomial {
     }
 }
 
-/// A polynomial, or the remark that it grew too long: whatever is computed of that is too long as well.
+/// A polynomial, or the mark that it became too long. Results of computations with a marked polynomial are marked, too.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Polynomial {
-    /// `None` where there would be too many.
+    /// The terms; `None` if there were too many.
     terms: Option<BTreeMap<Monomial, Rational>>,
 }
 
@@ -93,7 +93,7 @@ impl Polynomial {
         Self { terms: Some(terms) }
     }
 
-    /// The terms; `None` where they are too many.
+    /// Returns the terms; `None` if there were too many.
     pub(crate) fn terms(&self) -> Option<&BTreeMap<Monomial, Rational>> {
         self.terms.as_ref()
     }
@@ -106,12 +106,12 @@ impl Polynomial {
         self.terms.as_ref().is_some_and(BTreeMap::is_empty)
     }
 
-    /// The single term, where there is one.
+    /// Returns the only term, if there is exactly one.
     pub(crate) fn single(&self) -> Option<(&Monomial, &Rational)> {
         self.terms.as_ref().filter(|terms| terms.len() == 1)?.iter().next()
     }
 
-    /// 1/x of a single term of constants.
+    /// Returns the reciprocal of a single term of constants; `None` for any other polynomial.
     pub(crate) fn inverse(&self) -> Option<Self> {
         let (monomial, coefficient) = self.single()?;
         let factors = monomial.0.iter().map(|&(symbol, exponent)| match symbol {
@@ -121,7 +121,8 @@ impl Polynomial {
         Some(Self::term(coefficient.recip(), Monomial(factors.collect::<Option<_>>()?)))
     }
 
-    /// The coefficient of this power of letters; the sum over all powers is the polynomial.
+    /// Returns the coefficient of the product `of`, where `is_in` tells the letters of such products. The sum of
+    /// products times coefficients is the polynomial.
     pub(crate) fn coefficient(&self, of: &[(Symbol, i32)], is_in: impl Fn(Symbol) -> bool + Copy) -> Self {
         self.map(|terms| {
             let beside = terms.iter().filter_map(|(monomial, value)| {
@@ -132,7 +133,7 @@ impl Polynomial {
         })
     }
 
-    /// The derivative by the variable of a joint.
+    /// Returns the derivative with respect to the variable of a joint.
     pub(crate) fn by_joint(&self, joint: usize) -> Self {
         let angle = Angle::Joint(joint);
         let (sine, cosine) = (Symbol::Sine(angle), Symbol::Cosine(angle));
@@ -160,7 +161,7 @@ impl Polynomial {
         sum
     }
 
-    /// The value for values of the letters.
+    /// Evaluates the polynomial for values of the letters.
     pub(crate) fn evaluate(&self, value: impl Fn(Symbol) -> f64) -> f64 {
         let Some(terms) = &self.terms else { return f64::NAN };
         let evaluated =
@@ -180,7 +181,7 @@ impl Polynomial {
     }
 }
 
-/// Adds a term to others.
+/// Adds a term to a sum.
 pub(crate) fn enter<K: Ord>(terms: &mut BTreeMap<K, Rational>, key: K, value: Rational) {
     if value.is_zero() {
         return;
@@ -198,7 +199,7 @@ pub(crate) fn enter<K: Ord>(terms: &mut BTreeMap<K, Rational>, key: K, value: Ra
     }
 }
 
-/// Adds a term whose sines may be squared.
+/// Adds a term that may have squared sines.
 fn enter_reduced(terms: &mut BTreeMap<Monomial, Rational>, monomial: Monomial, value: Rational) {
     let Some(angle) = monomial.squared_sine() else { return enter(terms, monomial, value) };
     // s² = 1 - c²
@@ -241,7 +242,7 @@ impl Mul for &Polynomial {
     type Output = Polynomial;
 
     fn mul(self, other: Self) -> Polynomial {
-        // zero of something that is too long is zero
+        // zero times a polynomial that is too long is zero
         if self.is_zero() || other.is_zero() {
             return Polynomial::zero();
         }
@@ -262,7 +263,7 @@ impl Mul for &Polynomial {
     }
 }
 
-/// Operators that take their operands by value.
+/// Implements operators that take their operands by value.
 macro_rules! owned {
     ($($operation:ident $method:ident),*) => {$(
         impl $operation for Polynomial {

@@ -1,20 +1,19 @@
-//! Exact numbers: what a decimal of a robot file stands for, and how fractions are written.
+//! Exact numbers: converts decimals of a robot file to fractions, and writes fractions.
 
 use num_bigint::BigInt;
 pub(crate) use num_rational::BigRational as Rational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 use rne_model::decimal_digits;
 
-/// Up to this denominator a number is read as the fraction that rounds to it: 0.08333333333333333 is 1/12.
+/// Largest denominator of a fraction as which a rounded number is read: 0.08333333333333333 is 1/12.
 const LARGEST_DENOMINATOR: u32 = 360;
 
-/// p/q
+/// Returns the fraction p/q.
 pub(crate) fn fraction(p: i64, q: i64) -> Rational {
     Rational::new(BigInt::from(p), BigInt::from(q))
 }
 
-/// The exact value of a number of the file: a simple fraction that rounds to it, or the decimal as it is written. The
-/// value is finite.
+/// Returns the exact value of a finite number of the file: a simple fraction that rounds to it, or the written decimal.
 pub(crate) fn exact(value: f64) -> Rational {
     #[allow(clippy::cast_possible_truncation)] // an integer of at most 53 bits
     let simple = (1..=LARGEST_DENOMINATOR).find_map(|q| {
@@ -28,12 +27,12 @@ pub(crate) fn exact(value: f64) -> Rational {
     })
 }
 
-/// The nearest number; infinite where it is too large.
+/// Returns the nearest floating-point number; infinite if it is too large.
 pub(crate) fn nearest(rational: &Rational) -> f64 {
     rational.to_f64().unwrap_or(f64::NAN)
 }
 
-/// A magnitude as a person writes it: an integer, a decimal such as 0.4318, or numerator and denominator.
+/// The spelling of a magnitude: an integer, a decimal such as 0.4318, or numerator and denominator.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Spelling {
     /// An integer or a decimal.
@@ -42,7 +41,7 @@ pub(crate) enum Spelling {
     Fraction(String, String),
 }
 
-/// The way in which the magnitude of a number is written.
+/// Returns the spelling of the magnitude of a number.
 pub(crate) fn spelling(rational: &Rational) -> Spelling {
     let (p, q) = (rational.numer().abs(), rational.denom());
     if q.is_one() {
@@ -55,7 +54,7 @@ pub(crate) fn spelling(rational: &Rational) -> Spelling {
     }
 }
 
-/// The digits of p/q, if they end.
+/// Returns p/q as a decimal, if it has finitely many digits.
 fn decimal(p: &BigInt, q: &BigInt) -> Option<String> {
     const MOST_DIGITS: usize = 20;
     let ten = BigInt::from(10);

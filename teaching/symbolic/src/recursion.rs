@@ -1,5 +1,5 @@
-//! The recursion in letters, for an arm whose closed form no page holds: the formulas of the seven steps, and what
-//! they take of each link.
+//! Writes the recursion in letters, for an arm whose closed form is too long for a page: the formulas of the seven
+//! steps, and the constants of each link.
 
 use rne_codegen::Quantity;
 use rne_model::{Convention, JointKind, one_line};
@@ -16,7 +16,7 @@ use crate::vector::{Matrix, Vector};
 use crate::written::MOST_TERMS;
 use crate::{ClosedForm, MOST_LINES, written};
 
-/// A formula of the recursion on a terminal and in LaTeX: left side, right side.
+/// A formula of the recursion: left side and right side, each for a terminal and for LaTeX.
 type Formula = ([&'static str; 2], [&'static str; 2]);
 
 const FORWARD: [Formula; 4] = [
@@ -71,7 +71,8 @@ const BACKWARD: [Formula; 4] = [
     (["τi", r"\tau_i"], ["e · np,i", r"\mathbf e \cdot \mathbf n_{p,i}"]),
 ];
 
-/// The formulas, the constants of each link, and the letters; of a tree the reason why there is no closed form.
+/// Returns sections with the formulas, the constants of each link, and the letters; for a tree, only the reason why
+/// there is no closed form.
 pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Section> {
     let script = composer.notation.script;
     let mut why = vec![no_closed_form(form)];
@@ -90,7 +91,7 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
     let mut forward: Vec<Item> = FORWARD.iter().map(formula).collect();
     let mut backward: Vec<Item> = BACKWARD.iter().map(formula).collect();
     besides(form, script, &mut forward, &mut backward);
-    // words and formulas in turns
+    // words and formulas alternately
     let title = |parts: [&str; 5]| parts.map(str::to_owned).to_vec();
     let forward_title = title(["Forward, ", "i = 1", " to the last, ", "p = i - 1", "; the base stands still"]);
     sections.push(Section { title: forward_title, items: forward });
@@ -119,7 +120,7 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
     sections
 }
 
-/// Formulas of the constants of links, and the polynomials in them.
+/// Collects the formulas of the constants of links, and their polynomials.
 struct LinkFormulas<'c> {
     composer: &'c Composer<'c>,
     collector: Collector<'c>,
@@ -128,10 +129,10 @@ struct LinkFormulas<'c> {
 }
 
 impl LinkFormulas<'_> {
-    /// Adds a vector with an index.
+    /// Adds the formula of a vector with an index.
     fn vector(&mut self, left: &str, index: usize, vector: &Vector) {
         self.seen.extend(vector.0.iter().cloned());
-        // in print vectors are bold, for d is a letter of the table too
+        // vectors are bold in LaTeX, because d is also a letter of the table
         let left = |notation: &Notation<'_>| match notation.script {
             Script::Latex if left.len() == 1 => notation.indexed(&format!("\\mathbf {left}"), &index.to_string()),
             _ => notation.indexed(left, &index.to_string()),
@@ -140,7 +141,7 @@ impl LinkFormulas<'_> {
         self.items.push(self.composer.formula(left, Pieces::components(&sums, &self.composer.notation)));
     }
 
-    /// Adds what the recursion takes of a link, counted from 1.
+    /// Adds the constants of a link, counted from 1, that the recursion uses.
     fn link(&mut self, form: &ClosedForm, link: &Derivation, index: usize) {
         let (composer, rows) = (self.composer, &form.table.rows);
         let i = index - 1;
@@ -178,7 +179,7 @@ impl LinkFormulas<'_> {
     }
 }
 
-/// Why there is no closed form, and of a serial arm what follows.
+/// Explains why there is no closed form and, for a serial arm, what follows instead.
 fn no_closed_form(form: &ClosedForm) -> String {
     if let Some(row) = form.table.oblique() {
         let name = one_line(&form.table.robot.joints[row].name);
@@ -199,7 +200,7 @@ fn no_closed_form(form: &ClosedForm) -> String {
     }
 }
 
-/// The terms of sliding joints, rotors and first moments without mass, in words.
+/// Adds the additional terms of prismatic joints, rotors and first moments without mass, in words.
 fn besides(form: &ClosedForm, script: Script, forward: &mut Vec<Item>, backward: &mut Vec<Item>) {
     let rows = &form.table.rows;
     let math = |unicode: &str, latex: &str| if script == Script::Latex { latex } else { unicode }.to_owned();
@@ -234,7 +235,7 @@ fn besides(form: &ClosedForm, script: Script, forward: &mut Vec<Item>, backward:
     }
 }
 
-/// R_i as a product of turns about x and z.
+/// Writes R_i as a product of rotations about x and z.
 fn turns(notation: &Notation<'_>, before: Option<(&Row, usize)>, row: &Row, joint: usize) -> String {
     let [about_x, about_z] = match notation.script {
         Script::Unicode => ["Rx", "Rz"],

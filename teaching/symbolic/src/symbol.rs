@@ -7,32 +7,32 @@ use crate::notation::latex_name;
 /// An angle whose sine and cosine are letters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Angle {
-    /// θ of the table of a revolute joint, from 0: the joint variable with the constant part of the row.
+    /// θ of a revolute joint, counted from 0: the joint variable plus the constant part of the row.
     Joint(usize),
-    /// α of a row, where it is no right angle.
+    /// α of a row that is no multiple of a right angle.
     Twist(usize),
-    /// θ of a prismatic joint, which is constant, where it is no right angle.
+    /// The constant θ of a prismatic joint that is no multiple of a right angle.
     Turn(usize),
 }
 
-/// A letter. In this order the factors of a product are written.
+/// A letter of the equations. The factors of a product are written in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Symbol {
-    /// A number that the file gives: an index into [`Constants`].
+    /// A number of the file, as an index into [`Constants`].
     Constant(usize),
-    /// d of the table of a prismatic joint, from 0: the joint variable with the constant part of the row.
+    /// d of a prismatic joint, counted from 0: the joint variable plus the constant part of the row.
     Position(usize),
     /// The sine of an angle.
     Sine(Angle),
-    /// Its cosine.
+    /// The cosine of an angle.
     Cosine(Angle),
-    /// q̇ of a joint, from 0.
+    /// The rate q̇ of a joint, counted from 0.
     Rate(usize),
-    /// q̈ of a joint, from 0.
+    /// The acceleration q̈ of a joint, counted from 0.
     Acceleration(usize),
 }
 
-/// The kind of a constant, which decides how a sum is collected.
+/// The kind of a constant, which determines how sums are collected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Kind {
     /// A mass.
@@ -43,19 +43,19 @@ pub(crate) enum Kind {
     Other,
 }
 
-/// A number that the file gives and that stays a letter.
+/// A number of the file that stays a letter.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Constant {
-    /// As it is written, in ASCII: `m1`, `a2`, `x_C2`, `I2_xx`.
+    /// The name in ASCII, such as `m1`, `a2`, `x_C2` or `I2_xx`.
     pub(crate) name: String,
     pub(crate) kind: Kind,
-    /// The value in the file, SI.
+    /// The value in the file, in SI units.
     pub(crate) value: f64,
-    /// `kg`, `m`; nothing for a parameter, whose unit no file says.
+    /// The unit, such as `kg` or `m`; empty for a parameter, whose unit is not in the file.
     pub(crate) unit: &'static str,
-    /// Whether it is one of the `parameters` of the file.
+    /// Whether the constant is one of the `parameters` of the file.
     pub(crate) is_parameter: bool,
-    /// Other elements of the table that are the same number.
+    /// Names of other elements of the table with the same number.
     pub(crate) also: Vec<String>,
 }
 
@@ -69,10 +69,10 @@ impl Constants {
         Symbol::Constant(self.0.len() - 1)
     }
 
-    /// Gives every constant a letter that nothing else in the equations has, neither on a terminal nor in print, where
-    /// `m_1` looks like `m1` and `theta1` like θ1: a table's `m1` is `m1'` beside a parameter of that name, which keeps
-    /// it wherever it first occurs, and a parameter `d2` is `d2'` where the second joint slides. `structure` are the
-    /// names that the equations have for variables, matrices and torques.
+    /// Gives every constant a unique name, both on a terminal and in LaTeX, where `m_1` looks like `m1` and `theta1`
+    /// like θ1. If a parameter has the name `m1`, the mass `m1` of the table becomes `m1'`, wherever they first occur.
+    /// A parameter `d2` becomes `d2'` if the second joint is prismatic. `structure` has the names of variables,
+    /// matrices and torques in the equations.
     pub(crate) fn distinguish(&mut self, structure: impl IntoIterator<Item = String>) {
         let looks = |name: &str| latex_name(name).replace("\\mathit", "").replace(['{', '}'], "");
         let mut taken: HashSet<String> = structure.into_iter().map(|name| looks(&name)).collect();

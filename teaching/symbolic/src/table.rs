@@ -1,8 +1,7 @@
 //! The table of a robot in letters.
 //!
-//! Zeros of the file are zeros here, and right angles are exact. Of the other numbers those that the file writes
-//! by its parameters are formulas of these; each of the rest is a letter, called as textbooks do: m1, a2, d3, x_C2,
-//! I2_xx.
+//! Zeros of the file are zeros here, and right angles are exact. Numbers that the file gives by its parameters are
+//! formulas of these. Each other number is a letter with a name as in textbooks: m1, a2, d3, x_C2, I2_xx.
 
 use rne_model::{
     Angle as Turn, Convention, Entry, FixedFrame, Formula, Inertia, InertiaElement, InertiaReference, JointKind, Robot,
@@ -17,9 +16,9 @@ use crate::vector::{Matrix, Vector};
 #[derive(Clone, Debug)]
 pub(crate) struct Row {
     pub(crate) kind: JointKind,
-    /// Sine and cosine of θ; of a revolute joint they are letters.
+    /// Sine and cosine of θ; they are letters for a revolute joint.
     pub(crate) theta: (Polynomial, Polynomial),
-    /// d; of a prismatic joint a letter.
+    /// The offset d; a letter for a prismatic joint.
     pub(crate) d: Polynomial,
     /// The constant part of d.
     pub(crate) d_constant: Polynomial,
@@ -29,27 +28,27 @@ pub(crate) struct Row {
     pub(crate) mass: Polynomial,
     /// Centre of mass in the link frame of the table.
     pub(crate) com: Vector,
-    /// About the centre of mass, in the axes of the table's link frame.
+    /// Inertia about the centre of mass, in the axes of the table's link frame.
     pub(crate) inertia: Matrix,
-    /// First moment about the end of `com` that no mass accounts for, in the same axes; zero of every body.
+    /// First moment, about the end of `com`, that is not due to the mass, in the same axes; zero for every real body.
     pub(crate) first_moment: Vector,
-    /// G² Jm, where rotors belong to the arm.
+    /// Rotor inertia G² Jm if rotors belong to the arm, otherwise 0.
     pub(crate) rotor: Polynomial,
 }
 
 /// The arm in letters.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
-    /// The robot with the joints of the rows alone.
+    /// The robot, reduced to the joints of the rows.
     pub(crate) robot: Robot,
     pub(crate) convention: Convention,
     pub(crate) rows: Vec<Row>,
     /// The acceleration of gravity in frame 0.
     pub(crate) gravity: Vector,
     pub(crate) constants: Constants,
-    /// The angles that are letters, with their value in the file: of a joint the constant part.
+    /// The angles that are letters, with their values in the file; for a joint, the constant part.
     pub(crate) angles: Vec<(Angle, Turn)>,
-    /// The constant part of d of each prismatic joint, in the file.
+    /// The constant part of d in the file, for each prismatic joint.
     pub(crate) offsets: Vec<f64>,
 }
 
@@ -57,12 +56,12 @@ pub(crate) struct Table {
 struct Letters<'r> {
     robot: &'r Robot,
     constants: Constants,
-    /// The letter of each parameter of the file, once it was met.
+    /// The letter of each parameter of the file; `None` before it is first used.
     parameters: Vec<Option<Symbol>>,
     angles: Vec<(Angle, Turn)>,
 }
 
-/// The parameters of a formula that have its unit: those that it is a sum of, each times a number.
+/// Returns the parameters that have the unit of a formula: its summands, each with a number as factor.
 fn summands(formula: &Formula) -> Vec<usize> {
     match formula {
         Formula::Parameter(index) => vec![*index],
@@ -94,7 +93,7 @@ impl Letters<'_> {
         Polynomial::symbol(symbol)
     }
 
-    /// A formula of parameters; `None` where it divides by a sum.
+    /// Converts a formula of parameters to a polynomial; `None` if it divides by a sum.
     fn formula(&mut self, formula: &Formula, kind: Kind) -> Option<Polynomial> {
         Some(match formula {
             Formula::Number(value) => Polynomial::number(exact(*value)),
@@ -107,7 +106,7 @@ impl Letters<'_> {
         })
     }
 
-    /// A number of the table: zero, a formula, or a letter of this name.
+    /// Returns a number of the table: zero, a formula, or a letter with this name.
     fn number(
         &mut self,
         written: Option<&Formula>,
@@ -118,7 +117,7 @@ impl Letters<'_> {
         if value == 0.0 {
             return Polynomial::zero();
         }
-        // a sum to divide by, or a formula that grew too long: a letter stands for it
+        // a formula that divides by a sum or is too long is replaced by a letter
         let formula = written.and_then(|written| self.formula(written, kind));
         for parameter in written.map(summands).unwrap_or_default() {
             if let Some(Some(Symbol::Constant(at))) = self.parameters.get(parameter)
@@ -139,7 +138,7 @@ impl Letters<'_> {
         self.number(robot.run_time.formula(entry), value, name, kind)
     }
 
-    /// Sine and cosine of a constant angle.
+    /// Returns sine and cosine of a constant angle.
     fn turn(&mut self, angle: Angle, turn: &Turn) -> (Polynomial, Polynomial) {
         if let Some(right) = turn.right {
             let (sine, cosine) = right.sin_cos();
@@ -153,7 +152,7 @@ impl Letters<'_> {
         (Polynomial::symbol(Symbol::Sine(angle)), Polynomial::symbol(Symbol::Cosine(angle)))
     }
 
-    /// The acceleration of gravity: one component is ±g, several are gx, gy, gz.
+    /// Returns the acceleration of gravity: a single component is ±g, several are gx, gy, gz.
     fn gravity(&mut self) -> Vector {
         let components = self.robot.gravity;
         let is_single = components.iter().filter(|component| **component != 0.0).count() == 1;
@@ -168,7 +167,7 @@ impl Letters<'_> {
         }))
     }
 
-    /// The inertia as the file writes it. Principal moments that are the same number are one letter.
+    /// Returns the inertia as written in the file. Principal moments with equal numbers have the same letter.
     fn written_inertia(&mut self, joint: usize) -> Inertia<Polynomial> {
         let (tensor, about) = &self.robot.joints[joint].written_inertia;
         let letter = if *about == InertiaReference::Com { 'I' } else { 'J' };
@@ -205,7 +204,7 @@ impl Letters<'_> {
 }
 
 impl Table {
-    /// The first `joints` rows of a robot; its run-time parameters are letters.
+    /// Makes the table of the first `joints` rows of a robot; its run-time parameters are letters.
     pub(crate) fn new(robot: &Robot, joints: usize) -> Self {
         let mut letters = Letters {
             robot,
@@ -225,7 +224,7 @@ impl Table {
         let mut rows = Vec::with_capacity(robot_rows.len());
         let mut offsets = Vec::new();
         for (i, row) in robot_rows.iter().enumerate() {
-            // row i of a modified table has the length and the twist behind link i - 1; in a tree several rows have
+            // row i of a modified table has the length and the twist after link i - 1; in a tree, several rows may have
             // those of one link
             let behind = match robot.convention {
                 Convention::Modified if robot.is_serial() => i,
@@ -261,19 +260,19 @@ impl Table {
         constants.distinguish(structure(&robot_rows.iter().map(|row| row.kind).collect::<Vec<_>>()));
         let mut robot = robot.clone();
         robot.joints.truncate(rows.len());
-        // the tip is free: no torque depends on its place
+        // the tip is free, so its placement has no effect on torques
         robot.tip_on = None;
         Self { convention: robot.convention, robot, rows, gravity, constants, angles, offsets }
     }
 
-    /// The row that begins at an angle that is not a multiple of a right angle, counted from 0: no fractions tell its
-    /// sine.
+    /// Returns the row, counted from 0, whose beginning is rotated by an angle that is no multiple of a right angle, so
+    /// that its sine is no fraction.
     pub(crate) fn oblique(&self) -> Option<usize> {
         let is_oblique = |branch: &FixedFrame| branch.placement.rpy.iter().any(|angle| angle.right.is_none());
         self.robot.joints.iter().position(|joint| joint.branch.as_ref().is_some_and(is_oblique))
     }
 
-    /// The values of all letters in a state of the arm: positions, rates and accelerations of the joint variables q.
+    /// Returns the value of a letter for positions, rates and accelerations of the joint variables q.
     pub(crate) fn value(&self, symbol: Symbol, q: &[f64], qd: &[f64], qdd: &[f64]) -> f64 {
         let value_of = |values: &[f64], joint: usize| values.get(joint).copied().unwrap_or(f64::NAN);
         let angle = |angle: Angle| {
@@ -294,7 +293,7 @@ impl Table {
     }
 }
 
-/// The names of variables, matrices and torques in the equations, which a parameter might have too.
+/// Returns the names of variables, matrices and torques in the equations, which a parameter may have by chance.
 fn structure(kinds: &[JointKind]) -> Vec<String> {
     let joints = 1..=kinds.len();
     let mut names: Vec<String> = joints
@@ -304,7 +303,7 @@ fn structure(kinds: &[JointKind]) -> Vec<String> {
         .collect();
     let slides = joints.clone().zip(kinds).filter(|(_, kind)| **kind == JointKind::Prismatic);
     names.extend(slides.map(|(i, _)| format!("d{i}")));
-    // more joints than that have commas between their indices
+    // with ten or more joints, indices are separated by commas
     if kinds.len() < 10 {
         for (i, j) in joints.clone().flat_map(|i| joints.clone().map(move |j| (i, j))) {
             names.push(format!("M{i}{j}"));
@@ -314,7 +313,7 @@ fn structure(kinds: &[JointKind]) -> Vec<String> {
     names
 }
 
-/// G² Jm, where rotors belong to the arm; a gear ratio of 1 is no letter.
+/// Returns the rotor inertia G² Jm if rotors belong to the arm, otherwise 0; a gear ratio of 1 is no letter.
 fn rotor(letters: &mut Letters<'_>, joint: usize) -> Polynomial {
     let robot = letters.robot;
     let Some(motor) = robot.joints[joint].motor.filter(|_| robot.rotors) else { return Polynomial::zero() };
@@ -329,14 +328,14 @@ fn rotor(letters: &mut Letters<'_>, joint: usize) -> Polynomial {
     &(&ratio * &ratio) * &inertia
 }
 
-/// A tensor about the centre of mass: as it is, or from that about the origin of the link frame.
+/// Returns an inertia tensor about the centre of mass: unchanged, or converted from the origin of the link frame.
 fn about_com(written: &Inertia<Polynomial>, moved: Option<(&Polynomial, &Vector)>) -> Matrix {
     let Inertia { xx, yy, zz, xy, xz, yz } = written;
     let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
     Matrix([0, 1, 2].map(|i| {
         Vector([0, 1, 2].map(|j| {
             let Some((mass, com)) = moved else { return rows[i][j].clone() };
-            // Steiner: I = J - m (c·c 1 - c cᵀ)
+            // parallel axis theorem: I = J - m (c·c 1 - c cᵀ)
             let square = if i == j { com.dot(com) } else { Polynomial::zero() };
             rows[i][j] - &(mass * &(square - &com.0[i] * &com.0[j]))
         }))

@@ -1,5 +1,5 @@
-//! The seven steps over polynomials against Lagrange's equations, as polynomials; against the runtime, as numbers; and
-//! what is printed against both.
+//! Tests that compare the seven steps over polynomials with Lagrange's equations, as polynomials, and with the runtime,
+//! as numbers, and the written formulas with both.
 
 mod results;
 
@@ -14,7 +14,7 @@ use crate::polynomial::Polynomial;
 use crate::table::Table;
 use crate::{lagrange, read};
 
-/// Uniform rods, the slide on a turning joint and the turning joint on a slide of the specification, in letters.
+/// Textbook arms in letters: uniform rods, a prismatic joint after a revolute one, and the reverse.
 const TEXTBOOK: [&str; 5] = [
     "parameters: {m: 2.5, a: 0.8, g: 9.81}
 convention: standard
@@ -44,7 +44,7 @@ joints:
   - {type: prismatic, dh: {theta: 0, d: 0, a: 0, alpha: pi/2}, link: {mass: m1}}
   - {type: revolute, dh: {theta: 0, d: 0, a: 2*l, alpha: 0},
      link: {mass: m2, com: [-l, 0, 0], inertia: {zz: J2}, physical: false}}",
-    // a parameter in a denominator, an offset, and a tensor about the origin that its parameters make
+    // a parameter in a denominator, an offset, and a tensor about the origin from parameters
     "parameters: {m: 2, r: 0.5, k: 4, l: 0.2}
 convention: modified
 gravity: [0, 0, -9.81]
@@ -55,7 +55,7 @@ joints:
      link: {mass: m/k, com: [0, 1/k - r/(k*l), 0.2], inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}}",
 ];
 
-/// Two pendulums on a cart, and two arms on a column, one of which slides.
+/// Two pendulums on a cart, and two arms on a column, one with a prismatic joint.
 const TREES: [&str; 2] = [
     "parameters: {M: 3, m1: 1, m2: 2, l1: 0.4, l2: 0.7, g: 9.81}
 convention: standard
@@ -92,14 +92,14 @@ fn shipped(name: &str) -> Robot {
     read(name, file.yaml.as_bytes()).expect("it is valid")
 }
 
-/// Cuts an arm after a joint.
+/// Removes the joints of an arm after the first `joints`.
 fn up_to(robot: &Robot, joints: usize) -> Robot {
     let mut first = robot.clone();
     first.joints.truncate(joints);
     first
 }
 
-/// A table of any kind: both conventions, right and other angles, slides, zeros, tensors about either point.
+/// Makes a random table: both conventions, right and other angles, prismatic joints, zeros, tensors about either point.
 fn random_robot(rng: &mut Rng, joints: usize) -> Robot {
     let convention = ["standard", "modified"][rng.usize(..2)];
     let number = |rng: &mut Rng| format!("{:.3}", 0.1 + rng.f64());
@@ -134,7 +134,7 @@ fn random_robots(count: usize) -> Vec<Robot> {
     robots.collect()
 }
 
-/// Puts first moments in the place of masses, in every second link.
+/// Replaces the masses of every second link by first moments.
 fn without_mass(mut robot: Robot) -> Robot {
     for joint in robot.joints.iter_mut().step_by(2) {
         let link = &mut joint.row.link;
@@ -144,7 +144,7 @@ fn without_mass(mut robot: Robot) -> Robot {
     robot
 }
 
-/// The arms of every test below: textbook, shipped, random.
+/// Returns the arms of every test below: textbook, shipped, random.
 fn robots() -> Vec<Robot> {
     let textbook = TEXTBOOK.map(robot);
     let trees = TREES.map(robot);
@@ -166,8 +166,8 @@ fn derived(table: &Table) -> Result<Equations, TooLong> {
     Derivation::new(table, &[]).map(|derivation| Equations::sorted(&derivation.torques()))
 }
 
-/// Two derivations that share the letters of the table alone. A sign of a recursion, of a Jacobian or of a Christoffel
-/// symbol that is wrong makes other polynomials.
+/// Two derivations that have only the letters of the table in common give the same polynomials. A wrong sign in a
+/// recursion, a Jacobian or a Christoffel symbol would change them.
 #[test]
 fn the_seven_steps_are_lagranges_equations() {
     let mut robots_compared = 0;
@@ -175,7 +175,7 @@ fn the_seven_steps_are_lagranges_equations() {
         let table = Table::new(&robot, robot.dof());
         let (Ok(steps), Ok(lagranges)) = (derived(&table), lagrange::equations(&table)) else { continue };
         assert_eq!(steps, lagranges, "{robot:?}");
-        // symmetries that the recursion knows nothing of
+        // symmetries that the recursion does not use
         for i in 0..robot.dof() {
             for j in 0..robot.dof() {
                 assert_eq!(steps.mass_matrix[i][j], steps.mass_matrix[j][i]);
@@ -191,7 +191,7 @@ fn the_seven_steps_are_lagranges_equations() {
     assert!(robots_compared >= 70, "{robots_compared} arms are short enough");
 }
 
-/// Sorting loses no term.
+/// Splitting the torques into parts loses no term.
 #[test]
 fn the_parts_are_the_torque() {
     for robot in robots() {
@@ -218,7 +218,7 @@ fn a_tree_has_a_closed_form() {
     assert!(text.contains("the row of left begins at an angle"), "{text}");
 }
 
-/// A pendulum of a first moment: no mass, no square of its lever.
+/// A pendulum with a first moment but no mass has no square of its lever.
 #[test]
 fn a_first_moment_is_a_letter() {
     let robot = robot(
@@ -276,7 +276,7 @@ fn what_is_collected_is_what_was_derived() {
     assert!(compared > 1000, "{compared} polynomials");
 }
 
-/// Every letter of the list at the end stands there once, with one value, and is no variable.
+/// Every letter of the list at the end occurs once there, with one value, and is no variable.
 #[test]
 fn letters_that_look_alike_are_told_apart() {
     let form = crate::ClosedForm::of(
@@ -293,7 +293,8 @@ joints:
         2,
     );
     let text = form.text();
-    // d2' is the parameter, d2 the slide; m1 the parameter, m1' the mass of the table beside it and beside m_1
+    // d2' is the parameter, d2 the variable of the prismatic joint; m1 and m_1 are parameters next to the mass m1 of
+    // the table
     for part in ["d2' = 0.7", "m1 = 2", "c211' = 0.6", "h1' = 0.3", "g = 4", "m1'' = 7 kg", "g' = 9.81 m/s²"] {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
@@ -308,7 +309,7 @@ joints:
     }
 }
 
-/// A parameter that is a mass and a length: all terms have it, in unlike powers.
+/// A parameter may be both a mass and a length: all terms have it, with different exponents.
 #[test]
 fn a_mass_may_be_a_length_too() {
     let form = crate::ClosedForm::of(
@@ -323,7 +324,7 @@ joints:
         1,
     );
     assert_eq!(form.is_lagranges(), Some(true));
-    // by hand: com at x = 0.5 - k/2 along the link, g along x
+    // calculated by hand: com at x = 0.5 - k/2 along the link, g along x
     let tau = form.torques(&[std::f64::consts::FRAC_PI_2], &[0.0], &[0.0]).expect("a closed form");
     assert!((tau[0] - 0.4 * 9.81 * (0.5 - 0.2)).abs() < 1e-12, "{tau:?}");
 }

@@ -1,4 +1,4 @@
-//! The document as text, 80 columns wide.
+//! Writes the document as text with 80 columns.
 
 use std::fmt::Write as _;
 
@@ -12,7 +12,7 @@ use crate::written::COLUMNS;
 /// Indentation of formulas.
 const INDENT: usize = 2;
 
-/// The document with every letter spelt so.
+/// Returns the document with `spelling` applied to letters.
 pub(crate) fn text(form: &ClosedForm, spelling: impl Fn(&str) -> String) -> String {
     let mut parts = Vec::new();
     for section in sections(form, Script::Unicode) {
@@ -52,7 +52,7 @@ pub(crate) fn text(form: &ClosedForm, spelling: impl Fn(&str) -> String) -> Stri
     parts.join("\n")
 }
 
-/// Words in lines.
+/// Fills lines with words.
 fn filled(text: &mut String, indent: usize, words: impl Iterator<Item = String>) {
     let mut line = " ".repeat(indent);
     let mut is_empty = true;

@@ -1,8 +1,8 @@
-//! Short forms of polynomials in sines and cosines: sums of angles, and squares by Pythagoras.
+//! Finds short forms of polynomials in sines and cosines, by sums of angles and by sin² + cos² = 1.
 //!
-//! A polynomial becomes a sum of e^{ik·θ}. From there it is written anew in other angles, θ1 and θ1 + θ2 for θ1 and θ2,
-//! with either the squares of the sines or those of the cosines, and as a plain sum of sines and cosines. The shortest
-//! wins.
+//! A polynomial is converted to a sum of e^{ik·θ}. From this sum, it is written in other angles, such as θ1 and θ1 + θ2
+//! instead of θ1 and θ2, with squares of either the sines or the cosines, and as a plain sum of sines and cosines. The
+//! shortest form is chosen.
 
 use std::collections::BTreeMap;
 
@@ -16,22 +16,23 @@ use crate::symbol::{Angle, Symbol};
 /// A coefficient with its factors.
 pub(crate) type Product = (Rational, Vec<(Factor, i32)>);
 
-/// Largest number of angles that are added and subtracted in every way; of more angles consecutive ones are added.
+/// Largest number of angles that are added and subtracted in all combinations; if there are more, only consecutive
+/// angles are added.
 const MOST_COMBINED: usize = 3;
 
-/// Largest number of terms of a sum that is changed.
+/// Largest number of terms of a sum that is shortened.
 const MOST_TERMS: usize = 24;
 
-/// Forms that are tried, times the waves of each; the plain ones come first.
+/// Largest work: the number of forms that are tried times the waves of each. The plain forms come first.
 const MOST_WORK: usize = 3_000;
 
-/// Σ (x + iy) e^{ik·θ} by k, one entry for each angle.
+/// A sum Σ (x + iy) e^{ik·θ}: the coefficients (x, y) by k, which has one entry for each angle.
 type Waves = BTreeMap<Vec<i32>, (Rational, Rational)>;
 
 /// Exponents of sine and cosine, one pair for each angle.
 type Powers = Vec<(i32, i32)>;
 
-/// The shortest form of a polynomial in sines and cosines.
+/// Returns the shortest form of a polynomial in sines and cosines.
 pub(crate) fn shortest(terms: &BTreeMap<Monomial, Rational>) -> Vec<Product> {
     let mut angles: Vec<Angle> = terms.keys().flat_map(|monomial| &monomial.0).filter_map(angle).collect();
     angles.sort_unstable();
@@ -53,14 +54,14 @@ pub(crate) fn shortest(terms: &BTreeMap<Monomial, Rational>) -> Vec<Product> {
             *best = candidate;
         }
     };
-    // in order: an earlier form wins a tie
+    // of equally short forms, the earlier one is kept
     let mut forms = 0;
     for basis in &bases {
         if forms * waves.len() > MOST_WORK || best.len() == 1 {
             break;
         }
         let turned = in_basis(&waves, basis);
-        // angles in which the waves are no slower make longer products
+        // skips angles for which the exponents k become larger, because the products become longer
         if order(&turned) > order(&waves) {
             continue;
         }
@@ -87,7 +88,7 @@ fn angle((symbol, _): &(Symbol, i32)) -> Option<Angle> {
     }
 }
 
-/// The length for a reader: terms, then factors.
+/// Returns the length of a form: the number of terms, then of factors.
 fn length(products: &[Product]) -> (usize, usize) {
     let of_factor = |(factor, power): &(Factor, i32)| match factor {
         Factor::Sine(argument) | Factor::Cosine(argument) => {
@@ -99,7 +100,7 @@ fn length(products: &[Product]) -> (usize, usize) {
     (products.len(), products.iter().flat_map(|(_, factors)| factors).map(of_factor).sum())
 }
 
-/// The polynomial as waves: cos x = (e^{ix} + e^{-ix})/2, sin x = (e^{ix} - e^{-ix})/2i.
+/// Converts a polynomial to waves: cos x = (e^{ix} + e^{-ix})/2, sin x = (e^{ix} - e^{-ix})/2i.
 fn waves(terms: &BTreeMap<Monomial, Rational>, angles: &[Angle]) -> Waves {
     let half = fraction(1, 2);
     let mut sum = Waves::new();
@@ -133,7 +134,7 @@ fn waves(terms: &BTreeMap<Monomial, Rational>, angles: &[Angle]) -> Waves {
     sum
 }
 
-/// How often the waves turn, all together.
+/// Returns the sum of the magnitudes of all numbers k.
 fn order(waves: &Waves) -> i32 {
     waves.keys().flatten().map(Signed::abs).sum()
 }
@@ -144,13 +145,14 @@ fn add(waves: &mut Waves, k: Vec<i32>, (x, y): (Rational, Rational)) {
     place.1 += y;
 }
 
-/// Sets of as many independent sums of angles: each row begins with angles before it and ends with its own.
+/// Returns sets of independent sums of angles, one sum for each angle: each row has earlier angles and ends with its
+/// own.
 fn bases(angles: &[Angle]) -> Vec<Vec<Vec<i32>>> {
     let joints = angles.iter().filter(|angle| matches!(angle, Angle::Joint(_))).count();
     let unit = |at: usize| (0..angles.len()).map(|other| i32::from(other == at)).collect::<Vec<i32>>();
     let rows = |at: usize| {
         let mut rows = vec![unit(at)];
-        // angles are sorted: joints come first
+        // only angles of joints are combined; they come first
         if at >= joints || joints > 2 * MOST_COMBINED {
             return rows;
         }
@@ -191,19 +193,19 @@ fn in_basis(waves: &Waves, basis: &[Vec<i32>]) -> Waves {
     turned.collect()
 }
 
-/// The sum of angles that a row of a basis is.
+/// Returns the sum of angles of a row of a basis.
 fn argument(row: &[i32], angles: &[Angle]) -> Argument {
     angles.iter().copied().zip(row.iter().copied()).filter(|(_, times)| *times != 0).collect()
 }
 
-/// An argument whose first angle is positive, and whether the sign was changed for it.
+/// Returns an argument whose first factor is positive, and whether its sign was changed.
 fn with_sign(argument: &Argument) -> (Argument, bool) {
     let is_negative = argument.first().is_some_and(|(_, times)| *times < 0);
     let argument = argument.iter().map(|&(angle, times)| (angle, if is_negative { -times } else { times })).collect();
     (argument, is_negative)
 }
 
-/// cos nx and sin nx in powers of sin x and cos x, with either of them squared.
+/// Returns cos nx and sin nx in powers of sin x and cos x, without squares of the cosine (`keeps_sine`) or of the sine.
 fn multiple(n: i32, keeps_sine: bool) -> [BTreeMap<(i32, i32), Rational>; 2] {
     let one = BTreeMap::from([((0, 0), Rational::one())]);
     let mut parts = [one, BTreeMap::new()];
@@ -227,7 +229,7 @@ fn multiple(n: i32, keeps_sine: bool) -> [BTreeMap<(i32, i32), Rational>; 2] {
     parts
 }
 
-/// Adds a term, without squares of the cosine or of the sine.
+/// Adds a term, and replaces squares of the cosine (`keeps_sine`) or of the sine.
 fn into(terms: &mut BTreeMap<(i32, i32), Rational>, (s, c): (i32, i32), value: Rational, keeps_sine: bool) {
     match keeps_sine {
         true if c >= 2 => {
@@ -242,7 +244,7 @@ fn into(terms: &mut BTreeMap<(i32, i32), Rational>, (s, c): (i32, i32), value: R
     }
 }
 
-/// Waves as products of sines and cosines of the angles they are waves of.
+/// Writes waves as products of sines and cosines of their angles.
 fn products(waves: &Waves, arguments: &[Argument], keeps_sine: &[bool]) -> Vec<Product> {
     let mut sum: BTreeMap<Powers, Rational> = BTreeMap::new();
     for (k, (x, y)) in waves {
@@ -263,7 +265,7 @@ fn products(waves: &Waves, arguments: &[Argument], keeps_sine: &[bool]) -> Vec<P
             }
             product = next;
         }
-        // waves of k and -k are conjugate: what is imaginary cancels
+        // waves of k and -k are conjugate, so imaginary parts cancel
         for (powers, [x, _]) in product {
             enter(&mut sum, powers, x);
         }
@@ -289,7 +291,7 @@ fn products(waves: &Waves, arguments: &[Argument], keeps_sine: &[bool]) -> Vec<P
     sum.into_iter().map(written).collect()
 }
 
-/// Waves as a sum of cosines and sines.
+/// Writes waves as a sum of cosines and sines.
 fn sum_of_waves(waves: &Waves, angles: &[Angle]) -> Vec<Product> {
     let two = fraction(2, 1);
     let mut sum = Vec::new();
@@ -297,7 +299,7 @@ fn sum_of_waves(waves: &Waves, angles: &[Angle]) -> Vec<Product> {
         let argument = argument(k, angles);
         match argument.first() {
             None => sum.push((x.clone(), Vec::new())),
-            // of k and -k one is enough
+            // one of k and -k is enough
             Some((_, times)) if times.is_negative() => {}
             Some(_) => {
                 let terms = [(Factor::Sine(argument.clone()), -y * &two), (Factor::Cosine(argument), x * &two)];
@@ -330,7 +332,7 @@ mod tests {
         joints.iter().map(|&(joint, times)| (Angle::Joint(joint), times)).collect()
     }
 
-    /// The shortest form of a polynomial, which must be that polynomial.
+    /// Returns the shortest form of a polynomial, and checks that it equals the polynomial.
     fn short(polynomial: &Polynomial) -> Vec<Product> {
         let short = shortest(polynomial.terms().expect("short"));
         let back = short.iter().fold(Polynomial::zero(), |sum, (value, factors)| {
@@ -357,7 +359,7 @@ mod tests {
         assert_eq!(short(&cosine_123), single_product(&[(Factor::Cosine(sum(&[(0, 1), (1, 1), (2, 1)])), 1)]));
         let sine_1_minus_2 = sine(0) * cosine(1) - cosine(0) * sine(1);
         assert_eq!(short(&sine_1_minus_2), single_product(&[(Factor::Sine(sum(&[(0, 1), (1, -1)])), 1)]));
-        // sin θ2 cos(θ2 + θ3), as of an elbow
+        // sin θ2 cos(θ2 + θ3), as for an elbow
         let elbow = sine(1) * (cosine(1) * cosine(2) - sine(1) * sine(2));
         let factors = [(Factor::Sine(sum(&[(1, 1)])), 1), (Factor::Cosine(sum(&[(1, 1), (2, 1)])), 1)];
         assert_eq!(short(&elbow), single_product(&factors));

@@ -4,11 +4,11 @@ use std::ops::{Add, Mul, Sub};
 
 use crate::polynomial::Polynomial;
 
-/// Three components.
+/// A vector of three components.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Vector(pub(crate) [Polynomial; 3]);
 
-/// Three rows.
+/// A 3 × 3 matrix of three rows.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Matrix(pub(crate) [Vector; 3]);
 
@@ -17,7 +17,7 @@ impl Vector {
         Self([Polynomial::zero(), Polynomial::zero(), Polynomial::zero()])
     }
 
-    /// (0, 0, z)
+    /// Returns the vector (0, 0, z).
     pub(crate) fn along_z(z: Polynomial) -> Self {
         Self([Polynomial::zero(), Polynomial::zero(), z])
     }
@@ -45,7 +45,7 @@ impl Matrix {
         Self([0, 1, 2].map(|row| Vector([0, 1, 2].map(|column| Polynomial::integer(i64::from(row == column))))))
     }
 
-    /// A turn about x by sine and cosine.
+    /// Returns a rotation about x from sine and cosine of the angle.
     pub(crate) fn about_x((sine, cosine): &(Polynomial, Polynomial)) -> Self {
         let (zero, one) = (Polynomial::zero, || Polynomial::integer(1));
         Self([
@@ -55,7 +55,7 @@ impl Matrix {
         ])
     }
 
-    /// A turn about z by sine and cosine.
+    /// Returns a rotation about z from sine and cosine of the angle.
     pub(crate) fn about_z((sine, cosine): &(Polynomial, Polynomial)) -> Self {
         let (zero, one) = (Polynomial::zero, || Polynomial::integer(1));
         Self([

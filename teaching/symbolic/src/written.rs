@@ -12,13 +12,13 @@ use crate::notation::{Notation, Script};
 use crate::polynomial::Polynomial;
 use crate::table::Table;
 
-/// Columns of a line.
+/// Largest number of columns of a line.
 pub(crate) const COLUMNS: usize = 80;
 
-/// Largest number of terms of a torque, multiplied out; the printed form is shorter.
+/// Largest number of terms of a torque before collecting; the written form is shorter.
 pub(crate) const MOST_TERMS: usize = 400;
 
-/// Every polynomial of [`Equations`], collected.
+/// The polynomials of [`Equations`] with collected terms.
 #[derive(Debug)]
 pub(crate) struct Written {
     pub(crate) torques: Vec<Sum>,
@@ -64,12 +64,12 @@ impl Written {
     }
 }
 
-/// The kinds of the joints.
+/// Returns the kinds of the joints.
 pub(crate) fn kinds(table: &Table) -> Vec<JointKind> {
     table.rows.iter().map(|row| row.kind).collect()
 }
 
-/// A sum in one line of Unicode.
+/// Writes a sum in one line of Unicode.
 pub(crate) fn one_line(table: &Table, sum: &Sum) -> String {
     let kinds = kinds(table);
     let notation = Notation { script: Script::Unicode, constants: &table.constants, kinds: &kinds };
@@ -77,7 +77,7 @@ pub(crate) fn one_line(table: &Table, sum: &Sum) -> String {
     lines.into_iter().next().map_or_else(String::new, |(_, line)| line)
 }
 
-/// A polynomial in one line of Unicode, as the letters of a table; nothing where it is too long.
+/// Writes a polynomial in one line of Unicode, with the letters of a table; empty if it is too long.
 pub(crate) fn polynomial(table: &Table, polynomial: &Polynomial) -> String {
     Collector::new(&table.constants).collected(polynomial).map_or_else(String::new, |sum| one_line(table, &sum))
 }

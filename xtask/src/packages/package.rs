@@ -128,7 +128,7 @@ impl Package {
     }
 }
 
-/// Copies of the licences beside the manifest of each package. They exist while packages are made, because the repository
+/// Copies of the licences beside the manifest of each package. They exist while packages are made: the repository
 /// has the licences once.
 pub(crate) struct Licences(Vec<PathBuf>);
 

@@ -251,6 +251,7 @@ impl Place {
         let (shell, maturin) = (&self.shell, self.maturin(true)?);
         let sources = self.folder.join("sources");
         let _ = fs::remove_dir_all(&sources);
+        let _licences = Licences::copied(shell)?;
         cmd!(shell, "{maturin} sdist --manifest-path doors/python/Cargo.toml --out {sources}")
             .quiet()
             .ignore_stderr()

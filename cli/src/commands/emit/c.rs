@@ -47,7 +47,8 @@ pub(crate) fn header_beside(source: &Path) -> Result<Header, Failure> {
     }
 }
 
-/// What the command line asks for in a C file besides the programs, and the robot file that its heading names.
+/// Contents of a C file besides the programs, as the command line asks for them, and the robot file that its heading
+/// names.
 #[allow(clippy::struct_excessive_bools)] // options of commands
 pub(crate) struct Request<'a> {
     pub(crate) file: &'a Path,

@@ -194,7 +194,7 @@ impl<'s> Arm<'s> {
         }
     }
 
-    /// Returns the mount of the next joint on the way from a link to the tip, or that of the tip if there is none.
+    /// Returns the mount of the next joint on the way from a link to the tip, or that of the tip if no joint is left.
     pub(crate) fn carried_by(&self, index: usize) -> &Mount<'s> {
         self.carried_joints(index).find(|(joint, _)| self.moves_tip(*joint)).map_or(&self.tip, |(_, link)| &link.mount)
     }

@@ -87,7 +87,7 @@ pub fn choose_dependents(
 
 impl Jacobians<'_> {
     /// Chooses `rank` dependent joints for some loops out of the joints `among`, `preferred` ones first; `None` if the
-    /// equations do not determine so many of them.
+    /// equations determine fewer of them.
     fn chosen(
         &self,
         loops: &[usize],

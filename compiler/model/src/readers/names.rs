@@ -87,7 +87,7 @@ pub(crate) fn ratios(
     all.into_iter().collect()
 }
 
-/// Returns the joint with this name, counted from 0, or reports that there is none.
+/// Returns the joint with this name, counted from 0, or reports that no joint has it.
 pub(crate) fn named(
     cx: &Context,
     name: &str,

@@ -67,7 +67,7 @@ pub struct Diagnostic {
     pub line: usize,
     /// The column of the first byte of `span`, counted from 1 in characters.
     pub column: usize,
-    /// What to do, in words that fit every interface.
+    /// The advice, in words that fit every interface.
     pub help: Option<String>,
     /// A choice of the caller that solves the problem; [`Report::worded`] adds it to the help.
     pub remedy: Option<Box<Remedy>>,

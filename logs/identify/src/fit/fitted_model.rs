@@ -75,7 +75,7 @@ impl FittedModel {
         Ok((model, stretches))
     }
 
-    /// The model of the robot file itself, without any information on how well it is known.
+    /// Returns the model of the robot file itself, without information on the uncertainty of its parameters.
     #[must_use]
     pub fn of_file(structure: &Structure, transitions: &[usize]) -> Self {
         let (count, rank) = (structure.count(), structure.parameters.rank());

@@ -53,7 +53,7 @@ pub struct Identifiability {
 }
 
 impl Identifiability {
-    /// The parameters that represent base parameters: as many as the rank of the regressor.
+    /// Returns the parameters that represent base parameters. Their number is the rank of the regressor.
     #[must_use]
     pub fn kept(&self) -> Vec<Parameter> {
         let kept = self.parameters.iter().filter(|(_, visibility)| *visibility == Visibility::Kept);

@@ -158,7 +158,7 @@ fn stacked(robot: &Robot, columns: usize) -> DMatrix<f64> {
     for state in 0..STATES {
         let mut numbers = |most: f64| -> Vec<f64> { (0..dof).map(|_| most * random.number()).collect() };
         let (q, qd, qdd) = (numbers(std::f64::consts::PI), numbers(1.0), numbers(1.0));
-        // there is one number per joint
+        // no error: there is one number per joint
         let Ok(matrix) = arm.regressor(&q, &qd, &qdd) else { continue };
         for (joint, torque) in matrix.iter().enumerate() {
             for (at, element) in torque.iter().flatten().enumerate() {

@@ -175,7 +175,7 @@ impl Payload {
         rne_runtime::Payload { mass, com: self.com.map(|number| number.value), inertia }
     }
 
-    /// The ten inertial parameters about the origin of the tip frame, in its axes.
+    /// Returns the ten inertial parameters about the origin of the tip frame, in its axes.
     #[must_use]
     pub fn parameters(&self) -> [f64; PER_LINK] {
         let rne_runtime::Payload { mass, com, inertia } = self.body();
@@ -224,9 +224,9 @@ impl Payload {
     }
 }
 
-/// The matrix T from inertial parameters about the origin of the tip frame, in its axes, to those in the frame of the
-/// link that carries the tip. With the rotation R and the translation t of the tip, and h = m c, it gives m, R h + m t,
-/// and `R J Rᵀ + 2 (R h · t) 1 - R h tᵀ - t (R h)ᵀ + m (t² 1 - t tᵀ)`.
+/// Returns the matrix T from inertial parameters about the origin of the tip frame, in its axes, to those in the frame
+/// of the link that carries the tip. With the rotation R and the translation t of the tip, and h = m c, it gives m, R
+/// h + m t, and `R J Rᵀ + 2 (R h · t) 1 - R h tᵀ - t (R h)ᵀ + m (t² 1 - t tᵀ)`.
 /// - t tᵀ).
 fn of_tip(robot: &Robot) -> DMatrix<f64> {
     let Transform { xyz, rpy } = robot.tip().placement;

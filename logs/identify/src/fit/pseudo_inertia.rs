@@ -14,7 +14,8 @@ use nalgebra::{Matrix4, SymmetricEigen};
 
 use rne_model::PER_LINK;
 
-/// The pseudo-inertia of (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz) about the origin of the link frame.
+/// Returns the pseudo-inertia of (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz) about the origin of the link
+/// frame.
 #[must_use]
 pub fn of(parameters: &[f64; PER_LINK]) -> Matrix4<f64> {
     let [m, hx, hy, hz, xx, xy, xz, yy, yz, zz] = *parameters;
@@ -29,7 +30,7 @@ pub fn of(parameters: &[f64; PER_LINK]) -> Matrix4<f64> {
     pseudo
 }
 
-/// The parameters of a pseudo-inertia.
+/// Returns the parameters of a pseudo-inertia, in the order of [`of`].
 #[must_use]
 pub fn parameters(pseudo: &Matrix4<f64>) -> [f64; PER_LINK] {
     let p = |row, column| pseudo[(row, column)];
@@ -48,7 +49,7 @@ pub fn parameters(pseudo: &Matrix4<f64>) -> [f64; PER_LINK] {
     ]
 }
 
-/// The matrices that the parameters multiply: P = Σ parameter · unit.
+/// Returns the matrices that the parameters multiply: P = Σ parameter · unit.
 #[must_use]
 pub fn units() -> [Matrix4<f64>; PER_LINK] {
     std::array::from_fn(|index| of(&std::array::from_fn(|other| f64::from(u8::from(index == other)))))

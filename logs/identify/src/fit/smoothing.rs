@@ -27,7 +27,7 @@ pub(crate) struct Weights {
 }
 
 impl Kernel {
-    /// The kernel that lets half the power pass at this frequency, Hz: |H(f)|² = exp(-4π² width² f²) = 1/2.
+    /// Makes the kernel that passes half the power at this frequency, Hz: |H(f)|² = exp(-4π² width² f²) = 1/2.
     pub(crate) fn of_cutoff(cutoff: f64) -> Self {
         Self { width: std::f64::consts::LN_2.sqrt() / (std::f64::consts::TAU * cutoff) }
     }

@@ -24,7 +24,7 @@ pub struct Options {
     /// Candidate widths of the range of speed in which Coulomb friction changes its sign, rad/s or m/s.
     pub widths: Vec<f64>,
     /// Candidate displacements after a reversal over which Coulomb friction changes its sign, rad or m. For each joint,
-    /// the widths or displacement that fits the data best is chosen.
+    /// the width or displacement that fits the data best is chosen.
     pub displacements: Vec<f64>,
 }
 

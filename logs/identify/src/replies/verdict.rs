@@ -118,7 +118,7 @@ impl Verdict {
         PREDICTED
     }
 
-    /// Verdict on an identified model; `held_out` are its errors on data that the identification did not use.
+    /// Judges an identified model; `held_out` are its errors on data that the identification did not use.
     #[must_use]
     pub fn of(found: &Identification, held_out: Option<&[JointError]>) -> Self {
         let joint = |(at, report): (usize, &JointReport)| {
@@ -133,7 +133,7 @@ impl Verdict {
         }
     }
 
-    /// Verdict on a robot file by its errors on logs.
+    /// Judges a robot file by its errors on logs.
     #[must_use]
     pub fn of_file(robot: &Robot, errors: &[JointError]) -> Self {
         let joint = |((error, joint), is_unknown): ((&JointError, &Joint), bool)| {

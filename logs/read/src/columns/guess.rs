@@ -207,7 +207,7 @@ pub(crate) fn time(name: &str) -> Option<Result<Option<TimeUnit>, String>> {
         return Some(Ok(None));
     }
     if let (base, Some(text)) = bracketed(name) {
-        // time_ms [ms]
+        // a unit in brackets, as in `time_ms [ms]`
         return time(base).map(|_| unit::time(text).map(Some).ok_or_else(|| text.to_owned()));
     }
     let (rest, behind) = name.trim().rsplit_once(['_', ' '])?;

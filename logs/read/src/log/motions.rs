@@ -283,7 +283,7 @@ fn too_low(log: &Log, survey: &Survey, hertz: f64) -> LogError {
         survey.dropped
     );
     if lowest <= HIGHEST / step {
-        // rounded up
+        // rounded up, so that some states are left at the printed cut-off
         let lowest = (lowest * 1e3).ceil() / 1e3;
         let what = format!("{what}; a higher cut-off drops fewer states: from {lowest} Hz on, some states are left");
         log.request(what).give(Setting::Cutoff)

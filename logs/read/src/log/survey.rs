@@ -116,7 +116,7 @@ pub enum Cutoff {
 }
 
 impl Cutoff {
-    /// Returns the cut-off, Hz; `None` if there is none.
+    /// Returns the cut-off, Hz; `None` without a cut-off.
     #[must_use]
     pub fn hertz(&self) -> Option<f64> {
         match self {

@@ -91,7 +91,7 @@ impl Kernel {
         self.convolution.as_ref().map_or(1, Convolution::block)
     }
 
-    /// Returns how many numbers must follow the beginning of the last block, if the run has so many, so that pieces
+    /// Returns how many numbers must follow the beginning of the last block, if the run has them, so that pieces
     /// give the same bits as the whole run.
     pub(crate) fn behind(&self) -> usize {
         self.convolution.as_ref().map_or(0, Convolution::length)
@@ -140,7 +140,7 @@ mod tests {
 
     use super::*;
 
-    /// Gain of the filter at a frequency, Hz: real, because the filter is symmetric.
+    /// Returns the gain of the filter at a frequency, Hz, which is real because the filter is symmetric.
     #[expect(clippy::cast_precision_loss, reason = "small")]
     fn gain(kernel: &Kernel, frequency: f64) -> f64 {
         let angle = 2.0 * PI * frequency * kernel.step;

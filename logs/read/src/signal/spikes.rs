@@ -167,7 +167,7 @@ impl Spikes {
         self.joints.iter_mut().for_each(Joint::end_run);
     }
 
-    /// The spikes, in the order of their messages; empty if they are not rare among the states.
+    /// Returns the spikes in the order of their messages; empty if they are not rare among the states.
     #[expect(clippy::cast_precision_loss, reason = "states of a log")]
     pub(crate) fn end(mut self, states: u64) -> Vec<Spike> {
         self.end_run();

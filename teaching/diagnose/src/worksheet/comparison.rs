@@ -44,7 +44,7 @@ pub struct Comparison {
 pub enum Verdict {
     /// The value agrees.
     Right,
-    /// It differs, but the formula of its line gives it with the values that were given before. It is not zero.
+    /// The value differs, but it follows by the formula of its line from the given earlier values, and is not zero.
     Followed,
     /// The value differs, and does not follow from the earlier ones.
     Wrong,

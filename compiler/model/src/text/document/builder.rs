@@ -126,8 +126,8 @@ impl<'t> Builder<'t> {
         Some(format!("check that the `{bracket}` in line {} is closed", line(&self.breaks, start)))
     }
 
-    /// Returns help from the lines at a syntax error: a list item after lines that are none, or a key without a blank
-    /// after its colon.
+    /// Returns help from the lines at a syntax error: a list item after lines that are not items, or a key without a
+    /// blank after its colon.
     fn around(&self, at: usize) -> Option<String> {
         let before = self.text.get(..at)?;
         let start = before.rfind('\n').map_or(0, |newline| newline + 1);

@@ -284,7 +284,7 @@ mod tests {
         Log::open(&[path], Options::default()).unwrap().layout().clone()
     }
 
-    /// Writes two runs; the second has so many states that there are two groups of rows.
+    /// Writes two runs; the second has enough states for two groups of rows.
     fn written(origin: i64, label: Option<&str>) -> (tempfile::TempDir, std::path::PathBuf, [Motion; 2]) {
         let (layout, motions) = (layout(origin), [motion(50, 0.8), motion(70_000, 3.1)]);
         let folder = tempfile::tempdir().unwrap();
