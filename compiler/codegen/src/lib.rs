@@ -39,6 +39,7 @@ mod quantity;
 mod reduced;
 mod refusal;
 mod registers;
+mod rounding;
 mod values;
 
 use std::sync::OnceLock;
@@ -76,8 +77,8 @@ pub use values::{Contraction, Negated, Value, ValueId, Values};
 use crate::formulation::Formulation;
 use crate::pipeline::{LARGEST, seven_steps_within};
 use crate::plan::PlanSet;
-use crate::proof::Reference;
 use crate::reduced::near_origins;
+use crate::rounding::Reference;
 
 /// Whether frames of the table are so far from the arm that code of the seven steps loses digits.
 fn has_far_frames(robot: &Robot) -> bool {
@@ -108,7 +109,7 @@ pub fn measured(robot: &Robot, program: Program) -> Program {
         return program;
     }
     // the loss stays unknown if nothing can be compiled for comparison
-    let loss = proof::loss_of_seven_steps(robot, &program).unwrap_or_default();
+    let loss = pipeline::loss_of_seven_steps(robot, &program).unwrap_or_default();
     Program { loss, ..program }
 }
 

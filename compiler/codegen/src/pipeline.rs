@@ -9,8 +9,9 @@ use crate::function::{Form, Function};
 use crate::ir::{Exactly, Policy, Quantity};
 use crate::lower::{Heading, lower};
 use crate::program::{Program, Proof};
-use crate::proof::{self, Reference};
+use crate::proof;
 use crate::reduced::near_origins;
+use crate::rounding::{self, Reference, STATES};
 
 /// Largest number of sums and products of a function that is compiled: that of `inverse_dynamics_derivatives` for an
 /// arm of 40 joints in which nothing folds. Its text has about 15 MB.
@@ -61,6 +62,15 @@ impl Formulation {
     }
 }
 
+/// Returns the error of a program of the seven steps in single precision, if that is too large.
+///
+/// # Errors
+/// When a program for the comparison cannot be compiled.
+pub(crate) fn loss_of_seven_steps(robot: &Robot, program: &Program) -> Result<Option<f64>, CompileError> {
+    let reference = Reference::to(robot, program.clone())?;
+    Ok(rounding::loss(&reference, program, &rounding::errors(&reference, program, STATES)))
+}
+
 impl<'r> Reference<'r> {
     /// The seven steps of a function of a robot.
     ///
@@ -108,7 +118,7 @@ impl<'r> Reference<'r> {
         let embedding = formulation.embedding();
         let (program, exactly) = formulation.lowered(self.robot(), function)?;
         let is_identical = proof::identical(self.robot(), &program, &exactly, embedding).is_ok();
-        Ok(is_identical.then(|| proof::loss_of_precision(self, &program, states)))
+        Ok(is_identical.then(|| rounding::loss_of_precision(self, &program, states)))
     }
 }
 

@@ -7,7 +7,7 @@ use syn::visit::Visit;
 use syn::{ItemUse, UseTree};
 
 /// Passes and choices: what makes the programs that are checked.
-const CHECKED: [&str; 6] = ["reduced", "plan", "lower", "fma", "latency", "compile"];
+const CHECKED: [&str; 8] = ["reduced", "plan", "lower", "fma", "latency", "registers", "pipeline", "formulation"];
 
 /// What the checker needs of the representation: to write the seven steps, and to take residues.
 const OF_THE_REPRESENTATION: [&str; 12] = [
@@ -62,7 +62,11 @@ fn paths(file: &str) -> Vec<Vec<String>> {
 
 #[test]
 fn the_checker_imports_no_pass() {
-    let found = [paths("proof.rs"), paths("exact.rs")].concat();
+    let found = [paths("proof.rs"), paths("rounding.rs"), paths("exact.rs")].concat();
+    for module in CHECKED {
+        let is_there = |file: &str| std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src").join(file).exists();
+        assert!(is_there(&format!("{module}.rs")) || is_there(&format!("{module}/mod.rs")), "there is no {module}");
+    }
     assert!(found.iter().any(|path| path.join("::") == "crate::formulate"), "the visitor reads imports");
     for path in found.iter().filter(|path| path[0] == "crate" && path.len() > 1) {
         let module = path[1].as_str();

@@ -52,7 +52,7 @@ impl SamplePoint {
             // arguments of the pose of a base
             Quantity::FrameRotation => self.random(21, input.element()),
             Quantity::FrameOrigin => self.random(22, axis),
-            Quantity::BaseRotation => self.random(20, input.element()),
+            Quantity::BaseRotation => self.random(23, input.element()),
             // all other quantities
             other => self.random(64 + other as u64, index),
         }

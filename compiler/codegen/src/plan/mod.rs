@@ -14,8 +14,9 @@ mod trick;
 
 pub use crate::formulation::Formulation;
 pub use crate::ir::Cost;
-pub use crate::proof::{Reference, divides_by_zero};
+pub use crate::proof::divides_by_zero;
 pub use crate::reduced::choices::{JointPlan, Moment, OriginShift, Plan, RegroupingTarget, Scale, Side, Switches};
+pub use crate::rounding::Reference;
 pub use cost::{OpenChoices, OpenJoint};
 pub use descent::Descent;
 pub use plan_set::PlanSet;

@@ -3,11 +3,13 @@
 mod algorithms;
 mod unusual;
 
+use std::collections::BTreeSet;
+
 use rne_model::{Reader, Robot};
 
 use super::*;
 use crate::fma::{contracted, ordered_for_latency};
-use crate::ir::{Embedding, Exactly, Graph, Traced};
+use crate::ir::{Embedding, Exactly, Graph, Input, Name, SamplePoint, Traced};
 use crate::plan::cost::{Evaluator, frame};
 use crate::plan::descent::default_plan;
 use crate::plan::rewriting::Annealing;
@@ -59,6 +61,29 @@ fn must_be_identical(robot: &Robot, plan: &Plan, (program, exactly, embedding): 
             panic!("the proof refuses {}{what}: {error}\n{:#?}", robot.name, plan.choices());
         }
     }
+}
+
+/// Two arguments with one random number would let the proof take one for the other.
+#[test]
+fn no_two_arguments_of_a_function_have_the_same_random_number() {
+    let mut tested = 0;
+    for file in
+        ["robots/planar2.yaml", "benches/trees/loops/five_bar.yaml", "benches/trees/loops/floating_four_bar_leg.yaml"]
+    {
+        let path = format!("{}/../../{file}", env!("CARGO_MANIFEST_DIR"));
+        let reader = Reader::new(file).trees().couplings().loops();
+        let robot = reader.read(&std::fs::read(path).unwrap()).unwrap().robot;
+        let point = SamplePoint::new(Embedding::default(), 1);
+        for function in Function::ALL {
+            let Ok(program) = Compiler::new(&robot).compile(function, Form::SevenSteps) else { continue };
+            let names: Vec<Name> =
+                program.argument_arrays().into_iter().flat_map(|array| array.elements).flatten().collect();
+            let numbers: BTreeSet<u64> = names.iter().map(|&name| point.argument(Input::new(name)).key()).collect();
+            assert_eq!(numbers.len(), names.len(), "{} of {file}: {names:?}", function.name());
+            tested += 1;
+        }
+    }
+    assert!(tested >= 100, "{tested}");
 }
 
 #[test]
