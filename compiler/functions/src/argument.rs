@@ -106,6 +106,15 @@ pub struct ArgumentPart {
     pub length: Length,
 }
 
+impl ArgumentPart {
+    /// How many numbers it has for a state of a robot.
+    #[must_use]
+    pub const fn elements(&self, sizes: Sizes) -> usize {
+        let tips = if matches!(self.owner, Owner::EachTip) { sizes.tips } else { 1 };
+        self.length.of(sizes) * tips
+    }
+}
+
 /// Every array: its name, its argument, the part of the robot that its numbers belong to, their quantities with how
 /// many numbers each has, and what it is with its unit. `$callback!` is given the list.
 #[macro_export]
@@ -174,6 +183,12 @@ macro_rules! parts {
 argument_parts!(parts);
 
 impl Argument {
+    /// The array of this name, of any argument.
+    #[must_use]
+    pub fn part_named(name: &str) -> Option<&'static ArgumentPart> {
+        PARTS.iter().find(|part| part.name == name)
+    }
+
     /// The arrays that it is passed in, in order.
     pub fn parts(self) -> impl Iterator<Item = &'static ArgumentPart> {
         PARTS.iter().filter(move |part| part.argument == self)

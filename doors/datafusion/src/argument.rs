@@ -41,17 +41,19 @@ impl Argument<'_> {
 
 /// Returns how many numbers an argument has in one state of a robot, and the reason for it, for error messages.
 fn needed(argument: &str, robot: &Robot) -> (usize, String) {
-    match argument {
-        "q" | "qd" | "qdd" | "tau" | "multipliers" => {
-            (robot.dof(), format!("{} has {} joints", robot.name, robot.dof()))
-        }
-        "step" => (1, "`step` is one number".to_owned()),
+    let sizes = compiled::sizes_of(robot);
+    let part = compiled::Argument::part_named(argument);
+    let length = part.map_or(sizes.dof, |part| part.elements(sizes));
+    let why = match argument {
+        "q" | "qd" | "qdd" | "tau" | "multipliers" => format!("{} has {length} joints", robot.name),
+        "step" => "`step` is one number".to_owned(),
         "wrenches" => {
-            let tips = robot.wrench_frames().len();
-            (6 * tips, format!("`wrenches` has force and moment of each tip, and {} has {tips} tips", robot.name))
+            format!("`wrenches` has force and moment of each tip, and {} has {} tips", robot.name, sizes.tips)
         }
-        _ => (3, format!("`{argument}` is x, y and z")),
-    }
+        _ if length == 3 => format!("`{argument}` is x, y and z"),
+        _ => format!("`{argument}` has {length} numbers"),
+    };
+    (length, why)
 }
 
 /// A column of a call: its name, for messages, and its type.

@@ -8,7 +8,8 @@ use datafusion::common::{Result, ScalarValue, exec_err, internal_err, plan_err};
 use datafusion::logical_expr::{
     ColumnarValue, Documentation, ReturnFieldArgs, ScalarFunctionArgs, ScalarUDFImpl, Signature,
 };
-use rne::compiled::{Argument as Input, Arguments, CompiledArm, Destination, Function, Layout, Sizes};
+use rne::compiled::{Argument as Input, Arguments, CompiledArm, Destination, Function, Layout, sizes_of};
+use rne::model::Robot;
 
 use crate::argument::{self, Argument};
 use crate::call::{Call, key};
@@ -50,10 +51,10 @@ impl Computation {
         }
     }
 
-    fn layout(self, dof: usize) -> Layout {
+    fn layout(self, robot: &Robot) -> Layout {
         match self {
-            Self::Of(function) => function.layout(Sizes { dof, tips: 1, passive: 0, equations: 0 }),
-            Self::Residual => Function::InverseDynamics.layout(Sizes { dof, tips: 1, passive: 0, equations: 0 }),
+            Self::Of(function) => function.layout(sizes_of(robot)),
+            Self::Residual => Function::InverseDynamics.layout(sizes_of(robot)),
         }
     }
 
@@ -74,7 +75,7 @@ impl Computation {
             };
         }
         let run = |arm: &CompiledArm, function: Function| {
-            let mut numbers = vec![0.0; states * function.layout(rne::compiled::sizes_of(arm.robot())).len()];
+            let mut numbers = vec![0.0; states * function.layout(sizes_of(arm.robot())).len()];
             arm.run(function, states, &given, Destination::Rows(&mut numbers)).map_err(external)?;
             Ok(numbers)
         };
@@ -148,7 +149,7 @@ impl ScalarUDFImpl for DynamicsFunction {
         let columns = argument::columns(given.arg_fields);
         let robot = held.arm.robot();
         argument::check(self.name(), &self.computation.arguments(), &columns, robot)?;
-        let of = result::data_type(&self.computation.layout(robot.dof()));
+        let of = result::data_type(&self.computation.layout(robot));
         Ok(Arc::new(Field::new(self.name(), of, true)))
     }
 
@@ -166,7 +167,7 @@ impl ScalarUDFImpl for DynamicsFunction {
         let robot = held.arm.robot();
         let (arguments, nulls) = argument::all(self.name(), &self.computation.arguments(), &names, &arrays, robot)?;
         let numbers = self.computation.run(held, states, &arguments)?;
-        let column = result::column(&self.computation.layout(robot.dof()), numbers, states, nulls)?;
+        let column = result::column(&self.computation.layout(robot), numbers, states, nulls)?;
         if is_constant {
             return Ok(ColumnarValue::Scalar(ScalarValue::try_from_array(&column, 0)?));
         }

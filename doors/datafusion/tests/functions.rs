@@ -194,6 +194,56 @@ async fn a_rod_weighs_what_it_weighs() -> Result<()> {
     Ok(())
 }
 
+/// The numbers of some rows of a column, row by row.
+fn of_rows(column: &ArrayRef, rows: std::ops::Range<usize>) -> Vec<f64> {
+    match column.data_type() {
+        DataType::Struct(_) => {
+            let columns = column.as_struct().columns();
+            rows.flat_map(|row| columns.iter().flat_map(move |part| of_rows(part, row..row + 1))).collect()
+        }
+        DataType::FixedSizeList(_, length) => {
+            let length = usize::try_from(*length).expect("a length");
+            of_rows(column.as_fixed_size_list().values(), rows.start * length..rows.end * length)
+        }
+        _ => column.as_primitive::<Float64Type>().values()[rows].to_vec(),
+    }
+}
+
+/// Every function with all of its arguments, on robots with a floating base and with several tips.
+#[tokio::test]
+async fn every_function_takes_its_own_arguments() -> Result<()> {
+    let mut tested = 0;
+    for yaml in [include_str!("../../../docs/satellite.yaml"), include_str!("../../../robots/trees/dex3_left.yaml")] {
+        let arm = CompiledArm::from_yaml(yaml).expect("it is right");
+        let robots = Robots::none().with_yaml(yaml)?;
+        let (context, key) = (SessionContext::new(), robots.key(&arm.robot().name).expect("it is held"));
+        register(&context, &robots);
+        let sizes = rne::compiled::sizes_of(arm.robot());
+        for function in Function::OF_TREES {
+            let parts: Vec<_> = function.arguments().iter().flat_map(|argument| argument.parts()).collect();
+            let lists: Vec<Vec<f64>> = parts.iter().map(|part| random(part.elements(sizes))).collect();
+            let mut given = Arguments::new();
+            for (part, list) in parts.iter().zip(&lists) {
+                given = given.with(part.name, rne::compiled::Array::Rows(list)).expect("it is an argument");
+            }
+            let mut expected = vec![0.0; function.layout(sizes).len()];
+            let has_it = arm.run(function, 1, &given, Destination::Rows(&mut expected)).is_ok();
+            let written: Vec<String> = lists.iter().map(|list| format!("{list:?}")).collect();
+            let call = format!("SELECT {function}('{key}', {}) AS it", written.join(", "));
+            let found = one(&context, &call).await;
+            // functions with sines, cosines or a payload are no functions of SQL
+            let is_left_out = parts.iter().any(|part| ["sin", "cos", "payload"].contains(&part.name));
+            assert_eq!(found.is_ok(), has_it && !is_left_out, "{call}: {:?}", found.err());
+            if let Ok(found) = found {
+                assert_eq!(of_rows(found.column(0), 0..1), expected, "{call}");
+                tested += 1;
+            }
+        }
+    }
+    assert!(tested > 60, "{tested}");
+    Ok(())
+}
+
 /// A satellite with an arm. Its base takes ω, ω̇ and a - g as lists or as a column per number.
 #[tokio::test]
 async fn a_base_that_floats_has_its_functions() -> Result<()> {
