@@ -27,9 +27,10 @@
 //! `kind.velocity(common, …)` and its like add the term that only a revolute or only a prismatic joint has ([`joint`]).
 //!
 //! The lecture has a chain on a base that does not move. The terms of moving bases and of rotors of motors are in
-//! [`base`] and [`spin`]. [`first_moment`] has those of links with mass 0 and a first moment h = m c (kg m), which
-//! identification of parameters gives. `S` is the type of the robot's numbers, `T` that of q, q̇, q̈ and the results:
-//! `f64`, or a number that carries its derivative (a dual number).
+//! [`base`] and [`spin`]. [`first_moment`] has those of links with mass 0 that still have a first moment h (kg m):
+//! their h is a number of its own, not mass times a distance. Identification of parameters gives such links. `S` is the
+//! type of the robot's numbers, `T` that of q, q̇, q̈ and the results: `f64`, or a number that carries its derivative (a
+//! dual number).
 //!
 //! The order of the operations is part of the contract: generated code repeats it and is compared bit for bit.
 

@@ -68,7 +68,8 @@ impl Arguments {
     }
 }
 
-/// Each command by its module, in the order of the help; clap makes its name of that of the variant.
+/// Makes `Command` from pairs of a variant and the module that runs it, in the order of the help. clap makes the name
+/// of a command from the name of its variant.
 macro_rules! commands {
     ($($name:ident $module:ident,)*) => {
         #[derive(Subcommand)]

@@ -17,7 +17,6 @@ pub(crate) enum Shape {
     /// Serial arms. A tree is refused at its line of the file.
     Chain,
     /// Serial arms and trees. Couplings are refused at their line of the file.
-    #[allow(dead_code)] // TODO
     Tree,
     /// Serial arms and trees, whose joints may follow others. Closed loops are refused at their line of the file.
     Coupled,

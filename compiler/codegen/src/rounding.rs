@@ -39,8 +39,8 @@ pub struct Reference<'r> {
 }
 
 impl<'r> Reference<'r> {
-    /// Makes the reference from the seven steps, `seven_steps`. `compiled` compiles a function of the robot by the seven
-    /// steps with joint origins near the arm. `is_far` says that the table has joint origins far from the arm.
+    /// Makes the reference from the seven steps, `seven_steps`. `compiled` compiles a function of the robot by the
+    /// seven steps with joint origins near the arm. `is_far` says that the table has joint origins far from the arm.
     ///
     /// # Errors
     /// When they cannot be compiled.

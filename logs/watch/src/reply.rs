@@ -50,8 +50,8 @@ struct OfEvent {
     /// exists there, or still exists.
     since_time: Option<String>,
     until_time: Option<String>,
-    /// Dates at which the change did not exist: the end of quiet logs before the log, and the beginning of quiet logs
-    /// after it.
+    /// Dates that limit a change over the whole log: it began after `not_before_time`, the end of earlier quiet logs,
+    /// and ended before `not_after_time`, the beginning of later quiet logs.
     not_before_time: Option<String>,
     not_after_time: Option<String>,
     /// Further joints of a contact.

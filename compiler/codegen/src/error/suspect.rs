@@ -23,8 +23,8 @@ pub struct Extreme {
 }
 
 impl Extreme {
-    /// Returns the number of a robot that is farthest from one, if its powers can leave the range of double precision,
-    /// or exceed the 106 bits in which constants are computed.
+    /// Returns the number of the robot that is farthest from 1 (very large or very small), if its powers can leave the
+    /// range of double precision, or exceed the 106 bits in which constants are computed.
     #[must_use]
     pub fn of(robot: &Robot) -> Option<Self> {
         const LARGEST: f64 = 1e75;

@@ -16,8 +16,8 @@ struct Carried<'s> {
 pub(crate) struct Load<'s>(Vec<Carried<'s>>);
 
 impl<'s> Load<'s> {
-    /// Adds a joint or tip: its wrench, turned into the axes of the link, is R_k f_{i,k} and R_k n_{i,k}. `line`
-    /// belongs to the link.
+    /// Adds joint or tip k to the load: defines R_k f_{i,k} and R_k n_{i,k}, its wrench in the axes of link i. `line`
+    /// names these formulas and counts their operations; it is that of link i, not of k.
     pub(crate) fn put(&mut self, line: JointLines<'s>, rotation: Matrix<'s>, mount: &Mount<'s>, wrench: &Wrench<'s>) {
         let line = line.with_second_number(mount.label);
         let force = line.define(Quantity::ChildForce).by(rotation * wrench.force);

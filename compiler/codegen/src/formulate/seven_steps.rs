@@ -34,8 +34,9 @@
 //! that only a revolute or only a prismatic joint has.
 //!
 //! The lecture has a chain on a base that does not move. The terms of trees, moving bases and rotors of motors are in
-//! [`super::carried`], [`super::base`] and [`super::spin`]; those of links with mass 0 and a first moment h (kg m),
-//! which identification of parameters gives, are in [`super::first_moment`].
+//! [`super::carried`], [`super::base`] and [`super::spin`]; those of links with mass 0 that still have a first moment h
+//! (kg m), a number of its own and not mass times a distance, are in [`super::first_moment`]. Identification of
+//! parameters gives such links.
 
 use crate::formulate::carried::{self, Load};
 use crate::formulate::first_moment::FirstMoment;
@@ -126,7 +127,7 @@ pub(crate) fn turning<'s>(joint: &Joint<'_, 's>, parent: &Turning<'s>) -> Turnin
 
 /// Steps 1 to 5: the motion of link i.
 fn motion<'s>(joint: &Joint<'_, 's>, parent: &Motion<'s>) -> Motion<'s> {
-    // ω_p × r_i has the number of link p in its name, and a second number if p carries more than one joint
+    // ω_p × r_i has the number of link p in its name, and a second number if joint i is not the first of p
     let (line, parent_line) = (joint.lines, joint.lines_of_parent().with_second_number(joint.link.mount.label));
     let Turning { omega: omega_p, omega_dot: omega_dot_p, .. } = parent.turning;
     let turning = turning(joint, &parent.turning);
@@ -230,9 +231,9 @@ fn backward<'s>(
             names: [Quantity::JointForce, Quantity::JointMoment],
         });
 
-        // 7   τ_i = e · n_{p,i}                        prismatic: e · f_{p,i}
-        // of coupled joints it is a part of a torque, and has its own name; rotors of motors add their part, also those
-        // that other links carry
+        // 7 τ_i = e · n_{p,i} prismatic: e · f_{p,i} Joints are coupled if one of them follows another. τ_i of such a
+        // joint is only one part of the torque of the joint that is followed, so its name is `axis_tau`, not `tau`.
+        // Rotors of motors add their part, also those that other links carry.
         let torque = line.define(arm.coordinates.name_of_torque(index).quantity).by({
             let torque = joint.actuator(&wrench);
             rotors.add_to_torque(&joint, (base, motions), torque)
