@@ -63,7 +63,8 @@ fn pages_name_sources_that_are_there() {
             if is_path
                 && Path::new(word).extension() == Some("rs".as_ref())
                 && !word.starts_with('.')
-                && !word.starts_with("target/") // what a build writes
+                && !word.starts_with("target/")
+            // what a build writes
             {
                 named += 1;
                 assert!(
