@@ -91,7 +91,8 @@ fn a_tree_read_at_run_time_is_the_runtime() {
 #[test]
 fn followers_and_motors_read_at_run_time_are_the_runtime() {
     let mut worst = Worst::default();
-    for seed in 0..if shipped::is_exhaustive() { 60 } else { 3 } {
+    // at seed 34, a constant is a part of one instruction and a value of the next
+    for seed in (0..if shipped::is_exhaustive() { 60 } else { 3 }).chain([34]) {
         let dof = 3 + usize::try_from(seed).expect("small") % 3;
         for robot in [couplings::robots(seed, dof).1, motors::robot(seed, dof, motors::Shape::Any, true)] {
             for form in Form::ALL {

@@ -10,7 +10,7 @@ use rne_model::{FixedFrame, Reader, Robot, Transform};
 
 use crate::arm::{Arm, Maker};
 use crate::check::{ROOT, Worst, error_on_scale};
-use crate::equality::compare_at_states;
+use crate::equality::compare_within;
 use crate::random_trees;
 use crate::tree_functions::{State, expected, scale};
 
@@ -215,7 +215,7 @@ fn code_of_robots_with_followers_is_the_runtime() {
         let mut worst = Worst::default();
         for seed in 0..if shipped::is_exhaustive() { 60 } else { 8 } {
             let dof = 2 + usize::try_from(seed).expect("small") % 3;
-            compare_at_states(&Arm::new(&robots(seed, dof).1, maker), maker, &mut worst);
+            compare_within(TOLERANCE, &Arm::new(&robots(seed, dof).1, maker), maker, &mut worst);
         }
         worst.at_most(TOLERANCE, &format!("couplings, {maker}"));
     }
@@ -250,7 +250,7 @@ fn an_angle_may_be_a_length() {
     let robot = winch("1");
     for maker in Maker::CODE {
         let mut worst = Worst::default();
-        compare_at_states(&Arm::by_no_choice(&robot, maker), maker, &mut worst);
+        compare_within(TOLERANCE, &Arm::by_no_choice(&robot, maker), maker, &mut worst);
         worst.at_most(TOLERANCE, &format!("a length as an angle, {maker}"));
     }
 }
@@ -341,7 +341,7 @@ fn a_tree_whose_links_turn_alike_is_the_runtime() {
         let maker = Maker::Code(Form::Reduced);
         let arm = Arm::new(robot, maker);
         let mut worst = Worst::default();
-        compare_at_states(&arm, maker, &mut worst);
+        compare_within(TOLERANCE, &arm, maker, &mut worst);
         worst.at_most(TOLERANCE, "links that turn alike");
         arm.program(Function::InverseDynamics).operations().total()
     };
@@ -355,7 +355,7 @@ fn the_tree_of_the_sr400_takes_517_operations() {
     let maker = Maker::Code(Form::Reduced);
     let arm = Arm::from_file("benches/trees/sr400.yaml", maker);
     let mut worst = Worst::default();
-    compare_at_states(arm, maker, &mut worst);
+    compare_within(TOLERANCE, arm, maker, &mut worst);
     worst.at_most(TOLERANCE, "SR400");
     let operations = arm.program(Function::InverseDynamics).operations().total();
     assert!(operations <= 517, "{operations}");

@@ -192,8 +192,12 @@ fn rotors_are_bodies_of_their_own() {
                         _ => continue,
                     }
                 } else if function.inverts_mass() {
-                    let mass = bodies.runtime.mass_matrix(&state.q).expect("one per joint");
-                    match conditioning(&mass) {
+                    let mass = if function.is_of_floating_base() {
+                        bodies.runtime.floating_mass_matrix(&state.q)
+                    } else {
+                        bodies.runtime.mass_matrix(&state.q)
+                    };
+                    match conditioning(&mass.expect("one per joint")) {
                         Some(it) if it.number < 1e10 => it.number,
                         _ => continue,
                     }

@@ -181,7 +181,9 @@ fn takes_from_accumulator(dataflow: &Dataflow, carried: &[Vec<ValueId>], events:
         Some(k) if carried[next.index()].contains(&operand) => Place::Constant(k),
         _ => Place::Slot(0),
     };
-    dataflow.operands(next).contains(&value) && operation(dataflow, next, place).is_some()
+    // a constant that is part of the next instruction is loaded for a later one
+    let is_operand = dataflow.operands(next).contains(&value) && !carried[next.index()].contains(&value);
+    is_operand && operation(dataflow, next, place).is_some()
 }
 
 struct Memory {
