@@ -63,7 +63,7 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<ExitCode> {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).parent().context("the package is in a workspace")?;
     let path = workspace.join("../docs/measured/embedded.md");
-    let figures = workspace.join("certificate/figures.txt");
+    let figures = workspace.join("measurements/figures.txt");
     let report = examine(workspace, arguments.sample)?;
     summary(&report)?;
     if arguments.update {
