@@ -16,7 +16,7 @@ const JOINTS: usize = 6;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    // Without the black box the compiler would compute the torques itself, for it knows this state.
+    // Without the black box, the compiler would compute the torques itself, because it knows this state.
     let [q, qd, qdd] = black_box([[0.1_f32; JOINTS], [0.5; JOINTS], [1.0; JOINTS]]); // rad, rad/s, rad/s²
     let tau = Arm.inverse_dynamics(&q, &qd, &qdd);
     hprintln!("{tau:.3?} N m");
