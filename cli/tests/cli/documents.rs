@@ -90,6 +90,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask certify-all", ".ci/run", "step cargo xtask certify-all --install\n"),
     ("cargo xtask certificate", ".ci/run", "step cargo xtask certificate --install\n"),
     ("cargo xtask frozen", ".ci/run", "step cargo xtask frozen\n"),
+    ("cargo xtask surface", ".ci/run", "step cargo xtask surface\n"),
     ("cargo xtask light", ".ci/run", "step cargo xtask light $("),
     // its page is checked, and it breaks sources
     ("cargo xtask mutate", "tests/documents/pages.rs", "fn the_page_of_mutations_is_of_the_mutants()"),
