@@ -23,7 +23,7 @@ use crate::values::numbers::at_the_point;
 /// The shipped robot of the tour.
 const NAME: &str = "puma560";
 
-/// The same robot, compiled into this program by the derive macro.
+/// The robot [`NAME`], whose code the derive macro has compiled into this program.
 #[derive(rne::InverseDynamics)]
 #[robot(builtin = "puma560")]
 struct Puma560;

@@ -48,8 +48,8 @@ impl Rewriting {
     }
 
     /// Anneals from a temperature downwards until the clock says that all of its time is over, and keeps the smallest
-    /// graph. The clock is told the smallest cost so far and returns which part of the time is over, 0 to 1; `None`
-    /// stops the annealing.
+    /// graph. `clock` gets the smallest cost so far. It returns the elapsed part of the time, 0 to 1, or `None` to stop
+    /// the annealing.
     pub fn anneal(&mut self, seed: u64, hottest: f64, clock: &mut dyn FnMut(Cost) -> Option<f64>) -> ControlFlow<()> {
         let mut annealing = Annealing::new(self.graph.clone(), seed, Graph::cost);
         let ended = annealing.anneal(hottest, clock);

@@ -36,7 +36,7 @@ pub(crate) fn not_utf8(bytes: &[u8], error: std::str::Utf8Error, what: &str, pro
 }
 
 /// Reports the first control character: YAML forbids them, the parser takes U+0000 for the end of the file, and a
-/// terminal may execute some as commands. Returns whether there is none.
+/// terminal may execute some as commands. Returns whether the text has no control character.
 pub(crate) fn is_printable(text: &str, problems: &Problems) -> bool {
     let forbidden = |c: &(usize, char)| c.1.is_control() && !matches!(c.1, '\t' | '\n' | '\r' | '\u{85}');
     let Some((at, character)) = text.char_indices().find(forbidden) else { return true };

@@ -149,8 +149,8 @@ impl ContactNoise {
     }
 
     /// Raises the noise by an undisturbed segment. The largest error of the model there counts as three standard
-    /// deviations. Then the standard deviations of joints with a contact there are raised until there is none, because
-    /// errors of a model are not normally distributed.
+    /// deviations. If a contact is still found there, the standard deviations of its joints are raised until none is
+    /// found, because errors of a model are not normally distributed.
     ///
     /// # Errors
     /// The errors of [`contacts`].

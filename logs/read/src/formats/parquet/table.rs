@@ -31,8 +31,9 @@ const LONGEST_FOOTER: u32 = 16 << 20;
 pub(crate) struct ParquetTable {
     path: PathBuf,
     file: SerializedFileReader<File>,
-    /// The same file, from which columns read their pages, and the memory for pages.
+    /// A second handle of the file, from which columns read their pages.
     source: Arc<File>,
+    /// The memory for pages.
     room: Arc<Room>,
     group: usize,
     /// Number of rows of this group that were not read yet.
