@@ -151,7 +151,7 @@ fn unknown_function(error: &clap::Error) -> Option<String> {
              {TYPED}--function {OBSERVER}{TYPED:#}, or {TYPED}--observer{TYPED:#} of {TYPED}rne certify{TYPED:#}"
         ));
     }
-    let other = What::of_alias(&word).map(What::name);
+    let other = What::of_alias(value).map(What::name);
     let meant = names().find(|name| *name == word || other == Some(*name)).or_else(|| did_you_mean(value, names()));
     let near: Vec<&str> = match meant {
         Some(meant) => vec![meant],

@@ -1,10 +1,11 @@
 //! Converts other descriptions of an arm to a Denavit-Hartenberg table, and back.
 //!
-//! Functions take and return data and print nothing. Only two open files: [`Description::open`] opens a description, in
-//! the same way for every interface, and [`Urdf::read`] opens files that an MJCF file includes. [`Urdf::import`] makes
-//! a robot file from a chain of a URDF or of an MJCF file, [`convert()`] writes a table in the other convention,
-//! [`export()`] writes it as a URDF, and [`robot_file::write`] writes a robot file. [`import()`] is for programs that
-//! read one URDF many times: it keeps the results.
+//! Functions take and return data and print nothing. Only three open files: [`Description::open`] opens a description,
+//! in the same way for every interface, and [`Urdf::read`] and [`repair::bodies_of`] open files that an MJCF file
+//! includes. [`Urdf::import`] makes a robot file from a chain of a URDF or of an MJCF file, [`convert()`] writes a
+//! table in the other convention, [`export()`] writes it as a URDF, and [`robot_file::write`] writes a robot file.
+//! [`import()`] is for programs that read one URDF many times: it keeps the results. [`repair::proposals`] finds the
+//! mistake in a mass or an inertia that no body has.
 //!
 //! Numbers are rotated with twice the precision and rounded once. So a length of 0.4318 in the URDF is 0.4318 in the
 //! table, and a number that is zero on paper is zero, which lets the compiler remove it from the code.
@@ -27,6 +28,7 @@ mod kept;
 mod mjcf;
 mod payload;
 mod remark;
+pub mod repair;
 pub mod robot_file;
 mod selection;
 mod snap;

@@ -8,7 +8,7 @@
 mod actuator;
 mod body;
 mod compiler;
-mod element;
+pub(crate) mod element;
 mod equality;
 mod geom;
 mod inertial;

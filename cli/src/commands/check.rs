@@ -1,5 +1,7 @@
 //! `rne check`: checks robot files and plan files.
 
+mod repair;
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -25,6 +27,7 @@ Examples:
   rne check robots/*.yaml
   rne check --physics robots/planar2.yaml
   rne check --deny-warnings my_arm.yaml
+  rne check --repair robots/puma560.yaml   corrects wrong inertias
   rne check robots/puma560.plan.yaml   compiles and proves a plan
 
 `rne search` writes plan files (NAME.plan.yaml). A plan file lists the choices
@@ -38,6 +41,7 @@ mechanics by more than rounding. Warnings and notes do not change the status 0,
 except with --deny-warnings, which makes every warning count as an error.
 docs/reference/robot-file-keys.md explains every key of a robot file. If a URDF
 or an MJCF file does not say which arm is meant, rne checks the whole robot.")]
+#[allow(clippy::struct_excessive_bools)] // options of a command
 pub(crate) struct Arguments {
     /// Robot files, URDFs, names from `rne list`, or plan files of `rne search` (NAME.plan.yaml: choices that save
     /// operations in the code); - is standard input
@@ -49,10 +53,18 @@ pub(crate) struct Arguments {
     /// Exit with status 1 if there is a warning, for continuous integration
     #[arg(long)]
     deny_warnings: bool,
+    /// Propose a repair of each link that cannot exist; exit with status 1 if there is such a link
+    #[arg(long, conflicts_with_all = ["physics", "deny_warnings"])]
+    repair: bool,
+    /// Write the repairs into the files, if each link has only one
+    #[arg(long, requires = "repair")]
+    write: bool,
 }
 
-#[expect(clippy::unnecessary_wraps, reason = "what every command returns")]
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    if arguments.repair {
+        return repair::run(&arguments.files, arguments.write);
+    }
     let mut text = String::new();
     let mut bad = 0;
     let widest = arguments.files.iter().map(|path| width(&path.display().to_string())).max().unwrap_or(0);

@@ -10,7 +10,7 @@ use rne_model::Convention;
 use crate::files::file_name::Format;
 use crate::files::input_file;
 use crate::files::output_file::Output;
-use crate::files::robot_file::{not_opened, notes};
+use crate::files::robot_file::{gravity, not_opened, notes};
 use crate::outcome::{Failure, Outcome};
 use crate::palette::{QUIET, TITLE, TYPED};
 use crate::render::heading::rounding;
@@ -129,7 +129,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let Imported { robot, text, account, .. } = urdf.import(&options).map_err(|report| Failure::from(&report))?;
     let joints = if robot.dof() == 1 { "1 joint".to_owned() } else { format!("{} joints", robot.dof()) };
     let base = if robot.floating_base.is_some() { "floating" } else { "fixed" };
-    let remark = format!("{TITLE}{}{TITLE:#}: {joints}, {base} base\n{}", robot.name, told(&account, arguments));
+    let remark = format!(
+        "{TITLE}{}{TITLE:#}: {joints}, {base} base\n{}\
+         {QUIET}{}; if the base is turned, edit `gravity`{QUIET:#}\n",
+        robot.name,
+        told(&account, arguments),
+        gravity(&robot)
+    );
     arguments.output.deliver(Format::RobotFile, text, remark, &arguments.file)
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use rne_convert::{Account, Description, OpenError, Options, Remark, Selection};
-use rne_model::{Checked, Convention, Reader, Remedy, Report, Robot};
+use rne_model::{Checked, Convention, Reader, Remedy, Report, Robot, six_digits};
 
 use crate::files::input_file;
 use crate::outcome::Failure;
@@ -160,10 +160,17 @@ fn imported(name: &str, text: &str, frames: Frames) -> Result<String, Failure> {
     });
     remark(format_args!(
         "{TITLE}note{TITLE:#}: {name} is a URDF or an MJCF file, and the {what}\n      \
-         {TYPED}rne import {name}{TYPED:#} prints its robot file and every assumption\n{snapped}{}",
+         {TYPED}rne import {name}{TYPED:#} prints its robot file and every assumption\n      {}\n{snapped}{}",
+        gravity(&imported.robot),
         notes(remarks)
     ));
     Ok(imported.text.clone())
+}
+
+/// The gravity of an imported robot, which a URDF does not have.
+pub(crate) fn gravity(robot: &Robot) -> String {
+    let [x, y, z] = robot.gravity.map(six_digits);
+    format!("gravity in frame 0: [{x}, {y}, {z}] m/s²")
 }
 
 /// Writes a line for each remark of an import.

@@ -126,7 +126,9 @@ fn a_mistyped_sign_is_named() {
     let json = fine(&[&["eval", file.to_str().expect("UTF-8"), "--json"][..], &state].concat());
     let tau: String = json.chars().filter(|c| c.is_ascii_digit() || ".,-".contains(*c)).collect();
     let called = rne(&[&["diagnose", "puma560", "--tau", &tau][..], &state].concat());
-    for part in ["exactly", "`alpha` of row 3 (j3) has the other sign", "in the file `alpha` of row 3 (j3) is -1.5"] {
+    for part in
+        ["exactly", "`alpha` of row 3 (j3) has the other sign", "in the file it is -1.5708 rad; check in the source"]
+    {
         assert!(called.out.contains(part), "no `{part}` in {called:?}");
     }
 }

@@ -233,13 +233,17 @@ fn every_command_takes_a_urdf_with_one_arm() {
     let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
     let (urdf, yaml, plan) = (path("puma.urdf"), path("puma.yaml"), path("puma.plan.yaml"));
     for command in [&["export", "puma560", "--urdf", "-o", &urdf][..], &["import", &urdf, "-o", &yaml]] {
-        assert_eq!(rne(command).status, 0, "{command:?}");
+        let called = rne(command);
+        assert_eq!(called.status, 0, "{command:?}");
+        let is_import = command[0] == "import";
+        assert_eq!(called.said().contains("gravity in frame 0: [0, 0, -9.81] m/s²; if"), is_import, "{called:?}");
     }
     for command in [&["eval", "--q", "1,1,1,1,1,1"][..], &["ops"], &["emit"], &["show", "--joint", "2"]] {
         let [of_urdf, of_yaml] = [&urdf, &yaml].map(|file| rne(&[command, &[file.as_str()]].concat()));
         assert_eq!((of_urdf.status, &of_urdf.out), (0, &of_yaml.out), "{command:?}: {of_urdf:?}");
         assert!(of_urdf.err.contains("is a URDF or an MJCF file, and the arm is from world to "), "{of_urdf:?}");
         assert!(of_urdf.err.contains(&format!("rne import {urdf}")), "{of_urdf:?}");
+        assert!(of_urdf.err.contains("gravity in frame 0: [0, 0, -9.81] m/s²"), "a URDF has none: {of_urdf:?}");
         assert!(!of_urdf.err.contains("snapped"), "the angles are exact: {of_urdf:?}");
     }
     let text = fs::read_to_string(&urdf).expect("the URDF");

@@ -35,6 +35,7 @@ mod mark;
 mod motors;
 mod plans;
 mod plot;
+mod repair;
 mod report;
 mod residuals;
 mod search;

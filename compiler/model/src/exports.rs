@@ -1,6 +1,7 @@
 //! The public names that exist only with the feature `std`: robots, their files, readers and errors.
 
 pub use crate::check::{Checked, Reader};
+pub use crate::lints::mirror::other_side;
 pub use crate::loops::closed_loop::{ClosedLoop, ClosedLoops, Cut, Pivot};
 pub use crate::loops::dependents::{Actuation, NoDependents, choose_dependents};
 pub use crate::parts::body::{Bodies, Body, UnknownBody};

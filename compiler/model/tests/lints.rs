@@ -8,7 +8,7 @@ use rne_model::{Checked, Reader, Severity};
 fn a_centre_of_mass_has_a_mass() {
     let diagnostic = the_one("      mass: 2.5\n", "");
     assert_eq!(diagnostic.message, "link 1 has a centre of mass but no mass");
-    assert!(diagnostic.help.is_some_and(|help| help.contains("write `mass: 0`")));
+    assert!(diagnostic.help.is_some_and(|help| help.contains("without mass, delete `com`")));
     assert!(
         found(&with("      mass: 2.5\n      com: [0, 0, 0.3]\n", "")).diagnostics.is_empty(),
         "an inertia is no slip"
@@ -405,7 +405,7 @@ fn what_is_no_lint() {
         ("{xx: 0.1, yy: 0.12, zz: 0.02}", "{yy: 0.12, zz: 0.12}"),
         ("{xx: 0.1, yy: 0.12, zz: 0.02}", "{}"),
         // A massless link with inertia.
-        ("mass: 2.5", "mass: 0"),
+        ("mass: 2.5\n      com: [0, 0, 0.3]", "mass: 0"),
         // A point mass on purpose.
         ("{xx: 0.1, yy: 0.12, zz: 0.02}", "{ }"),
         ("com: [0, 0, 0.3]", "com: [0, 0, -5]"),

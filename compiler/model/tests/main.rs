@@ -13,6 +13,7 @@ mod fuzz;
 mod good;
 mod identifiers;
 mod lints;
+mod lints_per_link;
 mod mirror;
 mod motors;
 mod parallelogram;

@@ -20,41 +20,41 @@ const MAX_ELEMENTS: usize = 200_000;
 
 /// An element of the file.
 #[derive(Debug, Default)]
-pub(super) struct Element {
-    pub(super) name: String,
+pub(crate) struct Element {
+    pub(crate) name: String,
     /// The place of the element's tag in the text.
-    pub(super) span: Range<usize>,
+    pub(crate) span: Range<usize>,
     /// The names and the values of the attributes.
-    pub(super) attributes: Vec<(String, String)>,
-    pub(super) children: Vec<Element>,
+    pub(crate) attributes: Vec<(String, String)>,
+    pub(crate) children: Vec<Element>,
 }
 
 impl Element {
     /// Returns the value of an attribute that the element itself has.
-    pub(super) fn text(&self, attribute: &str) -> Option<&str> {
+    pub(crate) fn text(&self, attribute: &str) -> Option<&str> {
         self.attributes.iter().find(|(name, _)| name == attribute).map(|(_, value)| value.as_str())
     }
 
     /// Returns the children with a name.
-    pub(super) fn children(&self, name: &str) -> impl Iterator<Item = &Self> {
+    pub(crate) fn children(&self, name: &str) -> impl Iterator<Item = &Self> {
         self.children.iter().filter(move |child| child.name == name)
     }
 
     /// Returns the elements inside all sections of a name; the file may have several such sections.
-    pub(super) fn below(&self, section: &str) -> impl Iterator<Item = &Self> {
+    pub(crate) fn below(&self, section: &str) -> impl Iterator<Item = &Self> {
         self.children(section).flat_map(|section| &section.children)
     }
 }
 
 /// Returns the place of a part of a tag in the text.
-pub(super) fn within(source: &Source, tag: &Range<usize>, part: &str) -> Range<usize> {
+pub(crate) fn within(source: &Source, tag: &Range<usize>, part: &str) -> Range<usize> {
     let found = source.text.get(tag.clone()).filter(|_| !part.is_empty()).and_then(|tag| tag.find(part));
     found.map_or(tag.clone(), |at| tag.start + at..tag.start + at + part.len())
 }
 
 /// Reads the root element of the text. Elements of included files are put in their places, and the texts of these files
 /// are appended to that of the source.
-pub(super) fn read(source: &mut Source) -> Result<Element, Report> {
+pub(crate) fn read(source: &mut Source) -> Result<Element, Report> {
     let mut number = 0;
     let mut root = parse(source, 0, &mut number)?;
     let mut opened = BTreeSet::new();

@@ -9,11 +9,13 @@ use crate::observation::Observation;
 use crate::slip::{Slip, rotation};
 
 /// The computation of another tool: its model of the arm, and its treatment of a state.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Computation {
     pub(crate) robot: Robot,
     pub(crate) misprints: Vec<Misprint>,
     pub(crate) reversed: Vec<usize>,
+    /// Factors on the speed, acceleration and torque of a joint.
+    pub(crate) factors: Vec<(usize, f64)>,
     /// Factors of positions, and of velocities and accelerations, of revolute joints.
     scales: [f64; 2],
     /// Multiple of its constant part that is added to each joint variable.
@@ -69,6 +71,7 @@ impl Computation {
             robot: robot.clone(),
             misprints: Vec::new(),
             reversed: Vec::new(),
+            factors: Vec::new(),
             scales: [1.0; 2],
             offsets: 0.0,
             velocity_factor: 1.0,
@@ -101,6 +104,10 @@ impl Computation {
     /// Returns the rows of the coordinates.
     fn rows(&self) -> impl Iterator<Item = &Row> {
         self.robot.independent_joints().map(|joint| &joint.row)
+    }
+
+    fn factor(&self, joint: usize) -> f64 {
+        self.factors.iter().filter(|(at, _)| *at == joint).map(|(_, factor)| factor).product()
     }
 
     /// Multiplies the angles of revolute joints by a factor, and if `all` is true, their speeds and accelerations too.
@@ -179,6 +186,8 @@ impl Computation {
             if self.reversed.contains(&index) {
                 (*q, *qd, *qdd) = (-*q, -*qd, -*qdd);
             }
+            let factor = self.factor(index);
+            (*qd, *qdd) = (*qd * factor, *qdd * factor);
             *qd *= self.velocity_factor;
             *qdd *= self.acceleration_factor * if index == 0 { self.first_factor } else { 1.0 };
         }
@@ -197,6 +206,7 @@ impl Computation {
         for (index, (tau, row)) in tau.iter_mut().zip(self.rows()).enumerate() {
             *tau *= if self.reversed.contains(&index) { -self.torque_factor } else { self.torque_factor };
             *tau *= if row.kind == JointKind::Revolute { self.moment_factor } else { 1.0 };
+            *tau *= self.factor(index);
         }
         if self.order_of_torques.is_empty() {
             return Ok(tau);

@@ -33,6 +33,12 @@ impl Observation {
         Self { resolution: self.resolution.iter().map(|half| half.min(most)).collect(), ..self.clone() }
     }
 
+    /// Returns the number of decimal digits of all torques together, by the largest torque.
+    pub(crate) fn digits(&self) -> f64 {
+        let size = largest(&self.tau);
+        self.resolution.iter().map(|half| (size / half.max(ROUNDING * size)).log10().max(0.0)).sum()
+    }
+
     /// Whether torques agree with those of the observation within its tolerances.
     pub(crate) fn shows(&self, tau: &[f64]) -> bool {
         if tau.len() != self.tau.len() || tau.iter().any(|tau| !tau.is_finite()) {

@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 
 use nalgebra::{Rotation3, Vector3};
-use rne_model::{Convention, Inertia, JointKind, Robot, Transform};
+use rne_model::{Convention, JointKind, Robot, Transform};
 
 use crate::computation::{Computation, WrenchAxes, is_of_lecture};
 use crate::lecture::Misprint;
-use crate::links::{each_link, move_com, shifted, untwist};
+use crate::links::LinkSlip;
 use crate::order;
 use crate::typo::Typo;
 
@@ -164,7 +164,7 @@ slips! {
         "velocities and accelerations are exchanged", "q̇ before q̈: τ(q, q̇, q̈)";
     /// A misprinted formula of the lecture, or a common mistake in one.
     Misprint(Misprint): "misprint", "formula", "", "";
-    /// A wrong sign in one row or link. This slip is tried alone only, not in pairs.
+    /// A slip in one row, joint or link. It is tried alone, and in pairs with the slips of the whole arm.
     Typo(Typo): "typo", "number", "", "";
 }
 
@@ -291,16 +291,13 @@ impl Slip {
             Self::GravityInWorld => {
                 robot.gravity = rotation(&robot.base).inverse_transform_vector(&robot.gravity.into()).into();
             }
-            Self::InertiaAboutOrigin => each_link(robot, |link| link.inertia = shifted(link, -1.0)),
-            Self::InertiaShifted => each_link(robot, |link| link.inertia = shifted(link, 1.0)),
-            Self::ProductsOfInertia => each_link(robot, |link| {
-                let Inertia { xy, xz, yz, .. } = link.inertia;
-                link.inertia = Inertia { xy: -xy, xz: -xz, yz: -yz, ..link.inertia };
-            }),
-            Self::InertiaNotTwisted => untwist(robot),
-            Self::ComReversed => each_link(robot, |link| link.com = link.com.map(|c| -c)),
-            Self::ComFromOtherEnd => move_com(robot, 1.0),
-            Self::ComOfOtherEnd => move_com(robot, -1.0),
+            Self::InertiaAboutOrigin => LinkSlip::InertiaAboutOrigin.everywhere(robot),
+            Self::InertiaShifted => LinkSlip::InertiaShifted.everywhere(robot),
+            Self::ProductsOfInertia => LinkSlip::ProductsOfInertia.everywhere(robot),
+            Self::InertiaNotTwisted => LinkSlip::InertiaNotTwisted.everywhere(robot),
+            Self::ComReversed => LinkSlip::ComReversed.everywhere(robot),
+            Self::ComFromOtherEnd => LinkSlip::ComFromOtherEnd.everywhere(robot),
+            Self::ComOfOtherEnd => LinkSlip::ComOfOtherEnd.everywhere(robot),
             Self::PositionsAsDegrees => of.scale(PI / 180.0, false),
             Self::PositionsInDegrees => of.scale(180.0 / PI, false),
             Self::StateAsDegrees => of.scale(PI / 180.0, true),
@@ -336,7 +333,7 @@ impl Slip {
             Self::TorquesInNmm => of.moment_factor = 1e3,
             Self::RatesExchanged => of.rates_exchanged = true,
             Self::Misprint(misprint) => of.misprints.push(misprint),
-            Self::Typo(typo) => typo.make(robot),
+            Self::Typo(typo) => typo.make(of),
         }
     }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use clap::Args;
 use rne::{DynArm, Wrench};
 use rne_codegen::Function;
-use rne_diagnose::{COARSEST, Diagnosis, Explanation, Observation};
+use rne_diagnose::{COARSEST, Diagnosis, Explanation, NearMiss, Observation};
 use rne_model::{Robot, half_of_last_digit};
 use serde::Serialize;
 
@@ -36,11 +36,12 @@ Examples:
 rne tries the usual mistakes one by one, then in pairs: convention, gravity,
 inertia and centre of mass about another point, units, offsets, signs, motors,
 wrench, order of lists, and the misprints of the lecture
-(docs/teaching/lecture/errata.md). Single mistakes also include two exchanged joints and
-the sign of one alpha, one theta, or one component of a centre of mass. In a
+(docs/teaching/lecture/errata.md). Mistakes of a single row or link come next:
+signs, centre of mass, inertia, mass, exchanged numbers, zero position. In a
 tree rne also tries exchanged branches and a tip on another link, and no
-misprints; followers may have the other sign. Give speeds and accelerations of all joints:
-such a state distinguishes most mistakes.")]
+misprints; followers may have the other sign. If nothing agrees, rne tells what
+comes nearest. Give speeds and accelerations of all joints: such a state
+distinguishes most mistakes.")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     arm: ChosenArm,
@@ -65,7 +66,8 @@ pub(crate) struct Arguments {
         value_parser = checked(|part: &f64| (0.0..1.0).contains(part),
         "write a fraction of the largest torque, from 0 to below 1, such as --tolerance 1e-4"))]
     tolerance: Option<f64>,
-    /// Print the answer as JSON: {"agrees": …, "tolerance": …, "accepted": […], "error": …, "explanations": […]}
+    /// Print the answer as JSON: {"agrees": …, "tolerance": …, "accepted": […], "error": …, "explanations": […],
+    /// "nearest": …}
     #[arg(long)]
     json: bool,
 }
@@ -96,6 +98,15 @@ struct Reply {
     accepted: Vec<f64>,
     error: f64,
     explanations: Vec<Reason>,
+    /// The cause that comes nearest where nothing explains the torques.
+    nearest: Option<Nearest>,
+}
+
+#[derive(Serialize)]
+struct Nearest {
+    error: f64,
+    says: String,
+    right: String,
 }
 
 #[derive(Serialize)]
@@ -130,6 +141,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let (tolerance, diagnosis) = found;
     let is_near = tolerance > 0.0;
+    let nearest = match diagnosis {
+        Diagnosis::Unexplained(_) => rne_diagnose::near_miss(&robot, all).map_err(Failure::usage)?,
+        _ => None,
+    };
     let at_fault = match diagnosis {
         Diagnosis::Unexplained(_) => true,
         Diagnosis::Agrees(_) => is_near && snapped.is_none(),
@@ -140,7 +155,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let accepted = if is_near { vec![tolerance * largest; right.len()] } else { seen.resolution };
         let most = accepted.iter().fold(0.0, |most: f64, half| most.max(*half));
         let tolerance = if largest > 0.0 { most / largest } else { 0.0 };
-        let reply = Reply { tolerance, accepted, ..reply(&robot, &diagnosis) };
+        let told = |near: &NearMiss| Nearest { error: near.error, says: near.says(&robot), right: near.right(&robot) };
+        let nearest = nearest.as_ref().map(told);
+        let reply = Reply { tolerance, accepted, nearest, ..reply(&robot, &diagnosis) };
         let reply = Reply { agrees: reply.agrees && !at_fault, ..reply };
         return Ok(Outcome { at_fault, ..Outcome::json(&reply)? });
     }
@@ -166,8 +183,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             let pair = if is_coarse { "does to 1e-3 of the largest" } else { "of mistakes does" };
             table(&robot, &seen, &right)
                 + &format!(
-                    "\n{ERROR}no usual mistake{ERROR:#} gives these torques, and no pair {pair}\n\
-                     {QUIET}{trace}accept larger errors: --tolerance 1e-3{QUIET:#}\n"
+                    "\n{ERROR}no usual mistake{ERROR:#} gives these torques, and no pair {pair}\n{}\
+                     {QUIET}{trace}accept larger errors: --tolerance 1e-3{QUIET:#}\n",
+                    nearest.map_or_else(String::new, |nearest| coming_near(&robot, &nearest))
                 )
         }
     };
@@ -229,7 +247,7 @@ fn reply(robot: &Robot, diagnosis: &Diagnosis) -> Reply {
         }
         Diagnosis::Unexplained(error) => (false, *error, Vec::new()),
     };
-    Reply { agrees, tolerance: 0.0, accepted: Vec::new(), error, explanations }
+    Reply { agrees, tolerance: 0.0, accepted: Vec::new(), error, explanations, nearest: None }
 }
 
 /// Returns the remark that angles of the robot file were snapped, with what its notes say about it.
@@ -253,6 +271,17 @@ fn nearly_right(robot: &Robot, table: &str, error: f64, snapped: Option<&str>) -
         "{table}\nthe torques agree with {TITLE}{name}{TITLE:#} to {error:.1e} of the largest, but not with all of \
          their digits;\n{ERROR}no usual mistake{ERROR:#} explains the difference\n{QUIET}{}{QUIET:#}\n",
         wrap(hint, width, "")
+    )
+}
+
+/// Writes what comes nearest to torques that nothing explains, and what is right.
+fn coming_near(robot: &Robot, nearest: &NearMiss) -> String {
+    let (width, left) = (terminal::width(80), rounded(100.0 * nearest.error, 2));
+    let says = wrap(&format!("  - {}", nearest.says(robot)), width, "    ");
+    let right = wrap(&format!("    right: {}", nearest.right(robot)), width, "           ");
+    format!(
+        "{TITLE}this comes nearest{TITLE:#}; {left} % of the largest torque remain unexplained:\n{says}\n\
+         {FOUND}{right}{FOUND:#}\n"
     )
 }
 

@@ -197,7 +197,7 @@ fn centre_without_mass(cx: &Context, item: &Node, index: usize, joint: &Joint) -
     cx.report(
         Diagnostic::lint(com.head(), format!("link {} has a centre of mass but no mass", index + 1))
             .label("the mass is missing")
-            .help("add the `mass` in kg; if the link is without mass, write `mass: 0`"),
+            .help("add the `mass` in kg; if the link is without mass, delete `com`"),
     );
     true
 }

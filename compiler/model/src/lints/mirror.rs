@@ -105,7 +105,8 @@ fn pairs(joints: &[Joint]) -> Vec<[usize; 2]> {
 
 /// Returns the names that the same joint on the other side may have: `arm_right_1` for `arm_left_1`, `rf_haa` for
 /// `lf_haa`, `FR_hip` for `FL_hip`, `RHipYaw` for `LHipYaw`.
-fn other_side(name: &str) -> Vec<String> {
+#[must_use]
+pub fn other_side(name: &str) -> Vec<String> {
     let mut names = Vec::new();
     if name.len() > LONGEST_NAME {
         return names;

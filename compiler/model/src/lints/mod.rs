@@ -3,6 +3,7 @@
 pub(crate) mod arm;
 pub(crate) mod closed_loops;
 pub(crate) mod inertia;
+pub(crate) mod link;
 pub(crate) mod mirror;
 pub(crate) mod resistance;
 pub(crate) mod single_value;

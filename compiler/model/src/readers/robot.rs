@@ -126,6 +126,7 @@ fn with_references(cx: &Context, node: &Node, (format, takes): (u32, Takes), rob
 /// Reports warnings that need all joints; the joints `of_loops` are also moved by closed loops.
 fn lint_joints(cx: &Context, node: &Node, convention: Convention, joints: &[Joint], of_loops: &[usize]) {
     lints::inertia::inertias(cx, node, convention, joints, of_loops);
+    lints::link::links(cx, node, convention, joints);
     lints::arm::nearly_parallel(cx, joints);
     lints::arm::placeholders(cx, node, joints);
     lints::arm::missing_friction(cx, node);

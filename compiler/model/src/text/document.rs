@@ -108,7 +108,7 @@ impl Node {
     }
 
     /// Returns the items of the list under a key of this mapping; none where it has no such list.
-    pub(crate) fn list(&self, key: &str) -> &[Rc<Self>] {
+    pub fn list(&self, key: &str) -> &[Rc<Self>] {
         match self.get(key).map(|node| &node.content) {
             Some(Content::Sequence(items)) => items,
             _ => &[],
