@@ -167,6 +167,19 @@ pub mod robot_file {
 #[doc = include_str!("../docs/control/run-time.md")]
 mod run_time {}
 
+/// Runs the examples of the capabilities.
+#[cfg(doctest)]
+#[allow(non_snake_case)] // a module for each name of a capability
+mod capabilities {
+    macro_rules! run {
+        ($($capability:ident $(of $robots:ident)?: $($sentence:literal),*;)*) => { $(
+            #[doc = rne_codegen::example!("../../../docs/" $capability)]
+            mod $capability {}
+        )* };
+    }
+    rne_codegen::capabilities!(run);
+}
+
 /// Runs the examples in the documentation of the derives.
 #[cfg(doctest)]
 mod derives {

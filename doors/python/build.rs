@@ -62,6 +62,9 @@ fn write(methods: &mut String, function: Function, name: &str) {
         )
     });
     let _ = write!(documentation, "Returns {}", returned(function));
+    if let names @ [_, ..] = function.what().aliases() {
+        let _ = write!(documentation, "\n\nOther names: {}.", names.join(", "));
+    }
     named.extend(["parameters", "out"]);
     let frame = if function.of_frame().is_some() { "frame" } else { "None" };
     let mutable = if with_payload.is_empty() { "" } else { "mut " };

@@ -43,6 +43,8 @@ macro_rules! derives {
         /// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone.
         /// The type gets a constant with the operations of each function, such as `MASS_MATRIX_OPERATIONS` for
         /// `mass_matrix`; `DOF`, names and limits come with `InverseDynamics`, or with `ClosedLoops`.
+        ///
+        #[cfg_attr(not(doctest), doc = rne_codegen::example!("" $capability))]
         #[proc_macro_derive($capability, attributes(robot))]
         #[allow(non_snake_case)] // a function for each name of a derive
         pub fn $capability(input: TokenStream) -> TokenStream {

@@ -112,9 +112,8 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         self
     }
 
-    /// The arm with its rotors, as [`Robot::with_rotors`](rne_model::Robot::with_rotors) has it: G² Jm q̈ is part of its
-    /// torques, its mass matrix and its kinetic energy, and friction alone is left to
-    /// [`Actuation`](crate::Actuation).
+    /// The arm with its rotors, as `Robot::with_rotors` of a robot file has it: G² Jm q̈ is part of its torques, its
+    /// mass matrix and its kinetic energy, and friction alone is left to [`Actuation`](crate::Actuation).
     #[must_use]
     pub const fn with_rotors(mut self) -> Self {
         self.rotors = true;

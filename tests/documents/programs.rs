@@ -22,8 +22,8 @@ fn example(name: &str, start: &str) -> (String, String) {
 /// The derive and the calls of an example, with the robot file of the commands above them.
 pub(crate) fn control() -> String {
     let (derive, calls) = example("control", "let gravity");
-    let derive = derive.replace("../robots/puma560.yaml", "arm.yaml");
-    assert!(derive.contains("path = \"arm.yaml\"") && calls.lines().count() == 4, "{derive}{calls}");
+    let derive = derive.replace("../robots/puma560.yaml", "../arm.yaml");
+    assert!(derive.contains("path = \"../arm.yaml\"") && calls.lines().count() == 4, "{derive}{calls}");
     format!("```rust\n{derive}{calls}```\n")
 }
 

@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
+use rne_codegen::What;
+
 use crate::{files_below, read, robot, robot_files, root};
 
 /// The rows of the crates stand in such an order that each uses only what stands above it.
@@ -113,5 +115,21 @@ fn no_source_lists_the_robots() {
         let words: BTreeSet<&str> = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').collect();
         let named = names.iter().filter(|name| words.contains(name.as_str())).count();
         assert!(4 * named < 3 * names.len(), "{} names {named} of {} robots", source.display(), names.len());
+    }
+}
+
+/// A search of the reference for a name of another program finds the method.
+#[test]
+fn methods_have_the_other_names_of_the_table() {
+    let mut files = Vec::new();
+    files_below(&root().join("rne-runtime/src/capability"), ".rs", &mut files);
+    let traits: String = files.iter().map(|path| read(path)).collect();
+    for what in What::ALL {
+        let found = traits.split_once(&format!("    fn {}(", what.name()));
+        let Some((before, _)) = found else { panic!("no trait has {}", what.name()) };
+        let lines =
+            before.lines().rev().map_while(|line| line.trim().strip_prefix("#[doc(alias = \"")?.strip_suffix("\")]"));
+        let aliases: BTreeSet<&str> = lines.collect();
+        assert_eq!(aliases, what.aliases().iter().copied().collect(), "{}", what.name());
     }
 }

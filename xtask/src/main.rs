@@ -24,7 +24,7 @@ mod verify;
 mod writing;
 
 use measures::{batch_profile, gpu, growth, instructions, performance, tree_counts};
-use packages::{bare, capi, features, fleet, light, package, playground, python, ros2, sbom, site};
+use packages::{bare, capi, features, fleet, light, package, playground, python, release, ros2, sbom, site};
 use writing::{lines, prose};
 
 use std::process::ExitCode;
@@ -81,6 +81,7 @@ enum Task {
     Gpu(gpu::Gpu),
     Urdf(urdf::Urdf),
     Python(python::Python),
+    Release(release::Release),
     Ros2(ros2::Ros2),
     Capi(capi::Capi),
     Page(page::Page),
@@ -135,6 +136,7 @@ impl Task {
             Self::Features(features) => ("features", false, features.run()),
             Self::Urdf(task) => ("urdf", task.install, task.run()),
             Self::Python(task) => ("python", task.install, task.run()),
+            Self::Release(task) => ("release", false, task.run()),
             Self::Ros2(task) => ("ros2", task.install, task.run()),
             Self::Capi(task) => ("capi", task.install, task.run()),
             Self::Page(task) => ("page", task.install, task.run()),

@@ -42,6 +42,11 @@ enum Name {
 }
 
 impl Tool {
+    /// The public interface against the last tag.
+    pub(crate) fn semver(install: bool) -> Self {
+        Self { tool: Name::Semver, install }
+    }
+
     pub(crate) fn run(&self) -> Result<Verdict> {
         let shell = machine::shell()?;
         let program = match self.tool {

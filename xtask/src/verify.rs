@@ -311,6 +311,13 @@ const STEPS: &[Step] = &[
         needs: Needs::Nothing,
     },
     Step {
+        name: "release",
+        about: "wheels and binaries, each tried where nothing else of rne is",
+        variables: &[],
+        command: &["cargo", "xtask", "release", "--dry-run"],
+        needs: Needs::Time,
+    },
+    Step {
         name: "msrv",
         about: "the oldest compiler that Cargo.toml allows builds what users build",
         variables: &[("CARGO_TARGET_DIR", "target/msrv")],

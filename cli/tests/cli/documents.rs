@@ -69,6 +69,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask doors", ".ci/run", "step cargo xtask doors --install\n"),
     ("cargo xtask fuzz", ".ci/run", "step cargo xtask fuzz"),
     ("cargo xtask package", "xtask/src/verify.rs", "\"xtask\", \"package\""),
+    ("cargo xtask release", "xtask/src/verify.rs", "\"xtask\", \"release\""),
     ("cargo xtask tool", "xtask/src/verify.rs", "\"xtask\", \"tool\", \"deny\""),
     ("cargo xtask tool book", "xtask/src/verify.rs", "\"xtask\", \"tool\", \"book\""),
     ("cargo xtask site", "xtask/src/verify.rs", "\"xtask\", \"site\", \"--install\""),

@@ -71,7 +71,7 @@ pub use reduced::algorithm::Algorithm;
 pub use reduced::inward::ExpressedIn;
 pub use refusal::{Attempt, LeftOut, Reason, Refusal};
 pub use registers::{order_for_registers, ordered_for_registers, statements_of_outputs};
-pub use rne_functions::{argument_parts, argument_type, capabilities, functions};
+pub use rne_functions::{argument_parts, argument_type, capabilities, example, functions};
 pub use values::{Contraction, Negated, Value, ValueId, Values};
 
 use crate::formulation::Formulation;

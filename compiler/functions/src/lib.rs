@@ -11,6 +11,7 @@ mod argument;
 mod axes;
 mod capability;
 mod entry;
+mod example;
 mod fixed_base;
 mod floating_base;
 mod function;

@@ -18,39 +18,39 @@ macro_rules! results {
     ($callback:ident) => {
         $callback! {
             /// Torques from motion.
-            InverseDynamics by Torques = "inverse_dynamics" | "torques" | "rnea":
+            InverseDynamics by Torques = "inverse_dynamics" | "torques" | "rnea" | "computeTorque" | "rne":
                 [InverseDynamics Entry::TORQUES] [FloatingBase floating::TORQUES];
             /// Torques from motion, with the sines and cosines of the positions as arguments.
             InverseDynamicsFromSinCos by Torques = "inverse_dynamics_from_sin_cos": [InverseDynamics Entry::TORQUES] [];
             /// Torques that hold the robot still.
-            GravityTorques by GravityTorques = "gravity_torques": [InverseDynamics fixed::GRAVITY_TORQUES] [FloatingBase floating::GRAVITY_TORQUES];
+            GravityTorques by GravityTorques = "gravity_torques" | "gravity compensation" | "computeGeneralizedGravity" | "gravload": [InverseDynamics fixed::GRAVITY_TORQUES] [FloatingBase floating::GRAVITY_TORQUES];
             /// Torques where nothing accelerates.
-            BiasTorques by Torques = "bias_torques": [InverseDynamics fixed::BIAS_TORQUES] [FloatingBase floating::BIAS_TORQUES];
+            BiasTorques by Torques = "bias_torques" | "bias" | "nle" | "nonLinearEffects" | "qfrc_bias": [InverseDynamics fixed::BIAS_TORQUES] [FloatingBase floating::BIAS_TORQUES];
             /// C(q, q̇) q̇: torques where nothing accelerates or weighs.
-            CoriolisTorques by Torques = "coriolis_torques": [CoriolisMatrix fixed::CORIOLIS_TORQUES] [];
+            CoriolisTorques by Torques = "coriolis_torques" | "Coriolis": [CoriolisMatrix fixed::CORIOLIS_TORQUES] [];
             /// M(q).
-            MassMatrix by MassMatrix = "mass_matrix" | "crba": [MassMatrix fixed::MASS_MATRIX] [FloatingBase floating::MASS_MATRIX];
+            MassMatrix by MassMatrix = "mass_matrix" | "crba" | "mj_fullM" | "qM" | "inertia matrix": [MassMatrix fixed::MASS_MATRIX] [FloatingBase floating::MASS_MATRIX];
             /// M(q)⁻¹.
-            InverseMassMatrix by MassMatrix = "inverse_mass_matrix": [MassMatrix fixed::INVERSE_MASS_MATRIX] [];
+            InverseMassMatrix by MassMatrix = "inverse_mass_matrix" | "computeMinverse": [MassMatrix fixed::INVERSE_MASS_MATRIX] [];
             /// M(q)⁻¹ τ.
-            InverseMassMatrixTimesTorques by Accelerations = "inverse_mass_matrix_times_torques":
+            InverseMassMatrixTimesTorques by Accelerations = "inverse_mass_matrix_times_torques" | "mj_solveM":
                 [MassMatrix fixed::INVERSE_MASS_MATRIX_TIMES_TORQUES] [];
             /// C(q, q̇).
-            CoriolisMatrix by Derivatives = "coriolis_matrix": [CoriolisMatrix fixed::CORIOLIS_MATRIX] [];
+            CoriolisMatrix by Derivatives = "coriolis_matrix" | "computeCoriolisMatrix": [CoriolisMatrix fixed::CORIOLIS_MATRIX] [];
             /// Accelerations from torques.
-            ForwardDynamics by Accelerations = "forward_dynamics" | "aba":
+            ForwardDynamics by Accelerations = "forward_dynamics" | "aba" | "mj_forward":
                 [ForwardDynamics fixed::FORWARD_DYNAMICS] [FloatingBase floating::ACCELERATIONS];
             /// Accelerations from torques while contacts hold some of the tips.
-            ForwardDynamicsInContact by CompositeBodies = "forward_dynamics_in_contact":
+            ForwardDynamicsInContact by CompositeBodies = "forward_dynamics_in_contact" | "constraintDynamics":
                 [] [ContactDynamics floating::FORWARD_DYNAMICS_IN_CONTACT];
             /// The pose of the tip.
-            ForwardKinematics = "forward_kinematics" | "pose" | "fk": [Kinematics fixed::FORWARD_KINEMATICS] [];
+            ForwardKinematics = "forward_kinematics" | "pose" | "fk" | "fkine": [Kinematics fixed::FORWARD_KINEMATICS] [];
             /// The poses of all links.
             LinkPoses = "link_poses": [Kinematics fixed::LINK_POSES] [];
             /// The Jacobian J of the tip.
-            Jacobian = "jacobian": [Kinematics fixed::JACOBIAN] [];
+            Jacobian = "jacobian" | "computeJointJacobian" | "mj_jac": [Kinematics fixed::JACOBIAN] [];
             /// J̇.
-            JacobianRate = "jacobian_rate": [JacobianDerivatives fixed::JACOBIAN_RATE] [];
+            JacobianRate = "jacobian_rate" | "computeJointJacobiansTimeVariation": [JacobianDerivatives fixed::JACOBIAN_RATE] [];
             /// J̇ q̇.
             JacobianRateTimesVelocity = "jacobian_rate_times_velocity": [Kinematics fixed::JACOBIAN_RATE_TIMES_VELOCITY] [];
             /// ∂J/∂q.
@@ -60,48 +60,48 @@ macro_rules! results {
             /// The acceleration of each tip where nothing accelerates.
             TipAccelerations = "tip_accelerations": [] [FloatingKinematics floating::TIP_ACCELERATIONS];
             /// Kinetic energy.
-            KineticEnergy = "kinetic_energy": [Energy fixed::KINETIC_ENERGY] [FloatingEnergy fixed::KINETIC_ENERGY];
+            KineticEnergy = "kinetic_energy" | "computeKineticEnergy": [Energy fixed::KINETIC_ENERGY] [FloatingEnergy fixed::KINETIC_ENERGY];
             /// Potential energy.
-            PotentialEnergy = "potential_energy":
+            PotentialEnergy = "potential_energy" | "computePotentialEnergy":
                 [Energy fixed::POTENTIAL_ENERGY] [FloatingEnergy fixed::POTENTIAL_ENERGY];
             /// The centre of mass.
-            CentreOfMass = "centre_of_mass": [CentreOfMass fixed::CENTRE_OF_MASS] [];
+            CentreOfMass = "centre_of_mass" | "center of mass" | "com": [CentreOfMass fixed::CENTRE_OF_MASS] [];
             /// The Jacobian of the centre of mass.
-            CentreOfMassJacobian = "centre_of_mass_jacobian": [CentreOfMass fixed::CENTRE_OF_MASS_JACOBIAN] [];
+            CentreOfMassJacobian = "centre_of_mass_jacobian" | "jacobianCenterOfMass" | "mj_jacSubtreeCom": [CentreOfMass fixed::CENTRE_OF_MASS_JACOBIAN] [];
             /// Torques per inertial parameter.
-            Regressor = "regressor": [Regressor fixed::REGRESSOR] [FloatingRegressor floating::REGRESSOR];
+            Regressor = "regressor" | "computeJointTorqueRegressor": [Regressor fixed::REGRESSOR] [FloatingRegressor floating::REGRESSOR];
             /// Derivatives of the torques.
-            InverseDynamicsDerivatives by Derivatives = "inverse_dynamics_derivatives":
+            InverseDynamicsDerivatives by Derivatives = "inverse_dynamics_derivatives" | "computeRNEADerivatives" | "IDSVA":
                 [InverseDynamicsDerivatives fixed::DERIVATIVES]
                 [FloatingInverseDynamicsDerivatives floating::INVERSE_DYNAMICS_DERIVATIVES];
             /// Derivatives of the accelerations.
-            ForwardDynamicsDerivatives by CompositeBodies = "forward_dynamics_derivatives":
+            ForwardDynamicsDerivatives by CompositeBodies = "forward_dynamics_derivatives" | "computeABADerivatives":
                 [ForwardDynamicsDerivatives fixed::ACCELERATION_DERIVATIVES] [];
             /// The gradient of a weighted sum of the torques.
             TorqueGradient by Torques = "torque_gradient": [InverseDynamicsGradient fixed::TORQUE_GRADIENT] [];
             /// The second derivatives of this sum.
-            TorqueHessian by SecondDerivatives = "torque_hessian": [InverseDynamicsHessian fixed::TORQUE_HESSIAN] [];
+            TorqueHessian by SecondDerivatives = "torque_hessian" | "ComputeRNEASecondOrderDerivatives": [InverseDynamicsHessian fixed::TORQUE_HESSIAN] [];
             /// The wrench at each joint.
             JointWrenches = "joint_wrenches": [JointWrenches fixed::JOINT_WRENCHES] [];
             /// The momentum of the joints and its rate.
-            MomentumAndRate by CompositeBodies = "momentum_and_rate": [MomentumObserver fixed::MOMENTUM_AND_RATE] [];
+            MomentumAndRate by CompositeBodies = "momentum_and_rate" | "momentum observer": [MomentumObserver fixed::MOMENTUM_AND_RATE] [];
             /// Torques of a wrench at the tip.
             WrenchTorques = "wrench_torques": [Kinematics fixed::WRENCH_TORQUES] [];
             /// Torques of motors.
             ActuatorTorques = "actuator_torques": [Actuation fixed::ACTUATOR_TORQUES] [];
             /// A step of the semi-implicit Euler method.
-            EulerStep by Accelerations = "euler_step": [EulerStep fixed::EULER_STEP] [FloatingEulerStep floating::EULER_STEP];
+            EulerStep by Accelerations = "euler_step" | "mj_step": [EulerStep fixed::EULER_STEP] [FloatingEulerStep floating::EULER_STEP];
             /// The derivatives of this step.
             EulerStepDerivatives by CompositeBodies = "euler_step_derivatives":
                 [EulerStepDerivatives fixed::EULER_STEP_DERIVATIVES]
                 [FloatingEulerStepDerivatives floating::EULER_STEP_DERIVATIVES];
             /// The momentum about the centre of mass.
-            CentroidalMomentum by CompositeBodies = "centroidal_momentum": [] [CentroidalMomentum floating::CENTROIDAL_MOMENTUM];
+            CentroidalMomentum by CompositeBodies = "centroidal_momentum" | "computeCentroidalMomentum": [] [CentroidalMomentum floating::CENTROIDAL_MOMENTUM];
             /// The matrix from velocities to this momentum.
-            CentroidalMomentumMatrix by CompositeBodies = "centroidal_momentum_matrix":
+            CentroidalMomentumMatrix by CompositeBodies = "centroidal_momentum_matrix" | "CCRBA" | "CMM":
                 [] [CentroidalMomentum floating::CENTROIDAL_MOMENTUM_MATRIX];
             /// The rate of this momentum where nothing accelerates.
-            CentroidalBias by CompositeBodies = "centroidal_bias": [] [CentroidalMomentum floating::CENTROIDAL_BIAS];
+            CentroidalBias by CompositeBodies = "centroidal_bias" | "dccrba": [] [CentroidalMomentum floating::CENTROIDAL_BIAS];
             /// A Newton step towards closed loops.
             ClosureStep = "closure_step": [ClosedLoops fixed::CLOSURE_STEP] [];
             /// The matrix G from velocities to those of the dependent joints.

@@ -36,12 +36,11 @@ macro_rules! what {
         }
 
         impl What {
-            /// The result that other programs, or a function at a frame, have under a name.
+            /// Its names in other programs, and at a frame.
             #[must_use]
-            pub fn of_alias(name: &str) -> Option<Self> {
-                match name {
-                    $($($alias => Some(Self::$what),)*)*
-                    _ => None,
+            pub const fn aliases(self) -> &'static [&'static str] {
+                match self {
+                    $(Self::$what => &[$($alias),*],)*
                 }
             }
 
@@ -70,3 +69,15 @@ macro_rules! what {
 }
 
 results!(what);
+
+impl What {
+    /// The result that has a name in other programs. Capitals, blanks and signs do not count.
+    #[must_use]
+    pub fn of_alias(name: &str) -> Option<Self> {
+        fn letters(text: &str) -> impl Iterator<Item = u8> {
+            text.bytes().filter(u8::is_ascii_alphanumeric).map(|letter| letter.to_ascii_lowercase())
+        }
+        let is_one = |what: &Self| what.aliases().iter().any(|alias| letters(alias).eq(letters(name)));
+        Self::ALL.into_iter().find(is_one)
+    }
+}

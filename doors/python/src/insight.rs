@@ -209,9 +209,10 @@ impl Arm {
     /// Why another tool's torques differ: the usual slips that give them, the likeliest first.
     ///
     /// Arguments are of one state, shape (n,). Returns a dict: `agrees`, `error` (in parts of the largest torque) and
-    /// `explanations`, each a list of sentences with what is right. `tolerance`, in parts of the largest torque, says
-    /// how far each torque may be off; by default by half of the last digit of its shortest decimal, 14.5 by 0.05, and
-    /// by 1e-6 of the largest torque at least.
+    /// `explanations`, each a list of sentences with what is right. If the list is empty, `nearest` is a tuple: the
+    /// mistake that comes nearest, and the error that remains; or None. `tolerance`, in parts of the largest torque,
+    /// says how far each torque may be off; by default by half of the last digit of its shortest decimal, 14.5 by
+    /// 0.05, and by 1e-6 of the largest torque at least.
     #[pyo3(signature = (q, qd, qdd, tau, *, tolerance=None))]
     fn diagnose<'py>(
         &self,
@@ -255,6 +256,13 @@ impl Arm {
         found.set_item("agrees", agrees)?;
         found.set_item("error", error)?;
         found.set_item("explanations", explanations)?;
+        let nearest = match diagnosis {
+            Diagnosis::Unexplained(_) => py.detach(|| rne_diagnose::near_miss(robot, std::slice::from_ref(&seen))),
+            _ => Ok(None),
+        };
+        let nearest = nearest.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let nearest = nearest.map(|near| (format!("{}; right: {}", near.says(robot), near.right(robot)), near.error));
+        found.set_item("nearest", nearest)?;
         Ok(found)
     }
 

@@ -38,6 +38,7 @@ def test_methods_say_what_they_compute():
             assert words and words.startswith(summary or ""), name
     assert "Returns shape (n, n) or (N, n, n)." in rne.Arm.mass_matrix.__doc__
     assert "`rne.payload`" in rne.Arm.inverse_dynamics_with_payload.__doc__
+    assert "Other names: gravity compensation," in rne.Arm.gravity_torques.__doc__
 
 
 def test_keywords_are_taken_by_name():

@@ -75,6 +75,8 @@ macro_rules! capability {
             $(or |$this:ident| $default:block)? = |$robot:ident| $body:expr;
     )*) => {
         $(#[$about])*
+        ///
+        #[cfg_attr(all(feature = "arm", not(doctest)), doc = rne_functions::example!("" $trait))] // `rne` runs it
         pub trait $trait<$(const $size: usize),*> { $(
             capability! { @method
                 $(#[$doc])* $name($($arg: $kind),*) -> $crate::values::shapes::known!($shape $(<$($of),*>)?)

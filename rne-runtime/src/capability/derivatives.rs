@@ -12,6 +12,8 @@ capability! {
 pub trait InverseDynamicsDerivatives<DOF> {
     /// ∂τ/∂q and ∂τ/∂q̇ of [`inverse_dynamics`](crate::InverseDynamics::inverse_dynamics) at a state, row = torque,
     /// column = joint. ∂τ/∂q̈ is the [mass matrix](crate::MassMatrix::mass_matrix).
+    #[doc(alias = "computeRNEADerivatives")]
+    #[doc(alias = "IDSVA")]
     fn inverse_dynamics_derivatives(q: joints, qd: joints, qdd: joints) -> TorqueDerivatives<DOF> =
         |robot| robot.torque_derivatives([q, qd, qdd], AtTip::Nothing);
 }
@@ -42,6 +44,7 @@ pub trait InverseDynamicsHessian<DOF> {
     /// They are the derivatives of [`torque_gradient`](crate::InverseDynamicsGradient::torque_gradient). Derived code
     /// in the reduced form computes them by composite bodies. If some joints follow others, rows and columns belong to
     /// the joints that follow no other.
+    #[doc(alias = "ComputeRNEASecondOrderDerivatives")]
     fn torque_hessian(q: joints, qd: joints, qdd: joints, multipliers: joints) -> TorqueHessian<DOF> =
         |robot| robot.hessian([q, qd, qdd], multipliers);
 }
@@ -58,6 +61,7 @@ pub trait ForwardDynamicsDerivatives<DOF> {
     /// mass matrix (a joint that moves nothing) gives numbers that are not finite.
     ///
     /// Source: J. Carpentier, N. Mansard, "Analytical derivatives of rigid body dynamics algorithms", 2018.
+    #[doc(alias = "computeABADerivatives")]
     fn forward_dynamics_derivatives(q: joints, qd: joints, tau: joints) -> AccelerationDerivatives<DOF> =
         |robot| robot.acceleration_derivatives([q, qd, tau], AtTip::Nothing, AtTip::Nothing);
 }
@@ -71,6 +75,7 @@ pub trait JacobianDerivatives<DOF> {
     /// J̇ at velocities `qd` (rad/s, prismatic: m/s): linear rows in m/s² per rad/s or m/s, angular ones in rad/s² per
     /// rad/s or m/s. J̇ q̇ alone is [`jacobian_rate_times_velocity`](crate::Kinematics::jacobian_rate_times_velocity),
     /// in fewer operations.
+    #[doc(alias = "computeJointJacobiansTimeVariation")]
     fn jacobian_rate(q: joints, qd: joints) -> SpatialRows = |robot| robot.jacobian_rate(q, qd);
 
     /// ∂J/∂q: element (r, i, j) is the derivative of element (r, i) of J with respect to the position of joint j, per

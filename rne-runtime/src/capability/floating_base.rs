@@ -118,6 +118,8 @@ pub trait CentroidalMomentum<DOF, NV> {
     ///
     /// Source: D. E. Orin, A. Goswami, S.-H. Lee, "Centroidal dynamics of a humanoid robot", 2013. A robot without mass
     /// gives numbers that are not finite.
+    #[doc(alias = "CCRBA")]
+    #[doc(alias = "CMM")]
     fn centroidal_momentum_matrix(q: joints) -> FloatingRows = |robot| robot.centroidal_momentum_matrix(q);
 
     /// The rate of this momentum when the accelerations (a - g, ω̇, q̈) are zero: force (N), then moment about the
@@ -125,11 +127,13 @@ pub trait CentroidalMomentum<DOF, NV> {
     /// gravity.
     ///
     /// `omega`: angular velocity of the base, rad/s.
+    #[doc(alias = "dccrba")]
     fn centroidal_bias(q: joints, qd: joints, omega: omega) -> Spatial = |robot| robot.centroidal_bias(q, qd, omega);
 
     /// The momentum A v (N s), then the angular momentum about the centre of mass (N m s), without the matrix.
     ///
     /// `twist`: velocity of the origin of frame 0, m/s, and angular velocity of the base, rad/s.
+    #[doc(alias = "computeCentroidalMomentum")]
     fn centroidal_momentum(q: joints, qd: joints, twist: twist) -> Spatial = |robot| {
         let [q, qd] = [q, qd].map(|values| robot.of_joints(values));
         robot.mechanism.centroidal_momentum(q.as_ref(), qd.as_ref(), twist)
@@ -185,6 +189,7 @@ pub trait ContactDynamics<DOF, NV, TIPS> {
     /// a foot, have finite forces in `f64`; in `f32`, μ is lost beside the other numbers, and such contacts need `f64`.
     ///
     /// Source of the equations: R. Featherstone, "Rigid Body Dynamics Algorithms", 2008, section 11.
+    #[doc(alias = "constraintDynamics")]
     fn forward_dynamics_in_contact(q: joints, qd: joints, tau: joints, omega: omega, base_rotation: rotation)
         -> AccelerationsAndWrenches<DOF, TIPS> =
         |robot| robot.forward_dynamics_in_contact([q, qd, tau], omega, base_rotation);

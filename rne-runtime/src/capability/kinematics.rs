@@ -10,6 +10,9 @@ capability! {
 /// there.
 pub trait Kinematics<DOF> {
     /// The pose of the tip frame (`tool` included) in the world.
+    #[doc(alias = "pose")]
+    #[doc(alias = "fk")]
+    #[doc(alias = "fkine")]
     fn forward_kinematics(q: joints) -> Pose =
         |robot| robot.mechanism.tip_pose(robot.of_joints(q).as_ref());
 
@@ -22,6 +25,8 @@ pub trait Kinematics<DOF> {
     /// velocity of the last link (three rows, rad/s), in world axes.
     ///
     /// Column i of a revolute joint is z_i × (p_tip - p_i) above z_i, of a prismatic one z_i above 0.
+    #[doc(alias = "computeJointJacobian")]
+    #[doc(alias = "mj_jac")]
     fn jacobian(q: joints) -> SpatialRows = |robot| robot.jacobian(q);
 
     /// J̇ q̇: acceleration of the tip frame's origin (m/s²) above angular acceleration of the last link (rad/s²) at q̈

@@ -16,6 +16,10 @@ pub trait MassMatrix<DOF> {
     ///
     /// Symmetric to the last bit, positive semidefinite; definite unless links are massless. No rotor inertia, unless
     /// the arm is taken with its rotors (`#[robot(rotors)]`, `with_rotors`): then G² Jm is added to the diagonal.
+    #[doc(alias = "crba")]
+    #[doc(alias = "mj_fullM")]
+    #[doc(alias = "qM")]
+    #[doc(alias = "inertia matrix")]
     fn mass_matrix(q: joints) -> Matrix = |robot| robot.mass_matrix(q, AtTip::Nothing);
 
     /// M(q)⁻¹: element (i, j) is the acceleration of joint i for a unit torque at joint j, from rest and without
@@ -23,6 +27,7 @@ pub trait MassMatrix<DOF> {
     ///
     /// Symmetric to the last bit. A singular mass matrix (a joint that moves nothing) gives numbers that are not
     /// finite, and never panics.
+    #[doc(alias = "computeMinverse")]
     fn inverse_mass_matrix(q: joints) -> Matrix or |this| {
         inverse_of(this.mass_matrix(q), &[T::zero(); DOF])
     } = |robot| robot.inverse_mass_matrix(q, AtTip::Nothing);
@@ -32,6 +37,7 @@ pub trait MassMatrix<DOF> {
     /// vector: of impulses (N m s), for example, which change the velocities.
     ///
     /// A singular mass matrix (a joint that moves nothing) gives numbers that are not finite, and never panics.
+    #[doc(alias = "mj_solveM")]
     fn inverse_mass_matrix_times_torques(q: joints, tau: joints) -> Vector or |this| {
         let (mut m, mut inverse, mut x) = (this.mass_matrix(q), [T::zero(); DOF], *tau);
         factor(&mut m, &mut inverse);
@@ -47,6 +53,7 @@ pub trait CoriolisMatrix<DOF> {
     /// C(q, q̇), row = torque. Of all matrices with the same C q̇ this is Christoffel's, C_ij = ½ Σ_k (∂M_ij/∂q_k +
     /// ∂M_ik/∂q_j - ∂M_jk/∂q_i) q̇_k: Ṁ - 2C is skew, Ṁ = C + Cᵀ, and C is half the derivative of C q̇ with respect to
     /// q̇.
+    #[doc(alias = "computeCoriolisMatrix")]
     fn coriolis_matrix(q: joints, qd: joints) -> Matrix = |robot| {
         let [q, qd] = [q, qd].map(|values| robot.of_joints(values));
         robot.coordinates.matrix(robot.mechanism.coriolis_matrix(q.as_ref(), qd.as_ref()))
@@ -54,6 +61,7 @@ pub trait CoriolisMatrix<DOF> {
 
     /// Coriolis and centrifugal torques C(q, q̇) q̇, N m (prismatic: N): the bias torques without gravity. They do not
     /// depend on the choice of the matrix C, and generated code computes them without it.
+    #[doc(alias = "Coriolis")]
     fn coriolis_torques(q: joints, qd: joints) -> Vector or |this| {
         let row = |row: [T; DOF]| row.iter().zip(qd).fold(T::zero(), |sum, (c, rate)| sum + *c * *rate);
         this.coriolis_matrix(q, qd).map(row)
@@ -74,6 +82,8 @@ pub trait ForwardDynamics<DOF> {
     /// Accelerations q̈ = M(q)⁻¹ (τ - C(q, q̇) q̇ - g(q)) with a free tip, rad/s² or m/s².
     ///
     /// A singular mass matrix (a joint that moves nothing) gives numbers that are not finite, and never panics.
+    #[doc(alias = "aba")]
+    #[doc(alias = "mj_forward")]
     fn forward_dynamics(q: joints, qd: joints, tau: joints) -> Vector =
         |robot| robot.forward_dynamics([q, qd, tau], AtTip::Nothing);
 }
@@ -84,10 +94,12 @@ capability! {
 /// is taken with them: `#[robot(rotors)]`, `with_rotors`.
 pub trait Energy<DOF> {
     /// ½ q̇ᵀ M(q) q̇, as ½ Σ (m ċ·ċ + ω·Iω).
+    #[doc(alias = "computeKineticEnergy")]
     fn kinetic_energy(q: joints, qd: joints) -> Number = |robot| robot.kinetic(q, qd, None);
 
     /// -Σ m g·c, with c from the origin of frame 0 to each centre of mass: zero if all masses are at this origin. The
     /// placement of the base in the world does not matter.
+    #[doc(alias = "computePotentialEnergy")]
     fn potential_energy(q: joints) -> Number = |robot| robot.mechanism.potential(robot.of_joints(q).as_ref());
 }
 }
@@ -117,9 +129,13 @@ capability! {
 /// included. An arm without mass gives numbers that are not finite.
 pub trait CentreOfMass<DOF> {
     /// Σ m c / Σ m, m.
+    #[doc(alias = "center of mass")]
+    #[doc(alias = "com")]
     fn centre_of_mass(q: joints) -> Point = |robot| robot.mechanism.mass_centre(robot.of_joints(q).as_ref());
 
     /// The Jacobian of the centre of mass: J q̇ is its velocity, m/s, in world axes.
+    #[doc(alias = "jacobianCenterOfMass")]
+    #[doc(alias = "mj_jacSubtreeCom")]
     fn centre_of_mass_jacobian(q: joints) -> PointRows =
         |robot| robot.coordinates.rows(robot.mechanism.mass_centre_jacobian(robot.of_joints(q).as_ref()));
 }
@@ -133,6 +149,7 @@ pub trait Regressor<DOF> {
     ///
     /// They refer to the link frame of the table: c and J from its origin, in its axes; Jxy is the tensor's element, -∫
     /// x y dm.
+    #[doc(alias = "computeJointTorqueRegressor")]
     fn regressor(q: joints, qd: joints, qdd: joints) -> Regressor =
         |robot| robot.regressor([q, qd, qdd], &robot.fixed_base()).1;
 }

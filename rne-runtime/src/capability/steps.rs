@@ -18,6 +18,7 @@ pub trait EulerStep<DOF> {
     /// The tip is free, and joints have no friction and no limits. A singular mass matrix (a joint that moves nothing)
     /// gives numbers that are not finite. Source: E. Hairer, C. Lubich, G. Wanner, "Geometric numerical integration",
     /// 2006, section I.1.2.
+    #[doc(alias = "mj_step")]
     fn euler_step(q: joints, qd: joints, tau: joints, step: duration) -> NextState<DOF> = |robot| {
         let [position, rate] = [q, qd].map(|x| robot.list(x));
         let next = moved(&rate, &robot.forward_dynamics([q, qd, tau], AtTip::Nothing), step);

@@ -20,6 +20,10 @@ capability! {
 )]
 pub trait InverseDynamics<DOF> {
     /// Torques for positions `q`, velocities `qd` and accelerations `qdd` with a free tip.
+    #[doc(alias = "torques")]
+    #[doc(alias = "rnea")]
+    #[doc(alias = "computeTorque")]
+    #[doc(alias = "rne")]
     fn inverse_dynamics(q: joints, qd: joints, qdd: joints) -> Vector =
         |robot| robot.torques([q, qd, qdd], AtTip::Nothing);
 
@@ -39,9 +43,16 @@ pub trait InverseDynamics<DOF> {
         |robot| robot.torques_from_turns([sin, cos], [q, qd, qdd]);
 
     /// Torques that hold the arm still against gravity, τ(q, 0, 0).
+    #[doc(alias = "gravity compensation")]
+    #[doc(alias = "computeGeneralizedGravity")]
+    #[doc(alias = "gravload")]
     fn gravity_torques(q: joints) -> Vector = |robot| robot.gravity(q, AtTip::Nothing);
 
     /// Coriolis, centrifugal and gravity torques, τ(q, q̇, 0).
+    #[doc(alias = "bias")]
+    #[doc(alias = "nle")]
+    #[doc(alias = "nonLinearEffects")]
+    #[doc(alias = "qfrc_bias")]
     fn bias_torques(q: joints, qd: joints) -> Vector = |robot| robot.bias(q, qd, AtTip::Nothing);
 }
 }
@@ -169,6 +180,7 @@ pub trait MomentumObserver<DOF> {
     /// less this rate. `tau`: the torques that the actuators exert on the links, after friction is subtracted.
     ///
     /// Rotors belong to p where the arm is taken with them: `#[robot(rotors)]`, `with_rotors`.
+    #[doc(alias = "momentum observer")]
     fn momentum_and_rate(q: joints, qd: joints, tau: joints) -> MomentumAndRate<DOF> =
         |robot| robot.momentum_and_rate([q, qd, tau], None);
 }

@@ -1,5 +1,5 @@
-//! Functions for the tests of `#[robot(…, tests)]`: generated code against [`DynArm`](crate::DynArm) of the same robot
-//! file, and against laws of mechanics. Each function is one test; it panics when the test fails, and names the state.
+//! Functions for the tests of `#[robot(…, tests)]`: generated code against `DynArm` of the same robot file, and against
+//! laws of mechanics. Each function is one test; it panics when the test fails, and names the state.
 //!
 //! Not part of the public interface: derived code names it.
 

@@ -8,6 +8,7 @@ pub(crate) mod light;
 pub(crate) mod package;
 pub(crate) mod playground;
 pub(crate) mod python;
+pub(crate) mod release;
 pub(crate) mod ros2;
 pub(crate) mod sbom;
 pub(crate) mod site;

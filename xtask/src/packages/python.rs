@@ -13,7 +13,7 @@ use crate::machine::{self, Missing};
 use crate::packages::package::Licences;
 
 /// Package that builds the wheel.
-const MATURIN: &str = "maturin>=1.9,<2";
+pub(crate) const MATURIN: &str = "maturin>=1.9,<2";
 
 /// Packages that the tests need beside the wheel.
 const TESTS: [&str; 1] = ["pytest>=8"];
@@ -150,6 +150,12 @@ impl Place {
         Ok(python)
     }
 
+    /// Makes a virtual environment anew, and returns its Python.
+    pub(crate) fn new_environment(&self, name: &str) -> Result<PathBuf> {
+        let _ = fs::remove_dir_all(self.folder.join(name));
+        self.environment(name)
+    }
+
     pub(crate) fn pip(&self, python: &Path, packages: &[&str]) -> bool {
         let shell = &self.shell;
         let install = cmd!(shell, "{python} -m pip install --quiet --disable-pip-version-check {packages...}");
@@ -228,8 +234,7 @@ impl Place {
     /// Tests the wheel in a new environment that has only what the wheel requires. PATH contains this environment
     /// alone: no cc, no cargo.
     fn holds_without_compiler(&self, wheel: &Path) -> Result<bool> {
-        let _ = fs::remove_dir_all(self.folder.join("clean"));
-        let python = self.environment("clean")?;
+        let python = self.new_environment("clean")?;
         let alone = python.parent().context("an environment has a folder of programs")?;
         let wheel = wheel.display().to_string();
         if !self.pip(&python, &[&[wheel.as_str()], &TESTS[..]].concat()) {
@@ -257,8 +262,7 @@ impl Place {
             .ignore_stderr()
             .run()?;
         let sdist = only_file(&sources)?;
-        let _ = fs::remove_dir_all(self.folder.join("built"));
-        let python = self.environment("built")?;
+        let python = self.new_environment("built")?;
         let install = cmd!(shell, "{python} -m pip install --quiet --disable-pip-version-check --no-cache-dir {sdist}");
         if machine::without_flags(install).env_remove("CARGO_TARGET_DIR").quiet().run().is_err() {
             return Ok(false);
@@ -270,7 +274,7 @@ impl Place {
 }
 
 /// Returns the only file in a folder.
-fn only_file(folder: &Path) -> Result<PathBuf> {
+pub(crate) fn only_file(folder: &Path) -> Result<PathBuf> {
     let file = fs::read_dir(folder)?.find_map(|entry| Some(entry.ok()?.path()));
     file.with_context(|| format!("{} is empty", folder.display()))
 }

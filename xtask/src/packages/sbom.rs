@@ -26,7 +26,17 @@ pub(crate) struct Sbom {
 }
 
 impl Sbom {
+    /// The list of a command line with every format of logs.
+    pub(crate) fn full() -> Self {
+        Self { features: Some("full".into()) }
+    }
+
     pub(crate) fn run(&self) -> Result<Verdict> {
+        println!("{}", self.text()?);
+        Ok(Verdict::Holds)
+    }
+
+    pub(crate) fn text(&self) -> Result<String> {
         let shell = machine::shell()?;
         let features = self.features.iter().flat_map(|features| ["--features", features]);
         let edges = ["--edges", "normal,build", "--prefix", "none", "--format", "{p}", "--locked"];
@@ -41,8 +51,7 @@ impl Sbom {
             .collect();
         let metadata = cmd!(shell, "cargo metadata --format-version 1 --locked --all-features").quiet().read()?;
         let metadata: Value = serde_json::from_str(&metadata)?;
-        println!("{}", serde_json::to_string_pretty(&document(&metadata, &used)?)?);
-        Ok(Verdict::Holds)
+        Ok(serde_json::to_string_pretty(&document(&metadata, &used)?)?)
     }
 }
 

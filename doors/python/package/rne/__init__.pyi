@@ -38,6 +38,7 @@ class Diagnosis(TypedDict):
     agrees: bool
     error: float
     explanations: list[list[str]]
+    nearest: tuple[str, float] | None
 
 class Arm:
     """An arm whose functions are compiled when they are first called.
