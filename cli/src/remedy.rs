@@ -29,7 +29,11 @@ pub(crate) fn in_options(remedy: &rne_model::Remedy) -> Option<String> {
         Remedy::LockOthers => {
             "--lock JOINT=VALUE locks one joint at this value, --lock-others locks all others at zero".to_owned()
         }
-        Remedy::KeepUnphysical => "--keep-unphysical imports the inertia without a change".to_owned(),
+        Remedy::KeepUnphysical => {
+            "--keep-unphysical imports the inertia without a change; `rne check --repair FILE` proposes edits"
+                .to_owned()
+        }
+        Remedy::Repair => "`rne check --repair FILE` proposes edits".to_owned(),
         Remedy::Whole => "`rne import FILE --whole` imports the whole robot".to_owned(),
         Remedy::WholeOrLock { joint } => {
             format!("--whole imports the whole robot, --lock {joint}=VALUE locks `{joint}` at this value")

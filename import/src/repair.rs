@@ -12,8 +12,8 @@ use std::ops::Range;
 
 use rne_model::{Inertia, exact_digits};
 
-use self::edits::EDITS;
 pub use self::edits::Edit;
+use self::edits::{EDITS, UNITS, shifted};
 pub use self::judged::Test;
 use self::judged::{Robot, Verdict};
 pub use self::read::bodies_of;
@@ -23,6 +23,9 @@ const EQUAL: f64 = 0.5;
 
 /// Difference of scores above which a candidate is not mentioned beside the best one.
 const WORSE: f64 = 4.0;
+
+/// Mass that no edit gives a link, kg.
+const HEAVIEST: f64 = 1e4;
 
 /// Largest number of candidates that a proposal has.
 const MOST: usize = 8;
@@ -47,7 +50,7 @@ pub struct Numbers {
 }
 
 /// A body of a file, and the places of its numbers.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Body {
     /// The name of the link.
     pub name: String,
@@ -133,6 +136,9 @@ impl Numbers {
 #[must_use]
 pub fn proposals(bodies: &[Body]) -> Vec<Proposal> {
     let robot = Robot::of(bodies);
+    if let Some(found) = in_one_unit(&robot) {
+        return found;
+    }
     let of_body = |body: usize| {
         let failed = robot.reasons(body);
         if failed.is_empty() {
@@ -144,6 +150,50 @@ pub fn proposals(bodies: &[Body]) -> Vec<Proposal> {
         is_finding.then_some(Proposal { body, failed, candidates, equal })
     };
     (0..bodies.len()).filter_map(of_body).collect()
+}
+
+/// Returns the proposals for a file with all tensors in another unit: at least half of the bodies are too large, and in
+/// this unit no body needs a repair.
+fn in_one_unit(robot: &Robot) -> Option<Vec<Proposal>> {
+    /// The usual radius of gyration as a part of the length of the link.
+    const USUAL: f64 = 0.3;
+    /// Two units are equally good if the logarithms of their radii differ by less than this.
+    const ALIKE_UNITS: f64 = 0.25;
+    let all: Vec<usize> = (0..robot.bodies.len()).filter(|&body| !robot.bodies[body].is_exempt).collect();
+    let is_large = |body: &&usize| robot.reasons(**body).contains(&Test::Wide);
+    let large = all.iter().filter(is_large).count();
+    if large < 2 || 2 * large < all.len() || !all.iter().all(|&body| robot.can_scale(body)) {
+        return None;
+    }
+    let scaled = |power: i32| {
+        let mut bodies = robot.bodies.to_vec();
+        for &body in &all {
+            bodies[body].numbers.inertia = bodies[body].numbers.inertia.map(|number| shifted(number, power));
+        }
+        bodies
+    };
+    let fits = |&(power, unit): &(i32, &'static str)| {
+        let bodies = scaled(power);
+        let robot = Robot::of(&bodies);
+        let is_good = all.iter().all(|&body| robot.reasons(body).is_empty());
+        let gyration = robot.usual_gyration().filter(|_| is_good)?;
+        Some(((gyration - USUAL.log10()).abs(), unit, bodies))
+    };
+    let mut found: Vec<_> = UNITS.iter().filter_map(fits).collect();
+    found.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let nearest = found.first()?.0;
+    let edit = EDITS.iter().find(|edit| edit.name == "unit")?;
+    let proposal = |&body: &usize| {
+        let candidate = |(apart, unit, bodies): &(f64, &str, Vec<Body>)| {
+            let what = format!("all tensors of the file are in {unit}");
+            let changes = vec![(body, bodies[body].numbers)];
+            Candidate { edit, what, changes, lost: None, failed: Vec::new(), score: *apart }
+        };
+        let equal = found.iter().filter(|(apart, ..)| *apart <= nearest + ALIKE_UNITS).count();
+        Proposal { body, failed: vec![Test::Unit], candidates: found.iter().map(candidate).collect(), equal }
+    };
+    let has_tensor = |body: &&usize| robot.bodies[**body].numbers.inertia != [0.0; 6];
+    Some(all.iter().filter(has_tensor).map(proposal).collect())
 }
 
 /// Returns the good edits of a body, best first, and the number of equally good ones at the beginning.
@@ -167,9 +217,15 @@ fn candidates(robot: &Robot, body: usize) -> (Vec<Candidate>, usize) {
     let Some(best) = found.first() else { return (found, 0) };
     let (failed, score) = (best.failed.len(), best.score);
     found.retain(|candidate| candidate.failed.len() == failed && candidate.score <= score + WORSE);
-    found.truncate(MOST);
-    let equal = found.iter().filter(|candidate| candidate.score <= score + EQUAL).count();
-    (found, equal)
+    // only its size tells the decimal point of a product, so that another one is as good
+    let old = robot.bodies[body].numbers.inertia;
+    let is_product = |one: &Candidate| one.edit.name == "decimal point" && one.changes[0].1.inertia[..3] == old[..3];
+    let is_equal = |one: &Candidate| one.score <= score + EQUAL || is_product(one) && is_product(&found[0]);
+    let (mut equal, others): (Vec<_>, Vec<_>) = found.iter().cloned().partition(is_equal);
+    let count = equal.len().min(MOST);
+    equal.extend(others);
+    equal.truncate(MOST);
+    (equal, count)
 }
 
 /// Returns the verdict on an edit that the file allows and that makes a possible body out of one that fails more tests.
@@ -179,7 +235,9 @@ fn judge(robot: &Robot, body: usize, before: &Verdict, change: &edits::Change) -
         let mut all = spans.iter().zip(old.all().into_iter().zip(numbers.all()));
         all.all(|(span, (old, new))| old == new || span.is_some() || robot.has_no_text())
     };
-    if change.numbers == robot.bodies[body].numbers || !can_write(body, &change.numbers) {
+    let old = &robot.bodies[body].numbers;
+    let is_absurd = change.numbers.mass > HEAVIEST && change.numbers.mass > old.mass;
+    if change.numbers == *old || is_absurd || !can_write(body, &change.numbers) {
         return None;
     }
     let mut beside = 0.0;
@@ -195,6 +253,32 @@ fn judge(robot: &Robot, body: usize, before: &Verdict, change: &edits::Change) -
     verdict.distance += beside;
     let is_possible = verdict.failed.iter().all(Test::is_doubt);
     (is_possible && verdict.weight() < before.weight()).then_some(verdict)
+}
+
+impl Proposal {
+    /// Returns the line and the column, both counted from 1, of the element that the best candidate changes, or of the
+    /// last element of the body.
+    #[must_use]
+    pub fn place(&self, text: &str, bodies: &[Body]) -> [usize; 2] {
+        let elements = &bodies[self.body].elements;
+        let diffs = self.candidates.first().map(|first| first.diffs(text, bodies)).unwrap_or_default();
+        let place = diffs.iter().map(|diff| &diff.span).find(|span| elements.contains(span)).or(elements.last());
+        line_and_column(text, place.map_or(0, |place| place.start))
+    }
+
+    /// Returns the only repair, if there is one and the file has all its numbers.
+    #[must_use]
+    pub fn repair(&self) -> Option<&Candidate> {
+        self.candidates.first().filter(|first| self.equal == 1 && first.is_complete())
+    }
+}
+
+/// Returns the line and the column of a byte of the text, both counted from 1.
+#[must_use]
+pub fn line_and_column(text: &str, at: usize) -> [usize; 2] {
+    let before = text.get(..at).unwrap_or_default();
+    let start = before.rfind('\n').map_or(0, |at| at + 1);
+    [1 + before.matches('\n').count(), 1 + before[start..].chars().count()]
 }
 
 impl Candidate {

@@ -214,8 +214,9 @@ fn robot_files_and_mjcf_files_are_repaired_in_their_own_syntax() {
     let mjcf = "<mujoco><worldbody>\n<body name=\"a\"><joint/><inertial pos=\"0 0 .1\" mass=\"2\" \
                 fullinertia=\"0.02 0.03 0.01 0.001 -0.002 0.003\"/>\n<body name=\"b\" pos=\"0 0 .3\"><joint/><inertial \
                 mass=\"1\" pos=\"0 0 .1\" diaginertia=\"0.01 0.012  4e-3\" /></body></body></worldbody></mujoco>";
-    let formulas = "format: 1\nparameters: {m: 2*n, n: 1}\njoints:\n  - dh: {d: 0.3}\n    link:\n      mass: m\n      \
-                    com: [0, 0, n/5]\n      inertia_about: origin\n      inertia:\n        xx: 0.09  # about the \
+    let formulas = "format: 1\nname: x\nsource: own\nconvention: standard\ngravity: [0, 0, -9.81]\nparameters: {n: 1, \
+                    m: 2*n}\njoints:\n  - type: revolute\n    dh: {theta: 0, d: 0.3, a: 0, alpha: 0}\n    \
+                    link:\n      mass: m\n      com: [0, 0, n/5]\n      inertia_about: origin\n      inertia:\n        xx: 0.09  # about the \
                     origin\n        yy: 0.09\n        zz: 0.009\n";
     for (file, text, right, wrong) in [
         ("formulas.yaml", formulas, "zz: 0.009", "zz: -0.009"),
@@ -233,6 +234,109 @@ fn robot_files_and_mjcf_files_are_repaired_in_their_own_syntax() {
         assert!(found[0].equal == 1 && repaired == text, "{wrong}: {found:#?}");
         assert!(proposals(&bodies_of(file, text).expect("bodies")).is_empty());
     }
+}
+
+/// A robot file with these rows of `joints`.
+fn table(joints: &str) -> String {
+    format!("format: 1\nname: x\nsource: own\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n{joints}")
+}
+
+/// A row with a link.
+fn row(d: &str, mass: &str, inertia: &str) -> String {
+    format!(
+        "  - type: revolute\n    dh: {{theta: 0, d: {d}, a: 0.3, alpha: pi/2}}\n    link: {{mass: {mass}, com: [-0.1, 0, \
+         0], inertia: {inertia}}}\n"
+    )
+}
+
+/// Two elements may look alike, and one number may have several places.
+#[test]
+fn only_the_number_of_the_body_itself_changes() {
+    let note = "<robot><link name=\"a\"><inertial><mass note=' value=\"9\"' value=\"2\"/><inertia note=' ixx=\"7.0\"' \
+                iyy=\"0.1\" ixx = \"-0.1\" ixy=\"0\" ixz=\"0\" iyz=\"0\" izz=\"0.1\"/></inertial></link></robot>";
+    let bodies = bodies_of("a.urdf", note).expect("a URDF");
+    let found = proposals(&bodies);
+    assert_eq!((bodies[0].numbers.mass, bodies[0].numbers.inertia[0]), (2.0, -0.1));
+    let [one] = &found[..] else { panic!("{found:?}") };
+    assert_eq!(written(note, &bodies, one.repair()), Some(note.replace("\"-0.1\"", "\"0.1\"")));
+
+    let good = "{xx: 0.02, yy: 0.03, zz: 0.03}";
+    for (joints, shared) in [
+        (row("0.1", "&m -3.0", good) + &row("*m", "3", good), true),
+        (row("0.1", "&m -3.0", good) + &row("0.2", "3", good), false),
+        (row("0.1", "2", "{xx: &x -0.02, yy: 0.03, zz: 0.03}") + &row("0.2", "3", "{xx: 0.03, yy: *x}"), true),
+        (row("0.1", "2", "&i {xx: -0.02, yy: 0.03, zz: 0.03}") + &row("0.2", "3", "*i"), true),
+    ] {
+        let text = table(&joints);
+        let bodies = bodies_of("a.yaml", &text).unwrap_or_else(|report| panic!("{report}"));
+        let repairs: Vec<_> = proposals(&bodies).into_iter().filter(|found| found.repair().is_some()).collect();
+        assert_eq!(repairs.is_empty(), shared, "{text}{repairs:?}");
+    }
+}
+
+/// A plate that is rounded to two digits is possible.
+#[test]
+fn rounded_plates_need_no_repair() {
+    for (inertia, is_good) in [
+        ("{xx: 0.0019, yy: 0.1, zz: 0.11}", true),
+        ("{xx: 0.0019, yy: 0.10, zz: 0.13}", false),
+        ("{xx: 0.00190, yy: 0.1001, zz: 0.1100}", false),
+    ] {
+        let bodies = bodies_of("a.yaml", &table(&row("0.3", "2", inertia))).unwrap_or_else(|report| panic!("{report}"));
+        assert_eq!(proposals(&bodies).is_empty(), is_good, "{inertia}");
+    }
+}
+
+/// What cannot be read is an error, and not a link without a finding.
+#[test]
+fn a_text_that_is_not_understood_is_refused() {
+    let good = "{xx: 0.02, yy: 0.03, zz: 0.03}";
+    for text in [
+        "hello".to_owned(),
+        table(&row("0.1", ".nan", good)),
+        table(&row("0.1", "1e999", good)),
+        table(&row("0.1", "2", "{xx: 4_0.0, yy: 0.1, zz: 0.1}")),
+        table(&row("0.1", "2", "{xx: -4.0, yy: 0.1, zz: 0.1}, physical: False")),
+        urdf("0 0 0", "1", "ixx='&#45;4' ixy='0' ixz='0' iyy='4' iyz='0' izz='4'"),
+        "<mujoco><worldbody><body><joint/><inertial pos='0 0 0' mass='1' diaginertia='1 1 1 1'/></body></worldbody>\
+         </mujoco>"
+            .to_owned(),
+    ] {
+        assert!(bodies_of("a", &text).is_err(), "{text}");
+    }
+}
+
+/// The tensors of a whole file may be in another unit. No link has a mass of a thousand tonnes.
+#[test]
+fn one_unit_of_all_tensors_is_proposed() {
+    let right = [("4", [0.02, 0.03, 0.03]), ("3", [0.012, 0.013, 0.004]), ("1.5", [0.002, 0.004, 0.003])];
+    for (factor, unit) in [(1e4, "kg cm²"), (1e6, "kg mm²"), (1e7, "g cm²"), (1e9, "g mm²")] {
+        let rows = right.map(|(mass, moments)| {
+            let [xx, yy, zz] = moments.map(|moment| f64::round(moment * factor));
+            row("0.25", mass, &format!("{{xx: {xx}, yy: {yy}, zz: {zz}}}"))
+        });
+        let text = table(&rows.concat());
+        let bodies = bodies_of("a.yaml", &text).unwrap_or_else(|report| panic!("{report}"));
+        let found = proposals(&bodies);
+        assert_eq!(found.len(), 3, "{unit}: {found:?}");
+        for (found, (_, moments)) in found.iter().zip(right) {
+            let what = format!("all tensors of the file are in {unit}");
+            let best = &found.candidates[..found.equal];
+            let repair = best.iter().find(|one| one.what == what).unwrap_or_else(|| panic!("{unit}: {best:?}"));
+            // g cm² and kg mm² differ by a factor of 10
+            assert!(found.equal <= 2 && (found.equal == 1 || factor > 1e4), "{unit}: {best:?}");
+            let numbers = repair.changes[0].1.inertia;
+            assert!(numbers.iter().zip(moments).all(|(one, right)| (one - right).abs() < 1e-6), "{numbers:?}");
+        }
+    }
+}
+
+/// Only its size tells by which power of ten a product is wrong.
+#[test]
+fn the_power_of_a_product_is_never_sure() {
+    let text = table(&row("0.3", "2", "{xx: 0.02, yy: 0.031, zz: 0.032, xy: 3.1}"));
+    let found = proposals(&bodies_of("a.yaml", &text).unwrap_or_else(|report| panic!("{report}")));
+    assert!(found.len() == 1 && found[0].equal > 1 && found[0].repair().is_none(), "{found:?}");
 }
 
 /// A reader of spoilt text returns bodies or an error, whatever the text is.

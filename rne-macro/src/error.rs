@@ -49,6 +49,18 @@ pub(crate) fn not_compiled(robot: &str, error: &CompileError) -> String {
     format!("{robot}: {error}{remedy}")
 }
 
+/// Returns a remedy as a command.
+pub(crate) fn in_commands(remedy: &rne_model::Remedy) -> Option<String> {
+    match remedy {
+        rne_model::Remedy::ImportUrdf { file } => {
+            let file = file.as_deref().unwrap_or("FILE");
+            Some(format!("`rne import {file} -o robot.yaml` converts a URDF to a robot file"))
+        }
+        rne_model::Remedy::Repair => Some("`rne check --repair FILE` proposes edits".to_owned()),
+        _ => None,
+    }
+}
+
 /// Returns the errors in a robot file or a plan as text. Lints are left out, because they do not stop a build.
 pub(crate) fn describe(mut report: Report) -> String {
     report.diagnostics.retain(|found| found.severity == Severity::Error);
@@ -60,13 +72,7 @@ pub(crate) fn describe(mut report: Report) -> String {
     } else {
         "robot file"
     };
-    let report = report.worded(|remedy| match remedy {
-        rne_model::Remedy::ImportUrdf { file } => {
-            let file = file.as_deref().unwrap_or("FILE");
-            Some(format!("`rne import {file} -o robot.yaml` converts a URDF to a robot file"))
-        }
-        _ => None,
-    });
+    let report = report.worded(in_commands);
     let report = match (what, robot_of(Path::new(&report.name))) {
         ("plan of this robot", Some(robot)) => report.with_help(&format!(
             "`rne search {} --fresh` ignores the wrong parts of the plan and searches again; if you delete the plan \

@@ -8,6 +8,8 @@ use quote::{quote, quote_spanned};
 use rne_model::{Diagnostic, Report};
 use syn::{Attribute, DeriveInput, Meta};
 
+use crate::error::in_commands;
+
 /// The largest number of warnings that are reported.
 const SAID: usize = 8;
 
@@ -20,6 +22,7 @@ pub(crate) fn warnings(lints: &Report, item: &DeriveInput, place: Span) -> Token
     if !is_first(item, place) {
         return TokenStream::new();
     }
+    let lints = lints.clone().worded(in_commands);
     let mut notes: Vec<String> = lints.warnings().take(SAID).map(|lint| note(&lints.name, lint)).collect();
     let more = lints.warnings().count().saturating_sub(SAID);
     if more > 0 {

@@ -1,5 +1,6 @@
 //! `rne check`: checks robot files and plan files.
 
+mod at_zero;
 mod repair;
 
 use std::fmt::Write as _;
@@ -77,7 +78,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             None => robot(path, arguments),
         };
         match checked {
-            Ok(Good { about, lints, warnings, laws }) => {
+            Ok(Good { about, lints, warnings, laws, at_zero }) => {
                 let is_denied = arguments.deny_warnings && warnings > 0;
                 bad += usize::from(is_denied);
                 let verdict = if is_denied { denied(warnings) } else { format!("{GOOD}ok{GOOD:#}") };
@@ -89,6 +90,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
                 }
                 if let Some(lints) = lints {
                     let _ = writeln!(text, "\n{lints}\n");
+                }
+                // several files have one line each
+                if arguments.files.len() == 1 {
+                    text.push_str(&at_zero);
                 }
             }
             Err(failure) => {
@@ -118,6 +123,8 @@ struct Good {
     warnings: usize,
     /// The laws of physics as lines of text, and whether all hold; `None` without `--physics`.
     laws: Option<(String, bool)>,
+    /// The tip and the torques of gravity with all joints at zero, as lines of text.
+    at_zero: String,
 }
 
 /// Checks a robot file together with its plan; the plan is skipped if it is among the files to check itself.
@@ -132,11 +139,11 @@ fn robot(path: &Path, arguments: &Arguments) -> Result<Good, Failure> {
     }
     let refusals = refusals(path, &robot)?;
     let laws = arguments.physics.then(|| physics::check(&robot)).transpose().map_err(Failure::input)?;
-    let misnamed = misnamed_golden(path);
+    let (misnamed, at_zero) = (misnamed_golden(path), at_zero::lines(&robot));
     let warnings = lints.warnings().count() + usize::from(misnamed.is_some());
     let lints = (!lints.is_empty()).then(|| rendered(&lints));
     let lints: Vec<String> = lints.into_iter().chain(misnamed).chain(refusals).collect();
-    Ok(Good { about: about(&robot), lints: (!lints.is_empty()).then(|| lints.join("\n\n")), warnings, laws })
+    Ok(Good { about: about(&robot), lints: (!lints.is_empty()).then(|| lints.join("\n\n")), warnings, laws, at_zero })
 }
 
 /// Returns notes on functions whose reduced form a build would refuse, with the reasons.
@@ -195,5 +202,5 @@ fn plan(robot_file: &Path) -> Result<Good, Failure> {
         others => format!("; {others} other functions rewritten"),
     };
     let about = format!("plan of {}: {of_plan} {planned} operations{rewritten}{others}; proved", robot.name);
-    Ok(Good { about, lints: None, warnings: 0, laws: None })
+    Ok(Good { about, lints: None, warnings: 0, laws: None, at_zero: String::new() })
 }

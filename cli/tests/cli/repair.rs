@@ -36,7 +36,10 @@ fn the_repair_is_a_change_of_one_line() {
     let changed: Vec<usize> =
         before.zip(after.lines()).enumerate().filter(|(_, (a, b))| a != b).map(|(at, _)| at).collect();
     assert_eq!(changed, [1]);
-    assert_eq!(fine(&["check", "--repair", file]), format!("ok {file}  1 link, nothing to repair\n"));
+    assert_eq!(
+        fine(&["check", "--repair", file]),
+        format!("ok {file}  1 link, no edit of a mass or an inertia to propose\n")
+    );
 }
 
 #[test]
@@ -56,7 +59,10 @@ fn several_repairs_are_not_written() {
         assert!(called.out.contains(part), "no `{part}` in {}", called.out);
     }
     assert_eq!(fs::read_to_string(&path).expect("a file"), bad);
-    assert_eq!(fine(&["check", "--repair", "puma560"]), "ok puma560  6 links, nothing to repair\n");
+    assert_eq!(
+        fine(&["check", "--repair", "puma560"]),
+        "ok puma560  6 links, no edit of a mass or an inertia to propose\n"
+    );
     fails(2, &["check", "--write", file], &["--repair"]);
     fails(1, &["check", "--repair", "nothing.yaml"], &["there is no robot file nothing.yaml"]);
 }

@@ -491,7 +491,7 @@ fn a_joint_with_the_name_of_frame_0_is_told() {
 /// Frames that are far away because axes are nearly parallel have no lengths in millimetres.
 #[test]
 fn frames_of_nearly_parallel_axes_are_told_as_such() {
-    let arm = |convention: &str, tilt: &str, a: f64| {
+    let arm = |convention: &str, tilt: &str, far: f64, a: f64| {
         let joint = |d: f64, com: f64, alpha: &str| {
             format!(
                 "  - type: revolute\n    dh: {{theta: 0, d: {d}, a: {a}, alpha: {alpha}}}\n    link: {{mass: 2, com: \
@@ -500,10 +500,10 @@ fn frames_of_nearly_parallel_axes_are_told_as_such() {
         };
         let head =
             format!("format: 1\nname: x\nsource: own\nconvention: {convention}\ngravity: [0, 0, -9.81]\njoints:\n");
-        found(&(head + &joint(0.1, 0.0, "pi/2") + &joint(536.0, -536.0, tilt) + &joint(-536.0, 0.0, tilt)))
+        found(&(head + &joint(0.1, 0.0, "pi/2") + &joint(far, -far, tilt) + &joint(-far, 0.0, tilt)))
     };
     for convention in ["standard", "modified"] {
-        let said = arm(convention, "0.0004", 0.3);
+        let said = arm(convention, "0.0004", 536.0, 0.3);
         let told: Vec<_> =
             said.diagnostics.iter().filter(|one| one.label.as_deref() == Some("far from the arm")).collect();
         // d of joints 2 and 3, the centre of mass of link 2
@@ -514,8 +514,25 @@ fn frames_of_nearly_parallel_axes_are_told_as_such() {
         assert!(!said.to_string().contains("millimetres"), "{said}");
     }
     // a long common normal, or no tilt
-    for said in [arm("standard", "0.0004", 300.0), arm("modified", "0", 0.3), arm("modified", "pi/2", 0.3)] {
+    for said in
+        [arm("standard", "0.0004", 536.0, 300.0), arm("modified", "0", 536.0, 0.3), arm("modified", "pi/2", 536.0, 0.3)]
+    {
         assert!(said.to_string().contains("millimetres?") && !said.to_string().contains("far from"), "{said}");
+    }
+    // a length that an arm can have
+    for convention in ["standard", "modified"] {
+        let far = |metres: f64, tilt: &str| {
+            let said = arm(convention, tilt, metres, 0.3);
+            said.notes().filter(|one| one.label.as_deref() == Some("far from the arm")).cloned().collect::<Vec<_>>()
+        };
+        let [note] = &far(4.0, "0.01")[..] else { panic!("one note") };
+        assert_eq!(
+            note.message,
+            "the common normal of the axes of joints 2 and 3 is 4 m away, because these axes are nearly parallel"
+        );
+        for (metres, tilt) in [(1.9, "0.01"), (4.0, "0"), (4.0, "0.1"), (536.0, "0.0004")] {
+            assert!(far(metres, tilt).is_empty(), "{metres} {tilt}");
+        }
     }
 }
 

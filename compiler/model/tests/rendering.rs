@@ -59,7 +59,7 @@ fn a_mistake_inside_an_expression() {
 fn an_impossible_inertia_and_a_lint() {
     let text = with("xx: 0.1", "xx: -0.1").replace("alpha: pi/2", "alpha: 1.5708");
     assert_snapshot!(found(&text), @r"
-    error: the inertia is not positive semidefinite: its smallest eigenvalue about the centre of mass is -0.1 kg m²; it must be zero or positive
+    error: no body can have this inertia: its smallest principal moment about the centre of mass is -0.1 kg m²; it must be zero or positive
       --> robots/x.yaml:15:16
        |
     15 |       inertia: {xx: -0.1, yy: 0.12, zz: 0.02}

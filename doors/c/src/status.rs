@@ -69,7 +69,7 @@ fn in_arguments(remedy: &Remedy) -> Option<String> {
         Remedy::LockOthers => {
             "`lock_names` and `lock_values` hold some of the joints, `lock_others` holds all of them at zero".to_owned()
         }
-        Remedy::KeepUnphysical | Remedy::Whole | Remedy::Float | Remedy::Rotors => return None,
+        Remedy::KeepUnphysical | Remedy::Repair | Remedy::Whole | Remedy::Float | Remedy::Rotors => return None,
     })
 }
 

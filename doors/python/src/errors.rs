@@ -46,7 +46,10 @@ pub(crate) fn in_keywords(remedy: &Remedy) -> Option<String> {
         Remedy::LockOthers => {
             "lock={\"JOINT\": VALUE} locks one joint at this value, lock_others=True locks all others at 0".to_owned()
         }
-        Remedy::KeepUnphysical => "keep_unphysical=True keeps the inertia as it is".to_owned(),
+        Remedy::KeepUnphysical => {
+            "keep_unphysical=True keeps the inertia as it is; rne.repair(path) proposes edits".to_owned()
+        }
+        Remedy::Repair => "rne.repair(path) proposes edits".to_owned(),
         Remedy::Whole => "whole=True imports the whole robot".to_owned(),
         Remedy::WholeOrLock { joint } => {
             format!("whole=True imports the whole robot, lock={{{joint:?}: VALUE}} locks the joint at this value")

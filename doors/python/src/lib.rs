@@ -2,9 +2,10 @@
 //!
 //! [`arm`] has the class `Arm`, and [`dynamics`], [`operational_space`], [`pose`], [`rollout`], [`integrator`],
 //! [`friction`] and [`insight`] have its methods. Arrays of numpy are converted in [`arrays`], those of JAX in [`xla`],
-//! and those on a graphics card in `gpu`. [`load`] reads an arm, and [`errors`] makes exceptions. [`logs`],
-//! [`identification`], [`watching`] and [`excitation`] are about logs of arms; [`log_errors`] words their errors, and
-//! [`interruption`] lets Ctrl-C end them. The Python files of the package are in `rne/`.
+//! and those on a graphics card in `gpu`. [`load`] reads an arm, [`repair`] proposes repairs of its
+//! links, and [`errors`] makes exceptions. [`logs`], [`identification`], [`watching`] and [`excitation`] are about logs
+//! of arms; [`log_errors`] words their errors, and [`interruption`] lets Ctrl-C end them. The Python files of the
+//! package are in `rne/`.
 
 mod arm;
 mod arrays;
@@ -27,6 +28,7 @@ mod notebook;
 mod operational_space;
 mod payload;
 mod pose;
+mod repair;
 mod reply;
 mod rollout;
 mod watching;
@@ -58,6 +60,8 @@ mod _rne {
     use super::payload::{payload, payload_identified};
     #[pymodule_export]
     use super::pose::pose_log;
+    #[pymodule_export]
+    use super::repair::repair;
     #[pymodule_export]
     use super::watching::{followed, watched};
     #[pymodule_export]

@@ -108,10 +108,7 @@ pub(crate) fn load(
         ..Origin::default()
     };
     let given = Given::of(source)?;
-    let (description, name) = match &given {
-        Given::Text(text) => (Description::of_text(text.clone()), "<text>".to_owned()),
-        Given::File(path) => (Description::open(path).map_err(of_opening)?, path.display().to_string()),
-    };
+    let (description, name) = given.description()?;
     let bytes = match (description, given) {
         (Description::Shipped(file), _) => return Arm::of(py, origin.shipped(file)),
         (Description::RobotFile(_), given) => return of_robot_file(py, origin, given, &name),
@@ -213,13 +210,13 @@ pub(crate) enum Tips {
     Many(Vec<String>),
 }
 
-enum Given {
+pub(crate) enum Given {
     File(PathBuf),
     Text(String),
 }
 
 impl Given {
-    fn of(source: &Bound<'_, PyAny>) -> PyResult<Self> {
+    pub(crate) fn of(source: &Bound<'_, PyAny>) -> PyResult<Self> {
         let Ok(text) = source.extract::<String>() else {
             return match source.extract::<PathBuf>() {
                 Ok(path) => Ok(Self::File(path)),
@@ -231,6 +228,26 @@ impl Given {
             return Ok(Self::Text(text));
         }
         Ok(Self::File(Path::new(&text).to_owned()))
+    }
+
+    /// Returns the description and its name in messages.
+    fn description(&self) -> PyResult<(Description, String)> {
+        Ok(match self {
+            Self::Text(text) => (Description::of_text(text.clone()), "<text>".to_owned()),
+            Self::File(path) => (Description::open(path).map_err(of_opening)?, path.display().to_string()),
+        })
+    }
+
+    /// Returns the name in messages and the text.
+    pub(crate) fn text(&self) -> PyResult<(String, String)> {
+        let (description, name) = self.description()?;
+        let bytes = match description {
+            Description::Shipped(file) => return Ok((name, file.yaml.to_owned())),
+            Description::RobotFile(bytes) | Description::Urdf(bytes) => bytes,
+            _ => return Err(PyValueError::new_err("`source` is neither a robot file nor a URDF")),
+        };
+        let text = String::from_utf8(bytes);
+        text.map(|text| (name.clone(), text)).map_err(|_| PyValueError::new_err(format!("{name} is not text in UTF-8")))
     }
 }
 

@@ -94,3 +94,35 @@ def test_a_urdf_is_snapped_as_on_the_command_line(tmp_path):
         pytest.skip("RNE does not name the command rne")
     command = [os.environ["RNE"], "import", "--frames", file]
     assert subprocess.run(command, capture_output=True, text=True, check=True).stdout == arm.yaml
+
+
+def test_a_repair_is_proposed_as_data(tmp_path):
+    for name in rne.robots:
+        assert rne.repair(name) == rne.repair(rne.robots[name].yaml) == [], name
+    for text, spoilt in [
+        (rne.robots.iiwa14.yaml, lambda text: text.replace("xx: 0.033", "xx: -0.033", 1)),
+        (urdf(lambda i: ball(8 + i).replace("iyy='0.01'", "iyy='0.012'")), lambda text: text.replace("'0.012", "'-0.012", 1)),
+    ]:
+        assert rne.repair(text) == []
+        wrong = spoilt(text)
+        assert wrong != text
+        file = tmp_path / "arm"
+        file.write_text(wrong)
+        [finding] = rne.repair(file)
+        assert finding == rne.repair(wrong)[0] and finding["equal"] == 1 and finding["failed"], finding
+        repair = finding["candidates"][0]
+        assert repair["complete"] and repair["failed"] == [] and repair["mistake"]
+        [change] = repair["changes"]
+        lines = wrong.splitlines(keepends=True)
+        assert (finding["line"], finding["column"]) == (change["line"], change["column"])
+        rest = "".join([lines[change["line"] - 1][change["column"] - 1 :], *lines[change["line"] :]])
+        assert rest.startswith(change["old"])
+        assert wrong.removesuffix(rest) + change["new"] + rest.removeprefix(change["old"]) == text
+        if "RNE" in os.environ:
+            command = [os.environ["RNE"], "check", "--repair", file]
+            shown = subprocess.run(command, capture_output=True, text=True).stdout
+            assert f"{file}:{change['line']}:{change['column']}: " in shown and repair["mistake"] in shown
+    with pytest.raises(rne.RobotFileError):
+        rne.repair("<robot><link></robot>\n")
+    with pytest.raises(FileNotFoundError):
+        rne.repair("nowhere.yaml")

@@ -36,8 +36,9 @@ impl Urdf {
     pub(super) fn remarks_on(&self, told: &mut Extracted, robot: &Robot, table: &Table) -> Vec<Remark> {
         let mut all: Vec<Remark> = self.ignored(told).into_iter().map(Remark::from).collect();
         all.append(&mut told.remarks.0);
-        let numbers = [self.suspicious_numbers(), self.impossible_parts(told)].concat();
-        all.extend(numbers.into_iter().map(Remark::warning));
+        all.extend(self.suspicious_numbers().into_iter().map(Remark::warning));
+        let impossible = self.impossible_parts(told).into_iter().map(Remark::warning);
+        all.extend(impossible.map(|remark| remark.remedy(Remedy::Repair)));
         all.extend(remarks(robot, table).into_iter().map(Remark::from).chain(rotors(robot)));
         all
     }
@@ -148,7 +149,7 @@ pub(crate) fn remarks(robot: &Robot, table: &Table) -> Vec<String> {
             } else {
                 ""
             };
-            remarks.push(format!("row {row} has d = {d:.0} m and a = {a:.0} m{why}"));
+            remarks.push(format!("row {row} has d = {d:.3} m and a = {a:.3} m{why}"));
         }
     }
     for (row, joint) in robot.joints.iter().enumerate() {

@@ -60,8 +60,11 @@ impl Change {
     }
 }
 
+/// The units of programs, as powers of ten of kg m².
+pub(super) const UNITS: [(i32, &str); 4] = [(-4, "kg cm²"), (-6, "kg mm²"), (-7, "g cm²"), (-9, "g mm²")];
+
 /// Moves the decimal point of a number, without the rounding of a product.
-fn shifted(number: f64, power: i32) -> f64 {
+pub(super) fn shifted(number: f64, power: i32) -> f64 {
     let digits = format!("{number:e}");
     let moved = digits.split_once('e').and_then(|(digits, exponent)| {
         let exponent: i32 = exponent.parse().ok()?;
@@ -112,13 +115,12 @@ fn power_of_mass(robot: &Robot, body: usize) -> Vec<Change> {
 }
 
 fn power_of_all(robot: &Robot, body: usize) -> Vec<Change> {
-    /// The units of programs, as powers of ten of kg m².
-    const UNITS: [(i32, &str); 4] = [(-4, "kg cm²"), (-6, "kg mm²"), (-7, "g cm²"), (-9, "g mm²")];
     let Numbers { mass, inertia } = robot.bodies[body].numbers;
     let change = |power: i32| {
         let unit = UNITS.iter().find(|(of, _)| *of == power).map(|(_, unit)| format!("the tensor is in {unit}"));
+        let cost = if unit.is_some() { 0.0 } else { 1.5 };
         let what = unit.unwrap_or_else(|| times("the whole tensor", power));
-        Change::new(what, mass, inertia.map(|number| shifted(number, power)))
+        Change { cost, ..Change::new(what, mass, inertia.map(|number| shifted(number, power))) }
     };
     powers().map(change).collect()
 }

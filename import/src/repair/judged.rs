@@ -46,6 +46,8 @@ pub enum Test {
     Narrow,
     /// Mass and moments are those of the mirror twin.
     Twin,
+    /// The tensor is in kg m², as no tensor of the file seems to be.
+    Unit,
 }
 
 impl Test {
@@ -65,6 +67,7 @@ impl Test {
             Self::Wide => "the radius of gyration is far larger than the link",
             Self::Narrow => "the radius of gyration is far smaller than the link",
             Self::Twin => "the numbers differ from those of the link of the other side",
+            Self::Unit => "the tensors of this file are not in kg m²",
         }
     }
 }
@@ -132,6 +135,18 @@ impl<'a> Robot<'a> {
     /// Returns whether the bodies come from a program and not from a text.
     pub(super) fn has_no_text(&self) -> bool {
         self.bodies.iter().all(|body| body.elements.is_empty())
+    }
+
+    /// Returns whether the text has a place for each number of the tensor.
+    pub(super) fn can_scale(&self, body: usize) -> bool {
+        let Body { numbers, spans, .. } = &self.bodies[body];
+        let mut all = numbers.inertia.iter().zip(&spans[1..]);
+        self.has_no_text() || all.all(|(number, span)| *number == 0.0 || span.is_some())
+    }
+
+    /// Returns the decadic logarithm of the median of the radii of gyration over the lengths of the links.
+    pub(super) fn usual_gyration(&self) -> Option<f64> {
+        self.usual[2]
     }
 
     pub(super) fn twin(&self, body: usize) -> Option<usize> {

@@ -4,13 +4,14 @@
 
 use std::collections::HashMap;
 use std::ops::Range;
+use std::rc::Rc;
 
-use rne_model::Report;
 use rne_model::document::{self, Content, Entry, Node};
+use rne_model::{Reader, Report, Severity};
 
-use super::{Body, Numbers, Order};
+use super::{Body, Numbers, Order, line_and_column};
 use crate::mjcf::element::{Element, read as read_mjcf};
-use crate::source::Source;
+use crate::source::{Source, quoted};
 use crate::urdf::xml::{MAX_BYTES, Seen, root_name, scan};
 
 /// Returns the bodies of a description that have a mass or an inertia. `file` is its name in messages; from the folder
@@ -26,17 +27,28 @@ pub fn bodies_of(file: &str, text: &str) -> Result<Vec<Body>, Report> {
     }
 }
 
+/// Returns the place of the value of an attribute in a tag. Values before it may have any text, also that of an
+/// attribute.
+fn value(tag: &str, attribute: &str) -> Option<Range<usize>> {
+    let mut rest = tag;
+    loop {
+        let (before, after) = rest.split_once('=')?;
+        let name = before.trim_end().rsplit(char::is_whitespace).next()?;
+        let quoted = after.trim_start();
+        let quote = quoted.chars().next().filter(|quote| matches!(quote, '"' | '\''))?;
+        let start = tag.len() - quoted.len() + 1;
+        let end = start + quoted[1..].find(quote)?;
+        if name == attribute {
+            return Some(start..end);
+        }
+        rest = &tag[end + 1..];
+    }
+}
+
 /// Returns the places of the words in the value of an attribute.
 fn words(text: &str, tag: &Range<usize>, attribute: &str) -> Vec<Range<usize>> {
     let inside = text.get(tag.clone()).unwrap_or_default();
-    let value = inside.match_indices(attribute).find_map(|(at, _)| {
-        let is_whole = inside[..at].ends_with(char::is_whitespace);
-        let rest = inside[at + attribute.len()..].trim_start().strip_prefix('=')?.trim_start();
-        let quote = rest.chars().next().filter(|quote| is_whole && matches!(quote, '"' | '\''))?;
-        let start = inside.len() - rest.len() + 1;
-        Some(start..start + rest[1..].find(quote)?)
-    });
-    let Some(value) = value else { return Vec::new() };
+    let Some(value) = value(inside, attribute) else { return Vec::new() };
     let (mut words, mut at) = (Vec::new(), tag.start + value.start);
     for piece in inside[value].split_inclusive(char::is_whitespace) {
         let word = piece.trim_end();
@@ -53,15 +65,30 @@ fn number(text: &str, span: &Range<usize>) -> Option<f64> {
     text.get(span.clone())?.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
-/// Makes a body of the places of its mass and its tensor. A place without a number leaves the body out.
-fn body(text: &str, name: &str, spans: [Option<Range<usize>>; 7], elements: Vec<Range<usize>>) -> Option<Body> {
+/// Makes a body of the places of its mass and its tensor; `None` if all numbers are zero.
+///
+/// # Errors
+/// When a place has no number.
+fn body(
+    source: &Source,
+    name: &str,
+    spans: [Option<Range<usize>>; 7],
+    elements: Vec<Range<usize>>,
+) -> Result<Option<Body>, Report> {
     let mut all = [0.0; 7];
     for (number_at, span) in all.iter_mut().zip(&spans) {
-        *number_at = span.as_ref().map_or(Some(0.0), |span| number(text, span))?;
+        let Some(span) = span else { continue };
+        *number_at = number(&source.text, span).ok_or_else(|| unread(source, name, span))?;
     }
     let [mass, inertia @ ..] = all;
     let numbers = Numbers { mass, inertia };
-    (all != [0.0; 7]).then(|| Body { name: name.to_owned(), numbers, spans, elements, ..Body::default() })
+    Ok((all != [0.0; 7]).then(|| Body { name: name.to_owned(), numbers, spans, elements, ..Body::default() }))
+}
+
+/// Returns the error of a body whose mass or tensor is not made of plain numbers.
+fn unread(source: &Source, name: &str, span: &Range<usize>) -> Report {
+    let message = format!("the mass or the inertia of {} is not made of plain numbers", quoted(name));
+    source.error(span, message, "write each number with digits, such as 0.012 or 1.2e-2")
 }
 
 fn length([x, y, z]: [f64; 3]) -> f64 {
@@ -95,7 +122,7 @@ fn of_urdf(source: &Source) -> Result<Vec<Body>, Report> {
         let tensor = ATTRIBUTES.map(|attribute| first(&inertia, attribute));
         let [xx, yy, zz, xy, xz, yz] = tensor;
         let spans = [first(&mass, "value"), xx, yy, zz, xy, xz, yz];
-        let Some(body) = body(&source.text, name, spans, vec![mass, inertia]) else { continue };
+        let Some(body) = body(source, name, spans, vec![mass, inertia])? else { continue };
         let com = seen.vector("origin", "xyz").unwrap_or_default();
         let turned = seen.vector("origin", "rpy").is_some_and(|rpy| rpy != [0.0; 3]);
         links.insert(name.to_owned(), bodies.len());
@@ -124,15 +151,15 @@ fn of_mjcf(mut source: Source) -> Result<Vec<Body>, Report> {
     let mut open: Vec<(&Element, String)> = root.children("worldbody").map(|world| (world, String::new())).collect();
     while let Some((element, parent)) = open.pop() {
         let name = if element.name == "body" {
-            let name =
-                element.text("name").map_or_else(|| format!("body at byte {}", element.span.start), str::to_owned);
+            let unnamed = || format!("body in line {}", line_and_column(&source.text, element.span.start)[0]);
+            let name = element.text("name").map_or_else(unnamed, str::to_owned);
             joints.push((parent, name.clone(), vector(element).map_or(0.0, length)));
             name
         } else {
             parent
         };
         for inertial in element.children("inertial").filter(|inertial| inertial.span.end <= own) {
-            if let Some(body) = of_inertial(&source.text, &name, inertial) {
+            if let Some(body) = of_inertial(&source, &name, inertial)? {
                 links.insert(name.clone(), bodies.len());
                 bodies.push(body);
             }
@@ -149,20 +176,23 @@ fn vector(element: &Element) -> Option<[f64; 3]> {
     Some([numbers.next()??, numbers.next()??, numbers.next()??])
 }
 
-fn of_inertial(text: &str, name: &str, inertial: &Element) -> Option<Body> {
-    let words = |attribute| words(text, &inertial.span, attribute).into_iter().map(Some);
+fn of_inertial(source: &Source, name: &str, inertial: &Element) -> Result<Option<Body>, Report> {
+    let words = |attribute| words(&source.text, &inertial.span, attribute).into_iter().map(Some);
     let tensor: Vec<_> = words("fullinertia").chain(words("diaginertia")).collect();
-    if !matches!(tensor.len(), 3 | 6) {
-        return None;
+    match tensor.len() {
+        0 => return Ok(None),
+        3 | 6 => {}
+        _ => return Err(unread(source, name, &inertial.span)),
     }
     let mut spans: [Option<Range<usize>>; 7] = Default::default();
     for (to, from) in spans.iter_mut().zip(words("mass").take(1).chain(tensor)) {
         *to = from;
     }
-    let body = body(text, name, spans, vec![inertial.span.clone()])?;
+    let Some(body) = body(source, name, spans, vec![inertial.span.clone()])? else { return Ok(None) };
     let com = vector(inertial).unwrap_or_default();
     let turned = ["quat", "euler", "axisangle", "xyaxes", "zaxis"].iter().any(|turn| inertial.text(turn).is_some());
-    Some(Body { com: (!turned).then_some(com), size: 2.0 * length(com), order: Order::MomentsFirst, ..body })
+    let size = 2.0 * length(com);
+    Ok(Some(Body { com: (!turned).then_some(com), size, order: Order::MomentsFirst, ..body }))
 }
 
 fn of_robot_file(file: &str, text: &str) -> Result<Vec<Body>, Report> {
@@ -180,7 +210,7 @@ fn of_robot_file(file: &str, text: &str) -> Result<Vec<Body>, Report> {
         let length = length("a").hypot(length("d"));
         let above = std::mem::replace(&mut before, name.clone());
         let parent = item.get("parent").and_then(scalar).map_or(above, str::to_owned);
-        let body = item.get("link").and_then(|link| table.body(name.clone(), link));
+        let body = child(item, "link").and_then(|link| table.body(name.clone(), &[item, link]));
         // a standard row is the length of its own link, a modified row that of the link before
         let own = if is_modified { 0.0 } else { length };
         lengths.push((parent, name.clone(), if is_modified { length } else { 0.0 }));
@@ -190,11 +220,22 @@ fn of_robot_file(file: &str, text: &str) -> Result<Vec<Body>, Report> {
         }
     }
     connect(&mut bodies, &links, &lengths);
-    let base = root.get("floating_base").and_then(|base| base.get("link"));
-    bodies.extend(base.and_then(|link| table.body("floating base".to_owned(), link)));
+    let base = root.get("floating_base").and_then(|base| child(base, "link"));
+    bodies.extend(base.and_then(|link| table.body("floating base".to_owned(), &[link])));
     let further = root.list("bodies").iter();
-    bodies.extend(further.filter_map(|item| table.body(name(item)?, item)));
+    bodies.extend(further.filter_map(|item| table.body(name(item)?, &[item])));
+    others_refused(file, text, &bodies)?;
     Ok(bodies)
+}
+
+/// Refuses a robot file with an error that is not in the mass or the inertia of a body: its numbers may mean something
+/// else than they seem to.
+fn others_refused(file: &str, text: &str, bodies: &[Body]) -> Result<(), Report> {
+    let Err(mut report) = Reader::new(file).trees().couplings().loops().read(text) else { return Ok(()) };
+    let elements: Vec<&Range<usize>> = bodies.iter().flat_map(|body| &body.elements).collect();
+    let is_of_body = |span: &Range<usize>| elements.iter().any(|all| all.start <= span.start && span.end <= all.end);
+    report.diagnostics.retain(|found| found.severity == Severity::Error && !is_of_body(&found.span));
+    if report.is_empty() { Ok(()) } else { Err(report) }
 }
 
 /// Returns the values of the parameters. Several passes find those that depend on others.
@@ -236,21 +277,28 @@ impl Table<'_> {
         evaluated(scalar(node)?, &self.parameters)
     }
 
-    /// Reads a mapping with the mass and the tensor of a body. Only plain numbers have a place, because a formula
-    /// cannot be changed.
-    fn body(&self, name: String, link: &Node) -> Option<Body> {
-        let tensor = link.get("inertia");
-        let of_tensor = |key| tensor.and_then(|tensor| tensor.get(key));
+    /// Reads a mapping with the mass and the tensor of a body; `path` leads to it and ends with it. Only plain numbers
+    /// have a place, because a formula cannot be changed, and only those that no alias uses elsewhere.
+    fn body(&self, name: String, path: &[&Rc<Node>]) -> Option<Body> {
+        let link = path.last()?;
+        let tensor = child(link, "inertia");
+        let of_tensor = |key| tensor.and_then(|tensor| child(tensor, key));
         let [xx, yy, zz, xy, xz, yz] = ["xx", "yy", "zz", "xy", "xz", "yz"].map(of_tensor);
-        let nodes = [link.get("mass"), xx, yy, zz, xy, xz, yz];
+        let nodes = [child(link, "mass"), xx, yy, zz, xy, xz, yz];
         let mut all = [0.0; 7];
         for (number, node) in all.iter_mut().zip(nodes) {
             *number = node.map_or(Some(0.0), |node| self.number(node))?;
         }
-        // an alias is a number of another link, too
-        let is_here = |span: &Range<usize>| link.span.start <= span.start && span.end <= link.span.end;
-        let is_plain = |span: &Range<usize>| is_here(span) && number(self.text, span).is_some();
-        let spans = nodes.map(|node| node.map(|node| node.span.clone()).filter(is_plain));
+        let is_shared = |node: &&Rc<Node>| Rc::strong_count(node) > 1;
+        let all_shared = path.iter().any(is_shared);
+        let place = |node: &Rc<Node>| {
+            let is_own = !all_shared && !is_shared(&node);
+            Some(node.span.clone()).filter(|span| is_own && number(self.text, span).is_some())
+        };
+        let mut spans = nodes.map(|node| node.and_then(place));
+        if tensor.as_ref().is_some_and(is_shared) {
+            spans[1..].fill(None);
+        }
         let elements = entries(link).iter().filter(|entry| matches!(entry.key.as_str(), "mass" | "inertia"));
         let com = link.get("com").map(|_| {
             let mut numbers = link.list("com").iter().map(|node| self.number(node));
@@ -271,6 +319,11 @@ impl Table<'_> {
             is_exempt: link.get("physical").and_then(scalar) == Some("false") || link.get("first_moment").is_some(),
         })
     }
+}
+
+/// Returns the value of a key, as it is shared by aliases.
+fn child<'a>(node: &'a Node, key: &str) -> Option<&'a Rc<Node>> {
+    entries(node).iter().find(|entry| entry.key == key).map(|entry| &entry.value)
 }
 
 fn entries(node: &Node) -> &[Entry] {

@@ -128,6 +128,8 @@ pub fn diagnose_nearly(
         }
     }
     let nearest = tried.iter().map(|explanation| explanation.error).fold(f64::INFINITY, f64::min);
+    // a slip that leaves much of the difference is no explanation, however small the difference is
+    let nearest = if nearest <= near_miss::MOST * right { nearest } else { f64::INFINITY };
     let Some(&tolerance) = tolerances.iter().find(|tolerance| right.min(nearest) <= **tolerance) else {
         return Ok(None);
     };

@@ -25,7 +25,8 @@ pub enum Cause {
     Parameter {
         /// The link, counted from 0.
         link: usize,
-        /// The parameter, in the order of the [regressor](DynArm::regressor).
+        /// The parameter, in the order of the [regressor](DynArm::regressor); 10 is the mass where the centre of mass
+        /// and the inertia about it stay.
         parameter: usize,
         /// The other program's number minus that of the file; kg, kg m or kg m².
         difference: f64,
@@ -35,12 +36,12 @@ pub enum Cause {
 }
 
 /// A near miss leaves at most this part of the difference.
-const MOST: f64 = 0.2;
+pub(crate) const MOST: f64 = 0.2;
 /// A torque differs if its difference is at least this part of the largest one.
 const LEAST: f64 = 1e-3;
 
 /// The words for an inertial parameter, and its unit.
-const PARAMETERS: [(&str, &str); 10] = [
+const PARAMETERS: [(&str, &str); 11] = [
     ("the mass", "kg"),
     ("the first moment along x", "kg m"),
     ("the first moment along y", "kg m"),
@@ -51,6 +52,7 @@ const PARAMETERS: [(&str, &str); 10] = [
     ("the inertia yy", "kg m²"),
     ("the inertia yz", "kg m²"),
     ("the inertia zz", "kg m²"),
+    ("with the same centre of mass, the mass", "kg"),
 ];
 
 /// Finds what comes nearest to the torques of all given states: one slip, or one inertial parameter that two joints or
@@ -90,8 +92,12 @@ fn other_parameter(robot: &Robot, seen: &[Observation]) -> Result<Option<NearMis
         return Ok(None);
     }
     let mut nearest: Option<NearMiss> = None;
-    for (link, parameter) in (0..robot.joints.len()).flat_map(|link| (0..10).map(move |number| (link, number))) {
-        let column = || rows.iter().map(|row| row[link][parameter]);
+    for (link, parameter) in (0..robot.joints.len()).flat_map(|link| (0..11).map(move |number| (link, number))) {
+        // 1 kg at the centre of mass, as parameters of the regressor
+        let [x, y, z] = robot.joints[link].row.link.com;
+        let point = [1.0, x, y, z, y * y + z * z, -x * y, -x * z, x * x + z * z, -y * z, x * x + y * y];
+        let of_mass = |row: &[f64; 10]| row.iter().zip(point).map(|(y, of_point)| y * of_point).sum();
+        let column = || rows.iter().map(|row| row[link].get(parameter).copied().unwrap_or_else(|| of_mass(&row[link])));
         let dot: f64 = column().zip(&differences).map(|(y, d)| y * d).sum();
         let difference = dot / column().map(|y| y * y).sum::<f64>();
         let left: Vec<f64> = column().zip(&differences).map(|(y, d)| d - y * difference).collect();
@@ -111,7 +117,7 @@ impl NearMiss {
         match &self.cause {
             Cause::Slip(slip) => slip.says(robot),
             Cause::Parameter { link, parameter, difference, joints } => {
-                let (what, unit) = PARAMETERS[(*parameter).min(9)];
+                let (what, unit) = PARAMETERS[(*parameter).min(10)];
                 let name = robot.joints.get(*link).map_or("", |joint| &joint.name);
                 let numbers: Vec<String> = joints.iter().map(|joint| (joint + 1).to_string()).collect();
                 let (last, others) = numbers.split_last().map_or(("", &[][..]), |(last, others)| (last, others));

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use fastrand::Rng;
 use nalgebra::{Matrix3, Matrix4, Vector3};
-use rne_diagnose::{Cause, Diagnosis, Observation, Slip, diagnose, near_miss};
+use rne_diagnose::{Cause, Diagnosis, Observation, Slip, diagnose, diagnose_nearly, near_miss};
 use rne_model::{Angle, Convention, Inertia, Link, Reader, Robot, Row};
 use rne_runtime::DynArm;
 
@@ -210,4 +210,47 @@ fn the_nearest_is_told_where_nothing_agrees() {
         "{}",
         found.says(&robot)
     );
+}
+
+/// A mass is wrong more often alone than with its first moment.
+#[test]
+fn another_mass_at_the_same_centre_is_told() {
+    let (mut near, mut exact) = (0, 0);
+    for seed in 0..20 {
+        let mut rng = Rng::with_seed(300 + seed);
+        let robot = arm(&mut rng, Convention::Standard);
+        let mut other = robot.clone();
+        let link = rng.usize(1..robot.dof());
+        let difference = robot.joints[link].row.link.mass * 0.31;
+        other.joints[link].row.link.mass += difference;
+        let (seen, _) = seen(&robot, &other, 2, 1.0, &mut rng);
+        let Some(found) = near_miss(&robot, &[seen]).expect("one number for each joint") else { continue };
+        near += 1;
+        let is_exact = |of: usize, by: f64| of == link && (by - difference).abs() < 0.02 * difference;
+        exact += usize::from(
+            matches!(found.cause, Cause::Parameter { link, parameter: 10, difference, .. } if is_exact(link, difference)),
+        );
+    }
+    assert!(near >= 14 && exact >= 12, "{near} {exact}");
+}
+
+/// A slip that leaves most of a small difference is no explanation.
+#[test]
+fn a_small_difference_is_not_explained_by_any_small_slip() {
+    let mut rng = Rng::with_seed(11);
+    let tolerances = [1e-4, 1e-3, 1e-2];
+    for seed in 0..20 {
+        let robot = arm(&mut rng, Convention::Standard);
+        let mut other = robot.clone();
+        other.joints[1].row.link.mass *= 1.0 + 0.003 * f64::from(seed + 1);
+        let (seen, _) = seen(&robot, &other, 1, 1.0, &mut rng);
+        let right = match diagnose(&robot, std::slice::from_ref(&seen)).expect("one number for each joint") {
+            Diagnosis::Unexplained(right) => right,
+            _ => continue,
+        };
+        if let Some((_, Diagnosis::Explained(found))) = diagnose_nearly(&robot, &[seen], &tolerances).expect("numbers")
+        {
+            assert!(found[0].error <= 0.2 * right, "{seed}: {right} {found:?}");
+        }
+    }
 }

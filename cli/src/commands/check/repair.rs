@@ -1,7 +1,6 @@
 //! `rne check --repair`: proposes repairs of masses and inertias that no body has, as changes of the file.
 
 use std::fmt::Write as _;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use rne_convert::Description;
@@ -52,7 +51,12 @@ fn file(path: &Path, writes: bool) -> Result<(String, bool), Failure> {
     if found.is_empty() {
         let s = if bodies.len() == 1 { "" } else { "s" };
         let bodies = bodies.len();
-        return Ok((format!("{GOOD}ok{GOOD:#} {name}  {QUIET}{bodies} link{s}, nothing to repair{QUIET:#}\n"), true));
+        return Ok((
+            format!(
+                "{GOOD}ok{GOOD:#} {name}  {QUIET}{bodies} link{s}, no edit of a mass or an inertia to propose{QUIET:#}\n"
+            ),
+            true,
+        ));
     }
     let mut shown = String::new();
     for proposal in &found {
@@ -65,10 +69,17 @@ fn file(path: &Path, writes: bool) -> Result<(String, bool), Failure> {
         return Err(input_error!("{name} is no file that can be changed; write it into a file first"));
     }
     let Some(new) = rewritten(text, &bodies, &found) else {
+        let unclear = found.iter().filter(|proposal| proposal.repair().is_none());
+        let unclear: Vec<String> = unclear.map(|it| rne_model::one_line(&bodies[it.body].name)).collect();
+        let why = match &unclear[..] {
+            [] => "two repairs change the same numbers".to_owned(),
+            [one] => format!("link `{one}` does not have exactly one repair"),
+            several => format!("the links {} do not have exactly one repair each", several.join(", ")),
+        };
         let _ = writeln!(
             shown,
-            "{ERROR}error{ERROR:#}: {name} is not changed, because some link has not exactly one repair; change these \
-             links in the file yourself, and run the command again"
+            "{ERROR}error{ERROR:#}: {name} is not changed, because {why}; change these links in the file yourself, and \
+             run the command again"
         );
         return Ok((shown, false));
     };
@@ -79,21 +90,14 @@ fn file(path: &Path, writes: bool) -> Result<(String, bool), Failure> {
 
 /// Returns the text with all repairs, if each link has exactly one, and no two change the same element.
 fn rewritten(text: &str, bodies: &[Body], found: &[Proposal]) -> Option<String> {
-    let only = |proposal: &'_ Proposal| proposal.equal == 1 && proposal.candidates[0].is_complete();
-    if !found.iter().all(only) {
-        return None;
-    }
-    written(text, bodies, found.iter().filter_map(|proposal| proposal.candidates.first()))
+    let repairs: Option<Vec<&Candidate>> = found.iter().map(Proposal::repair).collect();
+    written(text, bodies, repairs?)
 }
 
 /// Describes a link that needs a repair: the place, what is wrong, and the edits as changes of lines.
 fn described(name: &str, text: &str, bodies: &[Body], proposal: &Proposal) -> String {
     let body = &bodies[proposal.body];
-    let first = proposal.candidates.first();
-    let diffs = first.map(|candidate| candidate.diffs(text, bodies)).unwrap_or_default();
-    let of_body = |span: &Range<usize>| body.elements.contains(span);
-    let place = diffs.iter().map(|diff| &diff.span).find(|span| of_body(span)).or(body.elements.last());
-    let [line, column] = line_and_column(text, place.map_or(0, |place| place.start));
+    let [line, column] = proposal.place(text, bodies);
     let failed: Vec<&str> = proposal.failed.iter().map(|test| test.sentence()).collect();
     let link = rne_model::one_line(&body.name);
     let failed = failed.join(", and ");
@@ -133,11 +137,4 @@ fn edit(shown: &mut String, text: &str, bodies: &[Body], candidate: &Candidate) 
     for test in &candidate.failed {
         let _ = writeln!(shown, "  this edit is not enough: {}", test.sentence());
     }
-}
-
-/// Returns the line and the column of a byte of the text, both counted from 1.
-fn line_and_column(text: &str, at: usize) -> [usize; 2] {
-    let before = text.get(..at).unwrap_or_default();
-    let start = before.rfind('\n').map_or(0, |at| at + 1);
-    [1 + before.matches('\n').count(), 1 + before[start..].chars().count()]
 }

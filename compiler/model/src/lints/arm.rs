@@ -10,10 +10,13 @@ use crate::text::diagnostic::Diagnostic;
 use crate::text::document::Node;
 use crate::text::expression::Names as _;
 use crate::text::source::six_digits;
-use crate::{Joint, JointKind};
+use crate::{Convention, Joint, JointKind};
 
 /// Sine of the angle between two joint axes below which their common normal may be far away.
 const NEARLY_PARALLEL: f64 = 0.05;
+
+/// Offset, m, from which on the common normal of nearly parallel axes is noted.
+const FAR: f64 = 2.0;
 
 /// Changes the warning about millimetres where frames are far away because joint axes are nearly parallel. Lengths in
 /// millimetres are not the reason then, because the common normals are short.
@@ -35,6 +38,36 @@ pub(crate) fn nearly_parallel(cx: &Context, joints: &[Joint]) {
         far.collect::<String>()
     );
     cx.problems.relabel(MILLIMETRES, "far from the arm", &help);
+}
+
+/// Notes two rows with long offsets `d` of opposite signs, which meet at a far common normal of nearly parallel axes.
+/// Offsets above [`LONGEST`] have a warning already.
+pub(crate) fn far_normals(cx: &Context, root: &Node, convention: Convention, joints: &[Joint]) {
+    let items = root.list("joints");
+    for (row, pair) in joints.windows(2).enumerate() {
+        let [d, next] = [&pair[0], &pair[1]].map(|joint| joint.row.dh.d);
+        let between = match convention {
+            Convention::Standard => &pair[0],
+            Convention::Modified => &pair[1],
+        };
+        let is_far = |d: f64| (FAR..=LONGEST).contains(&d.abs());
+        let turn = pair.iter().all(|joint| joint.row.kind == JointKind::Revolute);
+        let is_tilted = (1e-15..NEARLY_PARALLEL).contains(&between.row.dh.alpha.sin.abs());
+        let Some(place) = items.get(row + 1).and_then(|item| item.get("dh")?.get("d")) else { continue };
+        if !(is_far(d) && is_far(next) && d * next < 0.0 && turn && is_tilted) {
+            continue;
+        }
+        let message = format!(
+            "the common normal of the axes of joints {} and {} is {} m away, because these axes are nearly parallel",
+            row + 1,
+            row + 2,
+            short(d.abs())
+        );
+        cx.report(Diagnostic::note(place.head(), message).label("far from the arm").help(
+            "if the axes are parallel, write `alpha: 0` and shorter offsets `d`; if the table is calibrated, the key \
+             `at` (format 2) places a joint where it is, without a common normal",
+        ));
+    }
 }
 
 /// Number of links that must be alike for a warning about placeholders; they must also be at least 1 in `PART_ALIKE` of

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::lints::resistance;
 use crate::lints::resistance::Unresisted;
 use crate::text::decode::Context;
-use crate::text::diagnostic::{Diagnostic, Severity};
+use crate::text::diagnostic::{Diagnostic, Remedy, Severity};
 use crate::text::document::Node;
 use crate::text::expression::Names as _;
 use crate::text::source::six_digits;
@@ -31,13 +31,13 @@ pub(crate) fn triangle_inequality(cx: &Context, place: Range<usize>, moments: Op
         let is_known = !physical || c - (a + b) <= ROUNDED * c;
         let severity = if is_known { Severity::Note } else { Severity::Warning };
         let help = if physical {
-            "is one number wrong by a power of ten, or are two exchanged? Correct it; to keep the numbers of a \
-             published \
-             table, with which rne computes, write `physical: false`"
+            "is one number wrong by a power of ten, or are two exchanged? To use the numbers of a published table as \
+             they are, write `physical: false`"
         } else {
             "rne computes with these numbers, as `physical: false` allows"
         };
         let lint = Diagnostic::lint(place, message).label("violates the triangle inequality").help(help);
+        let lint = if is_known { lint } else { lint.remedy(Remedy::Repair) };
         cx.report(Diagnostic { severity, ..lint });
     }
 }
@@ -77,13 +77,13 @@ pub(crate) fn radius_of_gyration(cx: &Context, place: Range<usize>, mass: f64, [
     if radius > WIDEST_GYRATION {
         let (mass, shown) = (six_digits(mass), six_digits(radius));
         let message = format!(
-            "the inertia has a radius of gyration of {shown} m: this is as if the {mass} kg of the link were this far \
-             away from its centre of mass"
+            "the inertia has a radius of gyration of {shown} m, as if all of the {mass} kg were {shown} m from the \
+             centre of mass"
         );
         // numbers in g mm² make the radius sqrt(1e9) times too large, numbers in kg mm² sqrt(1e6) times
         let label = if radius > 1000.0 * WIDEST_GYRATION { "g mm²?" } else { "kg mm²?" };
         let help = "inertias are in kg m²: 1 kg mm² is 1e-6 kg m², 1 g mm² is 1e-9 kg m²";
-        cx.report(Diagnostic::lint(place, message).label(label).help(help));
+        cx.report(Diagnostic::lint(place, message).label(label).help(help).remedy(Remedy::Repair));
     }
 }
 

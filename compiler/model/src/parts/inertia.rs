@@ -14,6 +14,8 @@ const OF_SIX_DIGITS: f64 = 1e-6;
 /// Largest rounding error of an element, relative to the largest element: that of the number 1.00. Numbers of fewer
 /// digits may be exact.
 const OF_THREE_DIGITS: f64 = 0.005;
+/// The same of two digits, such as 1.0.
+const OF_TWO_DIGITS: f64 = 0.05;
 
 /// Moves a tensor from the origin of the link frame to the centre of mass: I - m(|c|² 1 - c cᵀ).
 ///
@@ -108,20 +110,21 @@ impl Inertia {
     /// moment is wrong by more than this.
     #[must_use]
     pub fn rounding(&self) -> f64 {
-        let rows = self.half_digits().map(|row| row.into_iter().sum::<f64>());
+        let rows = self.half_digits(OF_THREE_DIGITS).map(|row| row.into_iter().sum::<f64>());
         rows.into_iter().fold(OF_SIX_DIGITS * largest(self), f64::max)
     }
 
     /// Returns the largest error of c - (a + b) by this rounding, with the principal moments a ≤ b ≤ c: an error E of
     /// the tensor changes it by at most |tr E| + 2 ‖E‖.
     fn slack(&self) -> f64 {
-        let half = self.half_digits();
+        let half = self.half_digits(OF_TWO_DIGITS);
         half[0][0] + half[1][1] + half[2][2] + 2.0 * self.rounding()
     }
 
     /// Returns half of the last digit of each element. Files print all elements with the same number of decimals, or of
-    /// significant digits; trailing zeros are lost, so the element with the most digits tells the number.
-    fn half_digits(&self) -> [[f64; 3]; 3] {
+    /// significant digits; trailing zeros are lost, so the element with the most digits tells the number. It is at most
+    /// the part `coarsest` of the largest element; of a tensor with one digit, that of three digits.
+    fn half_digits(&self, coarsest: f64) -> [[f64; 3]; 3] {
         // the number of digits after the first one, and the decimal exponent of the last digit
         let digits = |x: f64| {
             let (digits, last) = decimal_digits(x.abs());
@@ -130,7 +133,7 @@ impl Inertia {
         let elements = self.rows().into_iter().flatten().filter(|x| *x != 0.0);
         let (most, finest) =
             elements.map(digits).fold((0, i32::MAX), |(most, finest), (more, last)| (most.max(more), finest.min(last)));
-        let coarsest = OF_THREE_DIGITS * largest(self);
+        let coarsest = if most == 0 { OF_THREE_DIGITS } else { coarsest } * largest(self);
         self.rows().map(|row| {
             row.map(|x| {
                 let (more, last) = digits(x);

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::readers::varying::fixed;
 use crate::text::decode::{Context, choice, list, not_negative, read_mapping};
-use crate::text::diagnostic::Diagnostic;
+use crate::text::diagnostic::{Diagnostic, Remedy};
 use crate::text::document::Node;
 use crate::text::source::six_digits;
 use crate::{Inertia, InertiaElement, InertiaReference, Link, lints, lints::single_value, parts::inertia};
@@ -94,14 +94,15 @@ pub(crate) fn checked(
     }
     if !is_body {
         let message = format!(
-            "the inertia is not positive semidefinite: its smallest eigenvalue about the centre of mass is {} kg m²; \
-             it must be zero or positive",
+            "no body can have this inertia: its smallest principal moment about the centre of mass is {} kg m²; it \
+             must be zero or positive",
             six_digits(moments[0])
         );
-        return cx.refuse(Diagnostic::error(place, message).label("not the inertia of a body").help(match about {
+        let refusal = Diagnostic::error(place, message).label("not the inertia of a body").remedy(Remedy::Repair);
+        return cx.refuse(refusal.help(match about {
             InertiaReference::Com => {
-                "check the signs and the order of the products of inertia; a tensor about the origin of the link frame \
-                 needs `inertia_about: origin`"
+                "check the signs and the order of the numbers; a tensor about the origin of the link frame needs \
+                 `inertia_about: origin`"
             }
             InertiaReference::Origin => {
                 "check mass and com; if the tensor already refers to the centre of mass, write `inertia_about: com`"

@@ -128,6 +128,7 @@ fn lint_joints(cx: &Context, node: &Node, convention: Convention, joints: &[Join
     lints::inertia::inertias(cx, node, convention, joints, of_loops);
     lints::link::links(cx, node, convention, joints);
     lints::arm::nearly_parallel(cx, joints);
+    lints::arm::far_normals(cx, node, convention, joints);
     lints::arm::placeholders(cx, node, joints);
     lints::arm::missing_friction(cx, node);
     mirror::twins(cx, node, joints);

@@ -25,6 +25,8 @@ pub enum Remedy {
     LockOthers,
     /// The caller can keep a body whose inertia no physical body has.
     KeepUnphysical,
+    /// The caller can ask for edits after which the inertia is possible.
+    Repair,
     /// The caller can import the whole robot of a URDF instead of one arm.
     Whole,
     /// The caller can import the whole robot, or lock this joint by its name.

@@ -29,6 +29,7 @@ from ._rne import (
     names as _names,
     payload,
     pose_log,
+    repair,
 )
 from .excitation import Excitation, excite
 from .identification import Identification, identify
@@ -63,6 +64,7 @@ __all__ = [
     "log",
     "payload",
     "pose_log",
+    "repair",
     "robots",
     "watch",
     "__version__",

@@ -34,6 +34,27 @@ class BaseParameter(TypedDict):
     combination: dict[str, float]
     visible: bool
 
+class Change(TypedDict):
+    line: int
+    column: int
+    old: str
+    new: str
+
+class Candidate(TypedDict):
+    name: str
+    mistake: str
+    failed: list[str]
+    complete: bool
+    changes: list[Change]
+
+class Finding(TypedDict):
+    link: str
+    line: int
+    column: int
+    failed: list[str]
+    equal: int
+    candidates: list[Candidate]
+
 class Diagnosis(TypedDict):
     agrees: bool
     error: float
@@ -627,6 +648,9 @@ def load(
     rotors: bool | None = ...,
 ) -> Arm:
     """Return the arm of a robot file (YAML), a URDF, an MJCF file, the text of one, or of a built-in robot."""
+
+def repair(source: str | PathLike[str]) -> list[Finding]:
+    """Propose repairs of the links of a robot file, a URDF or an MJCF file that cannot exist, or that are improbable."""
 
 def base_from_imu(
     gyroscope: ArrayLike, gyroscope_rate: ArrayLike, accelerometer: ArrayLike, *,
