@@ -216,8 +216,8 @@ fn robot_files_and_mjcf_files_are_repaired_in_their_own_syntax() {
                 mass=\"1\" pos=\"0 0 .1\" diaginertia=\"0.01 0.012  4e-3\" /></body></body></worldbody></mujoco>";
     let formulas = "format: 1\nname: x\nsource: own\nconvention: standard\ngravity: [0, 0, -9.81]\nparameters: {n: 1, \
                     m: 2*n}\njoints:\n  - type: revolute\n    dh: {theta: 0, d: 0.3, a: 0, alpha: 0}\n    \
-                    link:\n      mass: m\n      com: [0, 0, n/5]\n      inertia_about: origin\n      inertia:\n        xx: 0.09  # about the \
-                    origin\n        yy: 0.09\n        zz: 0.009\n";
+                    link:\n      mass: m\n      com: [0, 0, n/5]\n      inertia_about: origin\n      \
+                    inertia:\n        xx: 0.09  # about the origin\n        yy: 0.09\n        zz: 0.009\n";
     for (file, text, right, wrong) in [
         ("formulas.yaml", formulas, "zz: 0.009", "zz: -0.009"),
         ("puma560.yaml", puma, right, "inertia: {xx: 0.13, yy: -0.524, zz: 0.539}"),
@@ -244,8 +244,8 @@ fn table(joints: &str) -> String {
 /// A row with a link.
 fn row(d: &str, mass: &str, inertia: &str) -> String {
     format!(
-        "  - type: revolute\n    dh: {{theta: 0, d: {d}, a: 0.3, alpha: pi/2}}\n    link: {{mass: {mass}, com: [-0.1, 0, \
-         0], inertia: {inertia}}}\n"
+        "  - type: revolute\n    dh: {{theta: 0, d: {d}, a: 0.3, alpha: pi/2}}\n    link: {{mass: {mass}, com: \
+         [-0.1, 0, 0], inertia: {inertia}}}\n"
     )
 }
 

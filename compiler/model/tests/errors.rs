@@ -278,7 +278,7 @@ fn inertia_that_no_mass_distribution_has() {
             15,
             16,
             "{xx: -0.1, yy: 0.12, zz: 0.02}",
-            "smallest eigenvalue about the centre of mass is -0.1 kg m²",
+            "smallest principal moment about the centre of mass is -0.1 kg m²",
         ),
         (
             "zz: 0.02}",
@@ -286,7 +286,7 @@ fn inertia_that_no_mass_distribution_has() {
             15,
             16,
             "{xx: 0.1, yy: 0.12, zz: 0.02, xy: 0.2}",
-            "smallest eigenvalue about the centre of mass is -0.09",
+            "smallest principal moment about the centre of mass is -0.09",
         ),
         // 2.5 · 0.3² = 0.225 is more than 0.1 and 0.12.
         (
@@ -295,7 +295,7 @@ fn inertia_that_no_mass_distribution_has() {
             15,
             16,
             "{xx: 0.1, yy: 0.12, zz: 0.02}",
-            "smallest eigenvalue about the centre of mass is -0.125",
+            "smallest principal moment about the centre of mass is -0.125",
         ),
         (
             "xx: 0.1",

@@ -216,7 +216,7 @@ fn lints() {
             "{xx: 11, yy: 9, zz: 9}",
             15,
             16,
-            "a radius of gyration of 2.09762 m: this is as if the 2.5 kg of the link were this far",
+            "a radius of gyration of 2.09762 m, as if all of the 2.5 kg were 2.09762 m from",
             "1 kg mm² is 1e-6 kg m²",
         ),
         (

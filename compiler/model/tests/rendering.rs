@@ -65,7 +65,7 @@ fn an_impossible_inertia_and_a_lint() {
     15 |       inertia: {xx: -0.1, yy: 0.12, zz: 0.02}
        |                ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ not the inertia of a body
        |
-       = help: check the signs and the order of the products of inertia; a tensor about the origin of the link frame needs `inertia_about: origin`
+       = help: check the signs and the order of the numbers; a tensor about the origin of the link frame needs `inertia_about: origin`
 
     warning: the angle `1.5708` is 3.67321e-6 rad off the right angle `pi/2`
       --> robots/x.yaml:11:41

@@ -57,8 +57,8 @@ fn sentences(failed: &[Test]) -> Vec<&'static str> {
 /// -------
 /// list of dict
 ///     One for each link with a finding: `link`, `line`, `column`, `failed` (sentences that say what is wrong),
-///     `candidates` (best first) and `equal`, the number of candidates at the beginning that are equally good. One means
-///     that the first is the repair. A candidate has `name`, `mistake`, `failed` (what it leaves), `complete` and
+///     `candidates` (best first) and `equal`, the number of candidates at the beginning that are equally good. One
+///     means that the first is the repair. A candidate has `name`, `mistake`, `failed` (what it leaves), `complete` and
 ///     `changes`: the text `old` at `line` and `column` becomes `new`. It is not complete if the file lacks a number,
 ///     which `new` shows as a question mark. The list is empty if nothing needs a repair.
 ///

@@ -227,9 +227,8 @@ fn another_mass_at_the_same_centre_is_told() {
         let Some(found) = near_miss(&robot, &[seen]).expect("one number for each joint") else { continue };
         near += 1;
         let is_exact = |of: usize, by: f64| of == link && (by - difference).abs() < 0.02 * difference;
-        exact += usize::from(
-            matches!(found.cause, Cause::Parameter { link, parameter: 10, difference, .. } if is_exact(link, difference)),
-        );
+        let Cause::Parameter { link, parameter: 10, difference, .. } = found.cause else { continue };
+        exact += usize::from(is_exact(link, difference));
     }
     assert!(near >= 14 && exact >= 12, "{near} {exact}");
 }

@@ -50,13 +50,8 @@ fn file(path: &Path, writes: bool) -> Result<(String, bool), Failure> {
     let found = proposals(&bodies);
     if found.is_empty() {
         let s = if bodies.len() == 1 { "" } else { "s" };
-        let bodies = bodies.len();
-        return Ok((
-            format!(
-                "{GOOD}ok{GOOD:#} {name}  {QUIET}{bodies} link{s}, no edit of a mass or an inertia to propose{QUIET:#}\n"
-            ),
-            true,
-        ));
+        let about = format!("{} link{s}, no edit of a mass or an inertia to propose", bodies.len());
+        return Ok((format!("{GOOD}ok{GOOD:#} {name}  {QUIET}{about}{QUIET:#}\n"), true));
     }
     let mut shown = String::new();
     for proposal in &found {

@@ -14,7 +14,7 @@ const OF_SIX_DIGITS: f64 = 1e-6;
 /// Largest rounding error of an element, relative to the largest element: that of the number 1.00. Numbers of fewer
 /// digits may be exact.
 const OF_THREE_DIGITS: f64 = 0.005;
-/// The same of two digits, such as 1.0.
+/// Largest rounding error of an element of two digits, such as 1.0.
 const OF_TWO_DIGITS: f64 = 0.05;
 
 /// Moves a tensor from the origin of the link frame to the centre of mass: I - m(|c|² 1 - c cᵀ).
