@@ -1,7 +1,8 @@
-//! Converts arrays of numpy to the arguments of compiled functions, and their results to arrays of numpy.
+//! Converts arrays of numpy to the arguments of compiled functions, and their results to arrays and dicts of Python.
 
 mod given;
 mod memory;
+pub(crate) mod reply;
 
 use std::ops::Range;
 

@@ -13,10 +13,10 @@ use rne_model::{Robot, one_line};
 use rne_plot::{Comparison, comparison_svg};
 
 use crate::arm::Arm;
+use crate::arrays::reply::dict_of;
 use crate::interruption::interruptible;
 use crate::log_errors::{of_arm_log, of_pass};
 use crate::logs::{Reading, Said, robot_of, said};
-use crate::reply::dict_of;
 
 /// The largest number of states that a picture shows.
 const DRAWN: u64 = 4000;

@@ -29,7 +29,6 @@ mod operational_space;
 mod payload;
 mod pose;
 mod repair;
-mod reply;
 mod rollout;
 mod watching;
 mod xla;

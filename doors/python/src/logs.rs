@@ -11,9 +11,9 @@ use rne_logs::{Angles, Log, LogError, Mapping, Motion, Options, TimeUnit};
 use rne_model::Robot;
 
 use crate::arm::Arm;
+use crate::arrays::reply::dict_of;
 use crate::interruption::interruptible;
 use crate::log_errors::{log_remark, of_arm_log, of_log, remark};
-use crate::reply::dict_of;
 
 /// The keywords by which a log is read, from the dict that the package makes of them.
 #[derive(Clone, Debug, FromPyObject)]

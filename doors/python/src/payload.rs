@@ -10,12 +10,12 @@ use rne_identify::{ArmLog, JointError, MotionError, Part, PassError, Payload, Pa
 use rne_model::Inertia;
 
 use crate::arm::Arm;
+use crate::arrays::reply::dict_of;
 use crate::arrays::{array_of, in_order, readable, refuse_masked, shape_in_words, shape_of, taken};
 use crate::identification::Judged;
 use crate::interruption::interruptible;
 use crate::log_errors::{of_arm_log, of_pass};
 use crate::logs::{Reading, Said, robot_of, said};
-use crate::reply::dict_of;
 
 /// The argument `payload` of the functions of an `Arm`, shape (10,).
 ///

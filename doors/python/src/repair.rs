@@ -5,9 +5,9 @@ use pyo3::types::PyDict;
 use rne_convert::repair::{Candidate, Proposal, Test, bodies_of, line_and_column, proposals};
 use serde::Serialize;
 
+use crate::arrays::reply::dict_of;
 use crate::errors::of_report;
 use crate::load::Given;
-use crate::reply::dict_of;
 
 /// A link that needs a repair.
 #[derive(Serialize)]

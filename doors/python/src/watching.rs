@@ -11,11 +11,11 @@ use rne_model::{Robot, one_line};
 use rne_watch::{Baseline, Changes, Event, Report, Settings, Trend, TrendReply, WatchReply, changes, svg, watch};
 
 use crate::arm::Arm;
+use crate::arrays::reply::dict_of;
 use crate::errors::of_report;
 use crate::interruption::interruptible;
 use crate::log_errors::{of_arm_log, of_pass, of_watch};
 use crate::logs::{Reading, Said, robot_of, said};
-use crate::reply::dict_of;
 
 /// The largest residual of an effort that counts as zero, N m or N.
 const NOTHING: f64 = 1e-9;
