@@ -243,10 +243,8 @@ fn a_small_difference_is_not_explained_by_any_small_slip() {
         let mut other = robot.clone();
         other.joints[1].row.link.mass *= 1.0 + 0.003 * f64::from(seed + 1);
         let (seen, _) = seen(&robot, &other, 1, 1.0, &mut rng);
-        let right = match diagnose(&robot, std::slice::from_ref(&seen)).expect("one number for each joint") {
-            Diagnosis::Unexplained(right) => right,
-            _ => continue,
-        };
+        let found = diagnose(&robot, std::slice::from_ref(&seen)).expect("one number for each joint");
+        let Diagnosis::Unexplained(right) = found else { continue };
         if let Some((_, Diagnosis::Explained(found))) = diagnose_nearly(&robot, &[seen], &tolerances).expect("numbers")
         {
             assert!(found[0].error <= 0.2 * right, "{seed}: {right} {found:?}");
