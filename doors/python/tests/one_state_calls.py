@@ -21,7 +21,9 @@ ROBOTS = {
 
 #: Methods with a state that search or compose for seconds, and functions of the package that take no state.
 OTHERS = {"diagnose"}
-OF_NO_STATE = {"excite", "from_mujoco", "from_pinocchio", "identify", "identify_payload", "load", "log", "watch"}
+OF_NO_STATE = {
+    "excite", "from_mujoco", "from_pinocchio", "identify", "identify_payload", "load", "log", "repair", "watch",
+}
 
 
 def arguments_of(arm, random):
