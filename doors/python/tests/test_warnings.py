@@ -99,12 +99,10 @@ def test_a_urdf_is_snapped_as_on_the_command_line(tmp_path):
 def test_a_repair_is_proposed_as_data(tmp_path):
     for name in rne.robots:
         assert rne.repair(name) == rne.repair(rne.robots[name].yaml) == [], name
-    for text, spoilt in [
-        (rne.robots.iiwa14.yaml, lambda text: text.replace("xx: 0.033", "xx: -0.033", 1)),
-        (urdf(lambda i: ball(8 + i).replace("iyy='0.01'", "iyy='0.012'")), lambda text: text.replace("'0.012", "'-0.012", 1)),
-    ]:
+    unlike = urdf(lambda i: ball(8 + i).replace("'0.01' iyy='0.01'", "'0.013' iyy='0.012'"))
+    for text, number in [(rne.robots.iiwa14.yaml, "0.033"), (unlike, "0.012")]:
         assert rne.repair(text) == []
-        wrong = spoilt(text)
+        wrong = text.replace(number, f"-{number}", 1)
         assert wrong != text
         file = tmp_path / "arm"
         file.write_text(wrong)
